@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "app/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "app/verbs.h"
+#include "io/mesh_writer.h"
+#include "sim/table_reader.h"
+#include "topology/error.h"
+
+namespace incise::app {
+
+namespace {
+
+using Action = std::function<int()>;
+
+constexpr std::string_view verbs[] = {"run", "check", "info", "convert", "materials", "render"};
+constexpr std::string_view planned_verbs[] = {"cut", "mesh", "bench"};
+
+constexpr const char* description =
+    "Incise deforms and cuts soft tissue. Units are SI throughout: metres, kilograms, seconds,\n"
+    "pascals, radians; any other consistent set works as well.";
+
+constexpr const char* footer =
+    "Examples:\n"
+    "  incise check liver.toml                           find every problem of a scenario\n"
+    "  incise run liver.toml                             simulate it; frames go to liver.out\n"
+    "  incise run liver.toml --set material[0].young=2e3 the same with one number changed\n"
+    "  incise info liver.vtu --json                      size, regions and quality of a mesh\n"
+    "  incise convert liver.msh liver.vtu                from one format to another\n"
+    "  incise render liver.out --out liver.png           a picture of the last frame\n"
+    "\n"
+    "Exit status: 0 done; 1 done, but an [expect] failed; 2 the input or the usage is at fault;\n"
+    "3 the physics went wrong; 4 output failed; 5 out of memory; 70 a fault of the program;\n"
+    "130, 143 stopped by SIGINT, SIGTERM.";
+
+std::string written_formats() {
+    std::string text;
+    for (const auto& suffix : io::writable_suffixes()) text += (text.empty() ? "" : ", ") + suffix;
+    return text;
+}
+
+void declare_run(CLI::App& app, Action& action) {
+    auto options = std::make_shared<RunOptions>();
+    auto* verb = app.add_subcommand("run", "Simulate a scenario and write its frames and figures");
+    verb->add_option("SCENARIO", options->scenario, "Scenario file (.toml)")
+        ->required()
+        ->type_name("PATH");
+    verb->add_option("--out", options->out, "Folder for the results (default: NAME.out)")
+        ->type_name("PATH");
+    verb->add_option("--end-time", options->end_time, "Stop at this simulated time, in seconds");
+    verb->add_option("--set", options->overrides, "Change a value of the scenario; repeatable")
+        ->type_name("KEY.PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    verb->add_flag("--dry-run", options->dry_run, "Do everything but simulate and write");
+    verb->add_flag("--quiet", options->quiet, "No progress, only problems");
+    verb->footer(
+        "Examples:\n"
+        "  incise run liver.toml --out results --end-time 0.5\n"
+        "  incise run liver.toml --set dynamics.damping=2 --set material[0].young=2e3\n"
+        "Elements of lists are counted from 0.");
+    verb->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+void declare_check(CLI::App& app, Action& action) {
+    auto options = std::make_shared<CheckOptions>();
+    auto* verb =
+        app.add_subcommand("check", "Report every problem of scenarios and meshes; change nothing");
+    verb->add_option("FILE", options->files, "Scenario (.toml) or mesh files")
+        ->required()
+        ->type_name("PATH ...");
+    verb->footer("Example: incise check liver.toml liver.vtu");
+    verb->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+void declare_info(CLI::App& app, Action& action) {
+    auto options = std::make_shared<InfoOptions>();
+    auto* verb = app.add_subcommand("info", "Describe a mesh: counts, size, regions, quality");
+    verb->add_option("MESH", options->mesh, "Mesh file")->required()->type_name("PATH");
+    verb->add_option("--region-array", options->region_array,
+                     "Cell array of VTK files that holds the regions")
+        ->capture_default_str();
+    verb->add_flag("--json", options->json, "One JSON object on stdout");
+    verb->footer("Example: incise info liver.vtu --json");
+    verb->callback([options, &action] { action = [options] { return info(*options); }; });
+}
+
+void declare_convert(CLI::App& app, Action& action) {
+    auto options = std::make_shared<ConvertOptions>();
+    auto* verb = app.add_subcommand("convert", "Write a mesh in the format of the new name");
+    verb->add_option("IN", options->in, "Mesh file")->required()->type_name("PATH");
+    verb->add_option("OUT", options->out, "Mesh file to write; replaced if it is there")
+        ->required()
+        ->type_name("PATH");
+    verb->add_option("--region-array", options->region_array,
+                     "Cell array of VTK files that holds the regions")
+        ->capture_default_str();
+    verb->footer("Formats to write: " + written_formats() +
+                 "\nExample: incise convert liver.msh liver.vtu");
+    verb->callback([options, &action] { action = [options] { return convert(*options); }; });
+}
+
+void declare_materials(CLI::App& app, Action& action) {
+    auto options = std::make_shared<MaterialsOptions>();
+    auto* verb = app.add_subcommand("materials", "List the laws, their parameters and limits");
+    verb->add_option("NAME", options->name, "One of them, in detail");
+    verb->add_flag("--json", options->json, "One JSON object on stdout");
+    verb->footer("Example: incise materials neo-hookean");
+    verb->callback([options, &action] { action = [options] { return materials(*options); }; });
+}
+
+/// Its options are those of incise-render, which also answers --help.
+void declare_render(CLI::App& app, Action& action) {
+    auto* verb = app.add_subcommand("render", "Draw pictures of a finished run, off screen");
+    verb->set_help_flag();
+    verb->prefix_command();
+    verb->callback([verb, &action] {
+        action = [arguments = verb->remaining()] { return render({arguments}); };
+    });
+}
+
+/// A first word that is no verb, told in our own words.
+void check_verb(int argc, const char* const* argv) {
+    if (argc < 2)
+        throw InputError("a verb is missing: one of " + sim::list_of(verbs) +
+                         "; incise --help tells more");
+    const std::string_view word = argv[1];
+    if (word.starts_with('-')) return;
+    if (const auto complaint = sim::complaint(word, {verbs, planned_verbs}))
+        throw InputError("verb " + sim::in_quotes(word) + ": " + *complaint);
+}
+
+}  // namespace
+
+int dispatch(int argc, const char* const* argv) {
+    check_verb(argc, argv);
+    Action action;
+    CLI::App app(description, "incise");
+    app.set_version_flag("--version", "incise " INCISE_VERSION);
+    app.require_subcommand(1);
+    declare_run(app, action);
+    declare_check(app, action);
+    declare_info(app, action);
+    declare_convert(app, action);
+    declare_materials(app, action);
+    declare_render(app, action);
+    app.footer(footer);  // after the verbs, which would inherit it
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // help or version
+        const auto parsed = app.get_subcommands();
+        throw InputError(std::string(error.what()) + "\nsee incise " +
+                         (parsed.empty() ? "" : parsed.front()->get_name() + " ") + "--help");
+    }
+    return action();
+}
+
+}  // namespace incise::app

@@ -1,0 +1,29 @@
+// How the command speaks: everything about the work goes to stderr, one message a line.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sim/scenario.h"
+
+namespace incise::app {
+
+/// "incise: TEXT", each line of the text for itself.
+void print_error(std::string_view text);
+/// "incise: warning: TEXT".
+void print_warning(std::string_view text);
+
+/// One line each.
+std::string joined(std::span<const std::string> lines);
+
+/// The text with `prefix` before each of its lines.
+std::string prefixed(std::string_view prefix, std::string_view text);
+
+/// The scenario, its warnings printed. Throws InputError with every problem, one a line.
+sim::Scenario load_scenario(const std::filesystem::path& file,
+                            std::span<const std::string> overrides = {});
+
+}  // namespace incise::app

@@ -1,0 +1,224 @@
+// incise-render: pictures of a finished run, off screen. A program of its own, so that the
+// solver needs neither a display nor VTK's rendering.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <signal.h>
+#include <unistd.h>
+#include <vtkObject.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/render/coloring.h"
+#include "app/render/display.h"
+#include "app/render/frame_list.h"
+#include "app/render/frame_reader.h"
+#include "app/render/options.h"
+#include "app/render/scene.h"
+#include "io/atomic_file.h"
+#include "topology/error.h"
+
+namespace incise::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+volatile sig_atomic_t stop_signal = 0;
+
+struct Stopped {};
+
+void stop_if_asked() {
+    if (stop_signal != 0) throw Stopped{};
+}
+
+/// One line on a terminal that is written over; elsewhere a line now and then.
+class Progress {
+  public:
+    Progress(const char* doing, std::size_t total) : doing_(doing), total_(total) {}
+    ~Progress() {
+        if (is_terminal_ && is_shown_) std::fputs("\r\033[K", stderr);
+    }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void tell(std::size_t done) {
+        if (total_ < 2) return;
+        const std::size_t tenth = std::max<std::size_t>(1, total_ / 10);
+        if (is_terminal_)
+            std::fprintf(stderr, "\r%s frame %zu of %zu\033[K", doing_, done, total_);
+        else if (done % tenth == 0 || done == total_)
+            std::fprintf(stderr, "%s frame %zu of %zu\n", doing_, done, total_);
+        std::fflush(stderr);
+        is_shown_ = true;
+    }
+
+  private:
+    const char* doing_;
+    std::size_t total_;
+    bool is_terminal_ = ::isatty(STDERR_FILENO) != 0;
+    bool is_shown_ = false;
+};
+
+/// The numbers of the frames to draw.
+std::vector<std::size_t> choose_frames(const FrameList& list, const Options& options) {
+    const auto count = list.frames.size();
+    if (options.is_all) {
+        std::vector<std::size_t> all(count);
+        for (std::size_t i = 0; i < count; ++i) all[i] = i;
+        return all;
+    }
+    const auto frame = options.frame.value_or(count - 1);
+    if (frame >= count)
+        throw InputError(options.input.string() + ": has no frame " + std::to_string(frame) +
+                         "; there are " + std::to_string(count) + ", numbered 0 to " +
+                         std::to_string(count - 1));
+    return {frame};
+}
+
+std::string six_digits(std::size_t number) {
+    auto digits = std::to_string(number);
+    return digits.insert(0, digits.size() < 6 ? 6 - digits.size() : 0, '0');
+}
+
+/// Where the pictures go: one file, or a folder and names in it.
+struct Destination {
+    fs::path file;  ///< empty: by number in the folder
+    fs::path folder;
+    std::string name;
+
+    fs::path path(std::size_t frame) const {
+        return file.empty() ? folder / (name + "_" + six_digits(frame) + ".png") : file;
+    }
+};
+
+Destination choose_destination(const FrameList& list, const Options& options) {
+    const bool names_file = options.out.extension() == ".png";
+    if (names_file && options.is_all)
+        throw InputError("--out " + options.out.string() +
+                         ": --all makes many pictures; name a folder");
+    if (names_file) return {options.out, {}, {}};
+    if (!options.out.empty()) return {{}, options.out, list.name};
+    if (!list.is_run) return {list.folder / (list.name + ".png"), {}, {}};
+    return {{}, list.folder / "pictures", list.name};
+}
+
+/// Digits after the point that tell the frames' times apart.
+int time_digits(const FrameList& list) {
+    double shortest = 1;
+    for (std::size_t i = 1; i < list.frames.size(); ++i) {
+        const auto before = list.frames[i - 1].time, after = list.frames[i].time;
+        if (before && after && *after > *before) shortest = std::min(shortest, *after - *before);
+    }
+    constexpr int fewest = 3, most = 9;
+    return std::clamp(static_cast<int>(std::ceil(-std::log10(shortest))), fewest, most);
+}
+
+std::string caption_of(const FrameFile& file, vtkUnstructuredGrid& grid, int digits) {
+    const auto time = file.time ? file.time : time_of(grid);
+    if (!time) return "";
+    char text[64];
+    std::snprintf(text, sizeof text, "t = %.*f s", digits, *time);
+    return text;
+}
+
+/// A frame with the values of the field, which `field` holds or, if it does not yet, is set to.
+vtkSmartPointer<vtkUnstructuredGrid> read_colored(const fs::path& path,
+                                                  const std::optional<std::string>& wanted,
+                                                  std::optional<ColorField>& field) {
+    const auto grid = read_frame(path);
+    try {
+        if (!field) field = choose_color_field(*grid, wanted);
+        add_color_values(*grid, *field);
+    } catch (const InputError& error) {
+        throw InputError(path.string() + ": " + error.what());
+    }
+    return grid;
+}
+
+/// What the pictures have in common: found by a look through all frames to be drawn.
+SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& frames,
+                     const Options& options) {
+    SceneSettings settings;
+    settings.size = options.size;
+    settings.view = options.view;
+    settings.has_edges = options.has_edges;
+    settings.title = list.name;
+    std::optional<ColorField> field;
+    Progress progress("looking through", frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        stop_if_asked();
+        const auto grid = read_colored(list.frames[frames[i]].path, options.color, field);
+        if (grid->GetNumberOfPoints() > 0) settings.bounds.AddBounds(grid->GetBounds());
+        settings.range.include(*grid, *field);
+        progress.tell(i + 1);
+    }
+    settings.field = *field;
+    if (!settings.bounds.IsValid()) settings.bounds.SetBounds(0, 1, 0, 1, 0, 1);
+    settings.limits = options.range.value_or(settings.range.limits());
+    return settings;
+}
+
+void run(const Options& options) {
+    const auto list = list_frames(options.input);
+    const auto frames = choose_frames(list, options);
+    const auto destination = choose_destination(list, options);
+    const auto settings = survey(list, frames, options);
+    if (destination.file.empty()) io::make_output_folder(destination.folder);
+
+    const DisplayGuard display;
+    Scene scene(settings);
+    const int digits = time_digits(list);
+    std::optional<ColorField> field = settings.field;
+    Progress progress("drawing", frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        stop_if_asked();
+        const auto& file = list.frames[frames[i]];
+        const auto grid = read_colored(file.path, options.color, field);
+        const auto path = destination.path(frames[i]);
+        io::write_file(path, scene.png(*grid, caption_of(file, *grid, digits)));
+        if (!(std::cout << path.string() << std::endl))
+            throw OutputError("stdout: cannot be written");
+        progress.tell(i + 1);
+    }
+}
+
+}  // namespace
+}  // namespace incise::render
+
+int main(int argc, char** argv) {
+    using namespace incise;
+    enum Exit { done = 0, bad_input = 2, output_failed = 4, out_of_memory = 5 };
+
+    struct sigaction action {};
+    action.sa_handler = [](int number) { render::stop_signal = number; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one stops at once
+    ::sigaction(SIGINT, &action, nullptr);
+    ::sigaction(SIGTERM, &action, nullptr);
+    vtkObject::GlobalWarningDisplayOff();  // failures are told once, in our words
+
+    const auto fail = [](int status, const char* text) {
+        std::cerr << "incise-render: " << text << "\n";
+        return status;
+    };
+    try {
+        const auto parsed = render::parse_options(argc, argv);
+        if (const auto* status = std::get_if<int>(&parsed)) return *status;
+        render::run(std::get<render::Options>(parsed));
+        return done;
+    } catch (const render::Stopped&) {
+        return 128 + render::stop_signal;
+    } catch (const InputError& error) {
+        return fail(bad_input, error.what());
+    } catch (const OutputError& error) {
+        return fail(output_failed, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(out_of_memory, "out of memory");
+    } catch (const std::exception& error) {
+        return fail(output_failed, error.what());
+    }
+}

@@ -1,0 +1,104 @@
+// incise info: what a mesh is, for people and as JSON.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "app/messages.h"
+#include "app/verbs.h"
+#include "io/mesh_reader.h"
+#include "topology/error.h"
+#include "topology/mesh.h"
+#include "topology/mesh_metrics.h"
+
+namespace incise::app {
+
+namespace {
+
+struct MeshInfo {
+    std::size_t num_points = 0;
+    int num_components = 0;
+    topology::MeshMetrics metrics;
+    std::vector<std::string> warnings;
+
+    double min_dihedral_degrees() const {
+        return metrics.min_dihedral_angle * 180.0 / std::numbers::pi;
+    }
+};
+
+MeshInfo look_at(const InfoOptions& options) {
+    auto file = io::read_mesh(options.mesh, {options.region_array});
+    MeshInfo info;
+    info.num_points = file.mesh.points.size();
+    info.warnings = std::move(file.warnings);
+    try {
+        const auto built = topology::Mesh::build(file.mesh);
+        info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
+        info.num_components = topology::components(built.mesh).count;
+        info.metrics = topology::measure(file.mesh);
+    } catch (const InputError& error) {
+        throw InputError(prefixed(options.mesh.string() + ": ", error.what()));
+    }
+    return info;
+}
+
+nlohmann::ordered_json as_json(const MeshInfo& info) {
+    const auto& m = info.metrics;
+    nlohmann::ordered_json json;
+    json["points"] = info.num_points;
+    constexpr const char* keys[] = {"tets", "hexes", "wedges", "pyramids"};
+    for (std::size_t kind = 0; kind < std::size(keys); ++kind)
+        json[keys[kind]] = m.num_of_kind[kind];
+    json["components"] = info.num_components;
+    json["volume"] = m.volume;
+    json["surface_area"] = m.surface_area;
+    json["bounding_box"] = {{"min", {m.box_min.x(), m.box_min.y(), m.box_min.z()}},
+                            {"max", {m.box_max.x(), m.box_max.y(), m.box_max.z()}}};
+    json["regions"] = nlohmann::ordered_json::object();
+    for (const auto& [region, cells] : m.cells_of_region)
+        json["regions"][std::to_string(region)] = cells;
+    json["min_altitude"] = m.min_altitude;
+    json["min_dihedral_deg"] = info.min_dihedral_degrees();
+    json["edge_length"] = {
+        {"min", m.min_edge_length}, {"mean", m.mean_edge_length}, {"max", m.max_edge_length}};
+    json["warnings"] = info.warnings;
+    return json;
+}
+
+void print_text(const MeshInfo& info) {
+    const auto& m = info.metrics;
+    std::printf("points           %zu\n", info.num_points);
+    for (std::size_t kind = 0; kind < m.num_of_kind.size(); ++kind)
+        if (m.num_of_kind[kind] > 0)
+            std::printf("%-16s %zu\n", topology::cell_traits[kind].plural, m.num_of_kind[kind]);
+    for (const auto& [region, cells] : m.cells_of_region)
+        std::printf("region %-9d %zu cells\n", region, cells);
+    std::printf("components       %d\n", info.num_components);
+    std::printf("bounding box     %.6g %.6g %.6g to %.6g %.6g %.6g\n", m.box_min.x(), m.box_min.y(),
+                m.box_min.z(), m.box_max.x(), m.box_max.y(), m.box_max.z());
+    std::printf("volume           %.6g\n", m.volume);
+    std::printf("surface area     %.6g\n", m.surface_area);
+    std::printf("edge length      %.4g to %.4g, mean %.4g\n", m.min_edge_length, m.max_edge_length,
+                m.mean_edge_length);
+    std::printf("least altitude   %.4g\n", m.min_altitude);
+    std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
+}
+
+}  // namespace
+
+int info(const InfoOptions& options) {
+    const auto info = look_at(options);
+    if (options.json) {
+        // Warnings may quote names from the file, in whatever encoding.
+        std::cout << as_json(info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                  << '\n';
+        return done;
+    }
+    for (const auto& warning : info.warnings)
+        print_warning(prefixed(options.mesh.string() + ": ", warning));
+    print_text(info);
+    return done;
+}
+
+}  // namespace incise::app

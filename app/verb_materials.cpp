@@ -1,0 +1,141 @@
+// incise materials: the laws, their parameters and their limits.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/verbs.h"
+#include "sim/material_catalog.h"
+#include "sim/table_reader.h"
+#include "topology/error.h"
+
+namespace incise::app {
+
+namespace {
+
+using sim::MaterialModel;
+
+std::vector<const MaterialModel*> all_models() {
+    std::vector<const MaterialModel*> models;
+    for (const auto& law : sim::laws()) models.push_back(&law);
+    models.push_back(&sim::mass_spring_model());
+    return models;
+}
+
+/// Each parameter of the model once, in the order of the table.
+std::vector<const sim::ParameterInfo*> parameters_of(const MaterialModel& model) {
+    std::vector<const sim::ParameterInfo*> rows;
+    for (const auto& row : sim::parameters())
+        for (const auto& set : model.parameter_sets)
+            if (std::find(set.begin(), set.end(), row.parameter) != set.end()) {
+                rows.push_back(&row);
+                break;
+            }
+    return rows;
+}
+
+bool is_law(const MaterialModel& model) { return &model != &sim::mass_spring_model(); }
+
+std::string scenario_line(const MaterialModel& model) {
+    return (is_law(model) ? "law = \"" : "method = \"") + std::string(model.key) + "\"";
+}
+
+nlohmann::ordered_json as_json(const MaterialModel& model) {
+    nlohmann::ordered_json json;
+    json["name"] = model.key;
+    json["kind"] = is_law(model) ? "law" : "method";
+    json["title"] = model.title;
+    json["energy"] = model.energy;
+    json["parameter_sets"] = nlohmann::ordered_json::array();
+    for (const auto& set : model.parameter_sets) {
+        auto keys = nlohmann::ordered_json::array();
+        for (const auto parameter : set) keys.push_back(sim::info(parameter).key);
+        json["parameter_sets"].push_back(keys);
+    }
+    json["parameters"] = nlohmann::ordered_json::array();
+    for (const auto* row : parameters_of(model))
+        json["parameters"].push_back({{"key", row->key},
+                                      {"unit", row->unit},
+                                      {"meaning", row->meaning},
+                                      {"allowed", row->limits.text()}});
+    json["admissible"] = model.admissible;
+    json["use"] = model.use;
+    json["limits"] = model.limits;
+    return json;
+}
+
+/// Words that fit in 80 columns, after an indent.
+void print_wrapped(std::string_view text, std::string_view indent) {
+    constexpr std::size_t width = 80;
+    std::size_t column = 0;
+    while (!text.empty()) {
+        const auto end = std::min(text.find(' '), text.size());
+        const auto word = text.substr(0, end);
+        if (column > 0 && column + 1 + word.size() > width) {
+            std::cout << '\n';
+            column = 0;
+        }
+        std::cout << (column == 0 ? indent : " ") << word;
+        column += word.size() + (column == 0 ? indent.size() : 1);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    std::cout << '\n';
+}
+
+void print_summary(const MaterialModel& model) {
+    std::cout << model.key << "\n";
+    print_wrapped(model.title, "    ");
+    print_wrapped(model.use, "    ");
+    print_wrapped("takes " + sim::list_of_sets(model.parameter_sets), "    ");
+}
+
+void print_detail(const MaterialModel& model) {
+    const auto section = [](std::string_view title, std::string_view text) {
+        std::cout << '\n' << title << '\n';
+        print_wrapped(text, "    ");
+    };
+    std::cout << model.key << ": " << model.title << '\n';
+    section("In a scenario", scenario_line(model));
+    section("Energy per unit rest volume", model.energy);
+    section("Takes exactly one of these sets, besides density",
+            sim::list_of_sets(model.parameter_sets));
+    std::cout << "\nParameters\n";
+    for (const auto* row : parameters_of(model))
+        std::cout << "    " << row->key << std::string(16 - row->key.size(), ' ') << row->meaning
+                  << (row->unit == "1" ? "" : ", in " + std::string(row->unit)) << "; "
+                  << row->limits.text() << '\n';
+    section("Admissible", model.admissible);
+    section("For", model.use);
+    section("Limits", model.limits);
+}
+
+std::vector<const MaterialModel*> chosen_models(const std::string& name) {
+    auto models = all_models();
+    if (name.empty()) return models;
+    std::vector<std::string_view> names;
+    for (const auto* model : models) {
+        if (model->key == name) return {model};
+        names.push_back(model->key);
+    }
+    throw InputError("material " + sim::in_quotes(name) + " " + *sim::complaint(name, {names}));
+}
+
+}  // namespace
+
+int materials(const MaterialsOptions& options) {
+    const auto models = chosen_models(options.name);
+    if (options.json) {
+        nlohmann::ordered_json json;
+        json["materials"] = nlohmann::ordered_json::array();
+        for (const auto* model : models) json["materials"].push_back(as_json(*model));
+        std::cout << json.dump(2) << '\n';
+    } else if (options.name.empty()) {
+        for (const auto* model : models) print_summary(*model);
+        std::cout << "\nMore about one: incise materials NAME\n";
+    } else {
+        print_detail(*models.front());
+    }
+    return done;
+}
+
+}  // namespace incise::app

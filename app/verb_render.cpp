@@ -1,0 +1,28 @@
+// incise render: hands over to incise-render, a program of its own that needs VTK's rendering.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+#include "app/verbs.h"
+#include "topology/error.h"
+
+namespace incise::app {
+
+int render(const RenderOptions& options) {
+    const auto program =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "incise-render";
+    std::vector<std::string> words = {program.string()};
+    words.insert(words.end(), options.arguments.begin(), options.arguments.end());
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::cout.flush();
+    ::execv(program.c_str(), arguments.data());
+    throw InputError(program.string() + ": cannot be started (" + std::strerror(errno) +
+                     "); it is built and installed together with incise: build again");
+}
+
+}  // namespace incise::app

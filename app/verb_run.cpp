@@ -1,0 +1,131 @@
+// incise run: simulates a scenario.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+
+#include "app/messages.h"
+#include "app/progress.h"
+#include "app/verbs.h"
+#include "io/number_format.h"
+#include "sim/run_writer.h"
+#include "sim/simulation.h"
+#include "topology/error.h"
+
+namespace incise::app {
+
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+/// Lets SIGINT and SIGTERM end the loop between two steps, so that the files are closed properly.
+class StopOnSignals {
+  public:
+    StopOnSignals() {
+        stop_signal = 0;
+        for (const int signal : {SIGINT, SIGTERM})
+            std::signal(signal, [](int received) { stop_signal = received; });
+    }
+    ~StopOnSignals() {
+        for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+    }
+};
+
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Shows how far the run has come.
+class ProgressObserver : public sim::Observer {
+  public:
+    ProgressObserver(double end_time, bool quiet) : progress_(end_time, "running", quiet) {}
+
+    void on_step(const sim::Simulation& simulation) override {
+        char note[128];
+        std::snprintf(note, sizeof note, "t = %.4g s, %zu elements, %zu edits", simulation.time(),
+                      simulation.mesh().num_elements(), simulation.ledger().edits().size());
+        progress_.update(simulation.time(), note);
+    }
+    void finish() { progress_.finish(); }
+
+  private:
+    Progress progress_;
+};
+
+std::string describe(const sim::Simulation& simulation) {
+    const sim::Account& body = simulation.ledger().initial();
+    std::ostringstream text;
+    text.precision(4);
+    text << body.elements << " elements, " << body.nodes << " nodes, " << body.components
+         << (body.components == 1 ? " piece, " : " pieces, ") << body.totals.mass << " kg, "
+         << body.totals.rest_volume << " m3; steps of " << simulation.time_step() << " s to "
+         << simulation.scenario().dynamics.end_time << " s (stable up to " << body.stable_step
+         << " s)";
+    return text.str();
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    auto overrides = options.overrides;
+    if (options.end_time)
+        overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
+    const sim::Scenario scenario = load_scenario(options.scenario, overrides);
+
+    sim::Simulation simulation(scenario);
+    for (const std::string& warning : simulation.warnings()) print_warning(warning);
+    sim::failed_expectations(simulation);  // names that no run has are told now, not at the end
+    if (!options.quiet) std::cerr << scenario.name << ": " << describe(simulation) << '\n';
+    if (options.dry_run) return done;
+
+    const std::filesystem::path folder = options.out.value_or(scenario.name + ".out");
+    sim::RunWriter writer(simulation, folder);
+    ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
+    simulation.add_observer(writer);
+    simulation.add_observer(progress);
+
+    const StopOnSignals signals;
+    const Stopwatch watch;
+    const auto finish = [&](sim::Outcome outcome) {
+        outcome.wall_time = watch.seconds();
+        progress.finish();
+        writer.finish(simulation, outcome);
+    };
+    try {
+        simulation.start();
+        while (!simulation.is_finished() && stop_signal == 0) simulation.step();
+    } catch (const PhysicsError& error) {
+        std::ostringstream text;
+        text << scenario.name << ": step " << simulation.num_steps() + 1
+             << ", t = " << simulation.time() << " s: " << error.what()
+             << ". The frames up to then are in " << writer.pvd_path().string();
+        finish({"failed", text.str()});
+        throw PhysicsError(text.str());
+    }
+    if (stop_signal != 0) {
+        finish({"interrupted", "stopped by a signal"});
+        print_error("stopped at t = " + io::format_number(simulation.time()) +
+                    " s; the frames so far are in " + writer.pvd_path().string());
+        return 128 + stop_signal;
+    }
+    finish({});
+
+    if (!options.quiet)
+        std::cerr << scenario.name << ": " << simulation.num_steps() << " steps in "
+                  << duration_text(watch.seconds()) << ", " << simulation.ledger().edits().size()
+                  << " edits, " << writer.num_frames() << " frames\n";
+    std::cout << writer.pvd_path().string() << '\n';
+    const auto failures = sim::failed_expectations(simulation);
+    for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
+    return failures.empty() ? done : missed_expectation;
+}
+
+}  // namespace incise::app

@@ -1,0 +1,37 @@
+// A tool that takes away what it covers: cautery, suction, a burr.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "cutting/pose.h"
+#include "cutting/tissue_motion.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+/// Shapes in the tool's frame, metres.
+struct Sphere {
+    double radius;  ///< about the origin
+};
+struct Capsule {
+    Vec3 from, to;  ///< ends of the axis
+    double radius;
+};
+struct Cuboid {
+    Vec3 size;  ///< edge lengths, centred at the origin
+};
+using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
+
+/// Whether the segment from a to b (tool's frame) meets the closed shape.
+bool meets(const CarverShape& shape, const Vec3& a, const Vec3& b);
+
+/// Elements whose centre the shape covers at some moment of the step, while both tool and tissue
+/// move: the centre's path in the tool's frame is taken as straight. In ascending order.
+/// Cost: O(#elements) comparisons of boxes, more only where the tool passes.
+std::vector<topology::ElementId> covered_elements(const TissueMotion& tissue,
+                                                  const CarverShape& shape, const Pose& before,
+                                                  const Pose& after);
+
+}  // namespace incise::cutting

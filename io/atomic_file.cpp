@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "io/file_descriptor.h"
+#include "topology/error.h"
+
+namespace incise::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* remedy(int error_number) {
+    switch (error_number) {
+        case ENOSPC:
+        case EDQUOT:
+            return "make room there, or write to another disk";
+        case EFBIG:
+            return "raise the limit on the size of files (ulimit -f), or write less";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "choose a folder that you may write to";
+        case ENOENT:
+            return "make the folder first";
+        case ENOTDIR:
+        case EEXIST:
+            return "a file is in the place of a folder; choose another path";
+        case EISDIR:
+            return "name a file in that folder";
+        case ENAMETOOLONG:
+            return "choose a shorter name";
+        case EMFILE:
+        case ENFILE:
+            return "raise the limit on open files (ulimit -n)";
+        default:
+            return "check the disk, or write to another one";
+    }
+}
+
+/// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept.
+class TemporaryFile {
+  public:
+    /// Throws OutputError about `meant` if there can be none.
+    TemporaryFile(const fs::path& folder, const std::string& name, const fs::path& meant) {
+        // Stale files of a killed process may have our process number: count on past them.
+        constexpr std::size_t longest_stem = 200;  // of the 255 that file systems allow
+        auto stem = name.substr(0, longest_stem);
+        stem.insert(stem.begin(), '.');
+        stem += ".tmp" + std::to_string(::getpid());
+        for (int attempt = 0; attempt < 1000; ++attempt) {
+            path_ = folder / (stem + "-" + std::to_string(attempt));
+            file_ = FileDescriptor(path_, O_WRONLY | O_CREAT | O_EXCL);
+            if (file_.is_open() || errno != EEXIST) break;
+        }
+        if (!file_.is_open()) throw_output_error(meant, errno);
+    }
+    ~TemporaryFile() {
+        if (!is_kept_) ::unlink(path_.c_str());
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    FileDescriptor& file() { return file_; }
+
+    /// Returns false, with errno set, if the system refuses.
+    bool rename_to(const fs::path& target) {
+        is_kept_ = ::rename(path_.c_str(), target.c_str()) == 0;
+        return is_kept_;
+    }
+
+  private:
+    fs::path path_;
+    FileDescriptor file_;
+    bool is_kept_ = false;
+};
+
+/// What a link finally leads to, even if that is not there yet.
+fs::path follow_links(fs::path path) {
+    constexpr int most_links = 40;  // the kernel's own limit
+    std::error_code error;
+    for (int i = 0; i < most_links && fs::is_symlink(path, error); ++i) {
+        const auto link = fs::read_symlink(path, error);
+        if (error) throw_output_error(path, error.value());
+        path = path.parent_path() / link;
+    }
+    return path;
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// Makes a rename in the folder last. A folder that may be written to but not read, as for
+/// handing in, cannot be synchronised: the file is there all the same.
+bool sync_folder(const fs::path& folder) {
+    FileDescriptor descriptor(folder, O_RDONLY | O_DIRECTORY);
+    return !descriptor.is_open() || descriptor.sync();
+}
+
+}  // namespace
+
+void throw_output_error(const fs::path& path, int error_number) {
+    auto reason = std::generic_category().message(error_number);
+    if (!reason.empty())
+        reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
+    throw OutputError(path.string() + ": cannot be written: " + reason + "; " +
+                      remedy(error_number));
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+    const auto target = follow_links(path);
+    struct stat status {};
+    if (::stat(target.c_str(), &status) == 0) {
+        if (S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
+        if (!S_ISREG(status.st_mode)) {  // a device: never to be replaced by a file
+            FileDescriptor device(target, O_WRONLY);
+            if (!device.is_open() || !device.write(bytes) || !device.close())
+                throw_output_error(path, errno);
+            return;
+        }
+    } else if (!target.has_filename()) {
+        throw_output_error(path, EISDIR);
+    }
+
+    const auto folder = folder_of(target);
+    TemporaryFile temporary(folder, target.filename().string(), path);
+    if (!temporary.file().write(bytes) || !temporary.file().sync() || !temporary.file().close() ||
+        !temporary.rename_to(target) || !sync_folder(folder))
+        throw_output_error(path, errno);
+}
+
+void make_output_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw_output_error(folder, error.value());
+    // Permissions alone do not tell (root, read-only mounts, quotas): try it.
+    const TemporaryFile probe(folder, "probe", folder);
+}
+
+void remove_output_file(const fs::path& path) {
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT) throw_output_error(path, errno);
+}
+
+}  // namespace incise::io

@@ -1,0 +1,33 @@
+// What a file format calls its kinds of cells, and what becomes of each.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/cell_form.h"
+
+#include "topology/error.h"
+
+namespace incise::io {
+
+void CellCollector::refuse(const CellForm& form, const std::string& place) const {
+    throw InputError(place + ": a " + form.name + " (" + type_word_ + " " +
+                     std::to_string(form.code) +
+                     ") cannot be used; export linear elements (tetrahedra, hexahedra, wedges, "
+                     "pyramids)");
+}
+
+void CellCollector::finish(const topology::MeshData& mesh,
+                           std::vector<std::string>& warnings) const {
+    std::string list;
+    for (std::size_t i = 0; i < ignored_.size(); ++i) {
+        const auto& [form, count] = ignored_[i];
+        if (i > 0) list += i + 1 == ignored_.size() ? " and " : ", ";
+        list += std::to_string(count) + " " + form->name + (count == 1 ? "" : "s");
+    }
+    if (mesh.num_cells() == 0)
+        throw InputError(file_ + ": holds " +
+                         (list.empty()
+                              ? "no cells at all; "
+                              : list + " but no tetrahedra, hexahedra, wedges or pyramids; ") +
+                         "make a volume mesh first (incise mesh makes one of a closed surface)");
+    if (!list.empty()) warnings.push_back("ignored " + list + ": only volume cells are used");
+}
+
+}  // namespace incise::io

@@ -1,0 +1,61 @@
+// Reading of volume meshes from files. A further format is one more file and one more row here.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/mesh_reader.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/gmsh_reader.h"
+#include "io/input_file.h"
+#include "io/legacy_vtk_reader.h"
+#include "io/scanner.h"
+#include "io/vtu_reader.h"
+#include "topology/error.h"
+
+namespace incise::io {
+
+namespace {
+
+struct Format {
+    const char* name;
+    const char* suffix;
+    std::string_view magic;  ///< how its text begins, in lower case; empty: told by the suffix only
+    MeshFile (*read)(const InputFile& file, const ReadOptions& options);
+};
+
+constexpr Format formats[] = {
+    {"VTU", ".vtu", "<", read_vtu},
+    {"legacy VTK", ".vtk", "# vtk datafile", read_legacy_vtk},
+    {"Gmsh", ".msh", "$", read_gmsh},
+};
+
+constexpr std::size_t longest_magic = 64;
+
+const Format* format_of(const InputFile& file) {
+    const auto begin = std::find_if_not(file.bytes.begin(), file.bytes.end(), is_blank);
+    const auto head =
+        lower_case(std::string_view(begin, file.bytes.end()).substr(0, longest_magic));
+    for (const auto& format : formats)
+        if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+    const auto suffix = lower_case(file.path.extension().string());
+    for (const auto& format : formats)
+        if (format.magic.empty() && suffix == format.suffix) return &format;
+    return nullptr;
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+    const auto file = load_input_file(path);
+    const auto* format = format_of(file);
+    if (format == nullptr) {
+        std::string known;
+        for (const auto& row : formats)
+            known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+        throw InputError(file.name() +
+                         ": begins like no mesh format known here; convert it to one of: " + known);
+    }
+    return format->read(file, options);
+}
+
+}  // namespace incise::io

@@ -1,0 +1,38 @@
+// Reading of volume meshes from files: the one entry point for every format.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "topology/mesh_data.h"
+
+namespace incise::io {
+
+struct ReadOptions {
+    /// VTU and legacy VTK: the cell array of whole numbers that becomes MeshData::regions.
+    /// Where a file has no array of that name, all regions are 0.
+    std::string region_array = "region";
+};
+
+struct MeshFile {
+    topology::MeshData mesh;
+    std::vector<std::string> warnings;  ///< one sentence each, without the name of the file
+};
+
+/// Reads the tetrahedra, hexahedra, wedges and pyramids of a file, in the file's order.
+/// The format is told by the content first, by the suffix second. Formats: VTU (all encodings),
+/// legacy VTK unstructured grids, Gmsh 2 and 4.1.
+///
+/// Vertices, lines and surface cells are left out with a warning. A point array `rest_position`
+/// of a VTK file takes the place of its points. Regions are the cell array of the options, or
+/// Gmsh's physical groups.
+///
+/// The contents are trusted in nothing: every count, offset and index is checked before it is
+/// used, and memory stays proportional to the size of the file (compressed files: to what
+/// their blocks unpack to). Left to Mesh::build: finite coordinates, the shape of the cells.
+/// Throws InputError that names the file, the line, byte or cell, what was found and what to do.
+MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace incise::io

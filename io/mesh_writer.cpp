@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/mesh_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "io/atomic_file.h"
+#include "io/mesh_text.h"
+#include "io/number_format.h"
+#include "io/vtu_writer.h"
+#include "topology/error.h"
+
+namespace incise::io {
+
+namespace {
+
+struct Format {
+    const char* suffix;
+    std::string (*text)(const topology::MeshData&);
+};
+
+std::string plain_vtu_text(const topology::MeshData& mesh) {
+    Frame frame;
+    frame.mesh = mesh;
+    return vtu_text(frame);
+}
+
+constexpr std::array<Format, 5> formats = {{
+    {".inp", abaqus_text},
+    {".mesh", medit_text},
+    {".msh", gmsh_text},
+    {".vtk", legacy_vtk_text},
+    {".vtu", plain_vtu_text},
+}};
+
+const Format& format_of(const std::filesystem::path& path) {
+    auto suffix = path.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const auto& format : formats)
+        if (suffix == format.suffix) return format;
+
+    std::string known;
+    for (const auto& format : formats)
+        known += (known.empty() ? "" : ", ") + std::string(format.suffix);
+    const auto what = suffix.empty() ? "a name without a suffix tells no format"
+                                     : "meshes cannot be written as '" + suffix + "'";
+    throw InputError(path.string() + ": " + what + "; use one of " + known);
+}
+
+}  // namespace
+
+ReorderedCell with_wedges_facing_inwards(const topology::MeshData& mesh, std::size_t cell) {
+    const auto corners = mesh.cell(cell);
+    ReorderedCell out{{}, corners.size()};
+    std::copy(corners.begin(), corners.end(), out.corners.begin());
+    if (mesh.kinds[cell] == topology::CellKind::wedge) {
+        std::swap(out.corners[1], out.corners[2]);
+        std::swap(out.corners[4], out.corners[5]);
+    }
+    return out;
+}
+
+void append_point(std::string& text, const Vec3& point, char separator) {
+    append_number(text, point.x());
+    text += separator;
+    append_number(text, point.y());
+    text += separator;
+    append_number(text, point.z());
+}
+
+void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
+    write_file(path, format_of(path).text(mesh));
+}
+
+void check_writable(const std::filesystem::path& path) { format_of(path); }
+
+std::vector<std::string> writable_suffixes() {
+    std::vector<std::string> suffixes;
+    for (const auto& format : formats) suffixes.emplace_back(format.suffix);
+    return suffixes;
+}
+
+}  // namespace incise::io

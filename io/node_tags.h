@@ -1,0 +1,50 @@
+// From the names that a file gives its nodes to their numbers in the file's order.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace incise::io {
+
+class NodeTags {
+  public:
+    /// Names the next node.
+    void add(std::int64_t tag) { sorted_.emplace_back(tag, std::ssize(sorted_)); }
+
+    /// To be called when all are added. The first tag given twice, if any.
+    std::optional<std::int64_t> sort() {
+        std::sort(sorted_.begin(), sorted_.end());
+        const auto twin =
+            std::adjacent_find(sorted_.begin(), sorted_.end(),
+                               [](const auto& a, const auto& b) { return a.first == b.first; });
+        if (twin == sorted_.end()) return std::nullopt;
+        return twin->first;
+    }
+
+    /// The number of the node with this tag, if there is one. Cost: constant if tags have no
+    /// gaps, else the logarithm of their number.
+    std::optional<std::int64_t> find(std::int64_t tag) const {
+        if (sorted_.empty() || tag < sorted_.front().first || tag > sorted_.back().first)
+            return std::nullopt;
+        const auto guess =
+            static_cast<std::uint64_t>(tag) - static_cast<std::uint64_t>(sorted_.front().first);
+        if (guess < sorted_.size() && sorted_[guess].first == tag) return sorted_[guess].second;
+        const auto row = std::lower_bound(
+            sorted_.begin(), sorted_.end(), tag,
+            [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
+        if (row == sorted_.end() || row->first != tag) return std::nullopt;
+        return row->second;
+    }
+
+    std::size_t size() const { return sorted_.size(); }
+
+  private:
+    std::vector<std::pair<std::int64_t, std::int64_t>> sorted_;  ///< tag, number
+};
+
+}  // namespace incise::io

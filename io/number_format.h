@@ -1,0 +1,26 @@
+// Numbers as text: the shortest that reads back as the same number, whatever the locale.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <string>
+
+namespace incise::io {
+
+/// Appends without an allocation of its own; at most 17 significant digits for a double.
+template <class T>
+void append_number(std::string& text, T value) {
+    std::array<char, 32> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    text.append(buffer.data(), end);
+}
+
+template <class T>
+std::string format_number(T value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+}
+
+}  // namespace incise::io

@@ -1,0 +1,46 @@
+// Numbers from text: whole tokens only, whatever the locale.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace incise::io {
+
+constexpr bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+
+/// The number that `text` spells, or nothing if any character is left over or the value does not
+/// fit T. Reals may be "nan" or "inf"; a real too small for T is zero.
+template <class T>
+requires std::integral<T> || std::floating_point<T> std::optional<T> parse_number(
+    std::string_view text) {
+    if (text.starts_with('+')) {
+        text.remove_prefix(1);
+        if (text.starts_with('-')) return std::nullopt;
+    }
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || end != text.data() + text.size()) return std::nullopt;
+    if (error == std::errc()) return value;
+    if constexpr (std::floating_point<T>) {
+        const bool is_underflow = text.find("e-") != text.npos || text.find("E-") != text.npos;
+        if (error == std::errc::result_out_of_range && is_underflow) return T{0};
+    }
+    return std::nullopt;
+}
+
+/// The shortest text that parses to the same value.
+inline std::string shown(double value) {
+    std::array<char, 32> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+}  // namespace incise::io

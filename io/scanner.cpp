@@ -1,0 +1,105 @@
+// Walks through a file that mixes text and binary numbers.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/scanner.h"
+
+#include <algorithm>
+
+#include "topology/error.h"
+
+namespace incise::io {
+
+void Scanner::skip_blanks() {
+    bool is_line_start = position_ == 0 || bytes_[position_ - 1] == '\n';
+    while (position_ < bytes_.size()) {
+        const char c = bytes_[position_];
+        if (is_blank(c)) {
+            is_line_start = is_line_start || c == '\n';
+            ++position_;
+        } else if (c == '#' && is_line_start) {
+            position_ = std::min(bytes_.find('\n', position_), bytes_.size());
+        } else {
+            return;
+        }
+    }
+}
+
+bool Scanner::at_end() {
+    skip_blanks();
+    return remaining() == 0;
+}
+
+std::string_view Scanner::token(std::string_view what) {
+    skip_blanks();
+    item_begin_ = position_;
+    while (position_ < bytes_.size() && !is_blank(bytes_[position_])) ++position_;
+    if (position_ == item_begin_)
+        fail("the file ends where " + std::string(what) + " was expected; it is cut short");
+    return bytes_.substr(item_begin_, position_ - item_begin_);
+}
+
+bool Scanner::accept(std::string_view word) {
+    const auto position = position_;
+    const auto item_begin = item_begin_;
+    if (!at_end() && lower_case(token(word)) == lower_case(word)) return true;
+    position_ = position;
+    item_begin_ = item_begin;
+    return false;
+}
+
+std::string_view Scanner::rest_of_line() {
+    item_begin_ = position_;
+    const auto end = std::min(bytes_.find('\n', position_), bytes_.size());
+    auto line = bytes_.substr(position_, end - position_);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    position_ = std::min(end + 1, bytes_.size());
+    return line;
+}
+
+bool Scanner::skip_past(std::string_view mark) {
+    const auto found = bytes_.find(mark, position_);
+    position_ = found == bytes_.npos ? bytes_.size() : found + mark.size();
+    return found != bytes_.npos;
+}
+
+std::string_view Scanner::take(std::size_t count, std::string_view what) {
+    item_begin_ = position_;
+    if (count > remaining())
+        fail("the file ends within " + std::string(what) + ": " + std::to_string(count) +
+             " bytes were expected, " + std::to_string(remaining()) + " are left; it is cut short");
+    position_ += count;
+    return bytes_.substr(item_begin_, count);
+}
+
+std::size_t Scanner::count(std::string_view what, std::size_t bytes_each) {
+    const auto result = number<std::uint64_t>(what);
+    require_room(result, bytes_each, what);
+    return static_cast<std::size_t>(result);
+}
+
+void Scanner::require_room(std::uint64_t count, std::size_t bytes_each,
+                           std::string_view what) const {
+    // The last number of a text needs no blank behind it.
+    if (count > (remaining() + 1) / bytes_each)
+        fail(std::string(what) + " is " + std::to_string(count) +
+             ", more than can be in the remaining " + std::to_string(remaining()) +
+             " bytes; the file is cut short or damaged");
+}
+
+void Scanner::fail(const std::string& message) const {
+    const auto place = is_binary_ ? ": byte " + std::to_string(item_begin_)
+                                  : ":" + std::to_string(file_.line_of(item_begin_));
+    throw InputError(file_.name() + place + ": " + message);
+}
+
+void Scanner::fail_expected(std::string_view what, std::string_view found) const {
+    fail("expected " + std::string(what) + ", found " + in_quotes(found));
+}
+
+std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+}  // namespace incise::io

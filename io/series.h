@@ -1,0 +1,49 @@
+// The frames of a run, and the indexes by which ParaView opens them as a film.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/frame.h"
+
+namespace incise::io {
+
+/// FOLDER/frames/NAME_000000.vtu and so on, and the indexes FOLDER/NAME.pvd and
+/// FOLDER/NAME.vtu.series. Every file is written whole or not at all, a frame before the indexes:
+/// at any moment, also after a kill, they name only frames that are there.
+/// Paths in the indexes are relative, so that the folder may be moved.
+/// Every function throws OutputError if a file cannot be written or removed.
+class Series {
+  public:
+    /// Makes the folders. `kept_times` are those of the first frames of a former run that goes on
+    /// here; all other frames and indexes of that name are removed, so that no stale frame mixes
+    /// in. Throws InputError if the name does not do as the name of a file, or if a frame to be
+    /// kept is missing.
+    Series(std::filesystem::path folder, std::string name,
+           Compression compression = Compression::zlib, std::span<const double> kept_times = {});
+
+    /// Writes the frame and the indexes. Time of a frame without one: 0.
+    /// Cost: that of the frame, and of an index line for each frame so far.
+    /// @pre the time is finite, and later than that of the last frame
+    void add(const Frame& frame);
+
+    std::span<const double> times() const { return times_; }
+    std::filesystem::path pvd_path() const;
+    std::filesystem::path frame_path(std::size_t index) const;
+
+  private:
+    std::string frame_name(std::size_t index) const;
+    void remove_frames_from(std::size_t first);
+    void write_indexes();
+
+    std::filesystem::path folder_;
+    std::string name_;
+    Compression compression_;
+    std::vector<double> times_;
+};
+
+}  // namespace incise::io

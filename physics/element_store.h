@@ -1,0 +1,61 @@
+// All elements of a body, in blocks of one kind and material each.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "physics/element_block.h"
+#include "physics/material.h"
+#include "topology/mesh.h"
+
+namespace incise::physics {
+
+/// The materials of a body and which region has which.
+struct MaterialTable {
+    std::vector<Material> materials;
+    std::map<int, std::size_t> of_region;  ///< region -> index of its material
+};
+
+/// Elements whose ids share all but their lowest bits and that have the same material form a
+/// block. The division is a function of the ids alone: a body that has been edited is divided,
+/// and so summed, exactly as one built afresh from the same mesh.
+class ElementStore {
+  public:
+    /// Throws InputError for a region without material and for a kind of element for which the
+    /// material has no force law.
+    ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
+
+    void insert(const topology::Mesh& mesh, ElementId e);
+    /// @param region of the element, which the mesh may have forgotten by now
+    void erase(ElementId e, int region);
+
+    const ElementBlock& block_of(const topology::Mesh& mesh, ElementId e) const {
+        return *blocks_[block_index(e, mesh.region(e))];
+    }
+
+    /// kg/m3
+    double density(int region) const {
+        return table_.materials[table_.of_region.at(region)].density;
+    }
+
+    /// Calls visit(block) for each block in ascending order.
+    template <class Visit>
+    void for_each_block(Visit visit) const {
+        for (const auto& block : blocks_)
+            if (block) visit(*block);
+    }
+
+  private:
+    static constexpr std::size_t chunk_size = 512;
+
+    std::size_t block_index(ElementId e, int region) const;
+    void require_law(const topology::Mesh& mesh, ElementId e) const;
+
+    MaterialTable table_;
+    std::vector<std::unique_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
+};
+
+}  // namespace incise::physics

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/loads.h"
+
+#include <map>
+
+namespace incise::physics {
+
+using topology::FaceId;
+using topology::NodeId;
+
+namespace {
+
+bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
+    return f.element.index() < mesh.element_capacity() && mesh.is_alive(f.element) &&
+           !mesh.neighbor(f).is_valid();
+}
+
+/// Area vector of a face, outwards; for a quadrilateral that of its bilinear patch.
+Vec3 area_vector(const topology::Mesh& mesh, FaceId f, std::span<const Vec3> x) {
+    const auto at = [&](int p) -> const Vec3& { return x[mesh.face_corner(f, p).index()]; };
+    if (mesh.face_size(f) == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
+    return 0.5 * (at(2) - at(0)).cross(at(3) - at(1));
+}
+
+void spread(const topology::Mesh& mesh, FaceId f, const Vec3& force, std::span<Vec3> forces) {
+    const int size = mesh.face_size(f);
+    for (int p = 0; p < size; ++p)
+        forces[mesh.face_corner(f, p).index()] += force / static_cast<double>(size);
+}
+
+struct Adder {
+    const LoadedBody& body;
+    double factor;
+    std::span<Vec3> forces;
+
+    void operator()(const NodalLoad& load) const {
+        const auto& members = load.nodes.members();
+        for (std::size_t i = 0; i < members.size(); ++i)
+            if (load.shares[i] > 0.0)
+                forces[members[i].node.index()] += factor * load.shares[i] * load.force;
+    }
+    void operator()(const TractionLoad& load) const {
+        for (const FaceId f : load.faces)
+            if (is_on_boundary(body.mesh, f)) {
+                const double area = area_vector(body.mesh, f, body.mesh.rest_positions()).norm();
+                spread(body.mesh, f, factor * area * load.traction, forces);
+            }
+    }
+    void operator()(const PressureLoad& load) const {
+        for (const FaceId f : load.faces)
+            if (is_on_boundary(body.mesh, f))
+                spread(body.mesh, f,
+                       -factor * load.pressure * area_vector(body.mesh, f, body.positions), forces);
+    }
+    void operator()(const BodyLoad& load) const {
+        for (const ElementId e : load.elements) {
+            if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
+            const auto corners = body.mesh.corners(e);
+            const double volume = body.elements.block_of(body.mesh, e).rest_volume(e);
+            for (const NodeId n : corners)
+                forces[n.index()] +=
+                    factor * volume / static_cast<double>(corners.size()) * load.force;
+        }
+    }
+};
+
+}  // namespace
+
+Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move(loads)) {
+    share(body);
+}
+
+void Loads::add(const LoadedBody& body, double time, std::span<Vec3> forces) const {
+    for (const Load& load : loads_) {
+        const double factor = load.factor.is_empty() ? 1.0 : load.factor.at(time);
+        if (factor != 0.0) std::visit(Adder{body, factor, forces}, load.kind);
+    }
+}
+
+void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body) {
+    bool any = false;
+    for (Load& load : loads_)
+        if (auto* nodal = std::get_if<NodalLoad>(&load.kind))
+            any = nodal->nodes.apply(changes) || any;
+    if (any) share(body);
+}
+
+void Loads::share(const LoadedBody& body) {
+    for (Load& load : loads_) {
+        auto* nodal = std::get_if<NodalLoad>(&load.kind);
+        if (!nodal) continue;
+        const auto mass_of = [&](const NodeSet::Member& m) {
+            return body.mesh.is_alive(m.node) ? body.masses[m.node.index()] : 0.0;
+        };
+        std::map<NodeId, double> family_mass;
+        for (const auto& m : nodal->nodes.members()) family_mass[m.origin] += mass_of(m);
+        nodal->shares.clear();
+        for (const auto& m : nodal->nodes.members()) {
+            const double mass = mass_of(m);
+            nodal->shares.push_back(mass > 0.0 ? mass / family_mass[m.origin] : 0.0);
+        }
+    }
+}
+
+}  // namespace incise::physics

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "physics/sum.h"
+#include "topology/error.h"
+
+namespace incise::physics {
+
+using topology::ChangeSet;
+using topology::NodeRecord;
+
+namespace {
+
+double diagonal(std::span<const Vec3> points) {
+    if (points.empty()) return 0.0;
+    Vec3 low = points[0], high = points[0];
+    for (const Vec3& p : points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    return (high - low).norm();
+}
+
+}  // namespace
+
+Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings)
+    : mesh_(mesh),
+      epoch_(mesh.epoch()),
+      elements_(mesh, table),
+      gravity_(surroundings.gravity),
+      damping_(surroundings.damping),
+      body_size_(diagonal(mesh.rest_positions())),
+      positions_(mesh.rest_positions().begin(), mesh.rest_positions().end()),
+      masses_(mesh.node_capacity(), 0.0),
+      supports_(mesh, std::move(surroundings.supports)),
+      loads_({}, loaded_body()),
+      reactions_(supports_.size(), Vec3::Zero()) {
+    resize(mesh.node_capacity());
+    for (std::size_t n = 0; n < mesh.node_capacity(); ++n) gather(NodeId(n));
+    loads_ = Loads(std::move(surroundings.loads), loaded_body());
+    compute_forces(0.0);
+}
+
+void Model::resize(std::size_t num_nodes) {
+    positions_.resize(num_nodes, Vec3::Zero());
+    velocities_.resize(num_nodes, Vec3::Zero());
+    elastic_forces_.resize(num_nodes, Vec3::Zero());
+    outer_forces_.resize(num_nodes, Vec3::Zero());
+    masses_.resize(num_nodes, 0.0);
+    stable_step_.truncate(num_nodes);
+}
+
+// Mass and stiffness of a node, summed over its star in ascending order of elements: the same
+// terms in the same order as in a model built afresh, hence the same bits.
+void Model::gather(NodeId n) {
+    double mass = 0.0, stiffness = 0.0;
+    mesh_.star(n, star_);
+    for (const ElementId e : star_) {
+        const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
+        const auto corners = mesh_.corners(e);
+        const auto corner = std::find(corners.begin(), corners.end(), n) - corners.begin();
+        mass += shares.mass;
+        stiffness += shares.stiffness[static_cast<std::size_t>(corner)];
+    }
+    masses_[n.index()] = mass;
+    stable_step_.set(n.index(), stiffness, mass);
+}
+
+void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                      double time) {
+    std::copy(positions.begin(), positions.end(), positions_.begin());
+    std::copy(velocities.begin(), velocities.end(), velocities_.begin());
+    compute_forces(time);
+}
+
+void Model::compute_forces(double time) {
+    std::fill(elastic_forces_.begin(), elastic_forces_.end(), Vec3::Zero());
+    elements_.for_each_block(
+        [&](const ElementBlock& block) { block.add_forces(positions_, elastic_forces_); });
+    for (std::size_t n = 0; n < masses_.size(); ++n) outer_forces_[n] = masses_[n] * gravity_;
+    loads_.add(loaded_body(), time, outer_forces_);
+}
+
+void Model::integrate(double time, double dt) {
+    std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
+    const double slowing = 1.0 / (1.0 + damping_ * dt);
+    double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;
+    bool is_finite = true;
+    for (std::size_t n = 0; n < masses_.size(); ++n) {
+        const double mass = masses_[n];
+        if (mass == 0.0) continue;  // dead
+        const Vec3 x = positions_[n], v = velocities_[n];
+        const Vec3 force = elastic_forces_[n] + outer_forces_[n];
+        Vec3 v_new = slowing * (v + dt / mass * force);
+        Vec3 x_new = x + dt * v_new;
+        if (const auto* support_of = supports_.of_node(n)) {
+            supports_.place(*support_of, mesh_.rest_positions()[n], time + dt, x_new);
+            for (int c = 0; c < 3; ++c) {
+                const int s = (*support_of)[static_cast<std::size_t>(c)];
+                if (s < 0) continue;
+                v_new[c] = (x_new[c] - x[c]) / dt;
+                const double reaction =
+                    mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
+                reactions_[static_cast<std::size_t>(s)][c] += reaction;
+                work += reaction * (x_new[c] - x[c]);
+            }
+        }
+        const double square = v_new.squaredNorm();
+        is_finite = is_finite && std::isfinite(square);
+        largest_square = std::max(largest_square, square);
+        work += outer_forces_[n].dot(x_new - x);
+        dissipated_power += damping_ * mass * square;
+        positions_[n] = x_new;
+        velocities_[n] = v_new;
+    }
+    external_work_ += work;
+    dissipated_energy_ += dissipated_power * dt;
+    if (!is_finite || std::sqrt(largest_square) * dt > body_size_) explain_failure(dt, velocities_);
+}
+
+void Model::explain_failure(double dt, const std::vector<Vec3>& velocities) const {
+    std::size_t worst = 0;
+    double largest = -1.0;
+    for (std::size_t n = 0; n < masses_.size(); ++n) {
+        if (masses_[n] == 0.0) continue;
+        const double square = velocities[n].squaredNorm();
+        if (!std::isfinite(square)) {
+            worst = n;
+            largest = square;
+            break;
+        }
+        if (square > largest) {
+            largest = square;
+            worst = n;
+        }
+    }
+    const NodeId n(worst);
+    const ElementId e = mesh_.anchor(n);
+    std::ostringstream text;
+    text << (std::isfinite(largest) ? "the motion has blown up" : "the state is no longer finite")
+         << " at element " << mesh_.label(e) << " (node " << mesh_.label(n) << ", rest position "
+         << mesh_.rest_position(n).transpose() << "). ";
+    if (dt > stable_step())
+        text << "The step of " << dt << " s is above the stable step of " << stable_step()
+             << " s: use time_step = \"auto\"";
+    else
+        text << "The step of " << dt << " s is " << dt / stable_step()
+             << " of the stable step at rest; large strain stiffens the tissue: use a smaller "
+                "safety (dynamics.safety), more damping, gentler motion, or a finer mesh there";
+    throw PhysicsError(text.str());
+}
+
+void Model::carry_state(const ChangeSet& changes) {
+    for (const NodeRecord& record : changes.nodes_removed) {
+        if (record.num_sources != 1) continue;
+        // Merging keeps momentum and centre of mass; equal states stay what they are to the bit.
+        const std::size_t from = record.id.index(), into = record.sources[0].node.index();
+        const double mass = masses_[from] + masses_[into];
+        const double weight = masses_[from] / mass;
+        positions_[into] += weight * (positions_[from] - positions_[into]);
+        velocities_[into] += weight * (velocities_[from] - velocities_[into]);
+        masses_[into] = mass;
+    }
+    for (const NodeRecord& record : changes.nodes_added) {
+        if (record.num_sources == 0) continue;
+        Vec3 x = Vec3::Zero(), v = Vec3::Zero();
+        for (int s = 0; s < record.num_sources; ++s) {
+            const auto& source = record.sources[static_cast<std::size_t>(s)];
+            x += source.weight * positions_[source.node.index()];
+            v += source.weight * velocities_[source.node.index()];
+        }
+        positions_[record.id.index()] = x;
+        velocities_[record.id.index()] = v;
+    }
+}
+
+void Model::apply(const ChangeSet& changes) {
+    if (changes.is_empty()) return;
+    if (changes.epoch_before != epoch_ || changes.epoch_after != mesh_.epoch())
+        throw InputError("model: an edit out of turn: it leads from epoch " +
+                         std::to_string(changes.epoch_before) + " to " +
+                         std::to_string(changes.epoch_after) + ", the model is at " +
+                         std::to_string(epoch_) + " and the mesh at " +
+                         std::to_string(mesh_.epoch()));
+    epoch_ = changes.epoch_after;
+    resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
+    carry_state(changes);
+
+    std::vector<NodeId> touched;
+    for (const auto& record : changes.elements_removed) {
+        elements_.erase(record.id, record.region);
+        touched.insert(touched.end(), record.corners.begin(), record.corners.end());
+    }
+    for (const auto& record : changes.elements_added) {
+        elements_.insert(mesh_, record.id);
+        touched.insert(touched.end(), record.corners.begin(), record.corners.end());
+    }
+    for (std::size_t i = 0; i < changes.rewired.size(); ++i) {
+        const auto& rewiring = changes.rewired[i];
+        if (i == 0 || changes.rewired[i - 1].element != rewiring.element) {
+            elements_.erase(rewiring.element, mesh_.region(rewiring.element));
+            elements_.insert(mesh_, rewiring.element);
+        }
+        touched.push_back(rewiring.from);
+        touched.push_back(rewiring.to);
+    }
+    for (const NodeRecord& record : changes.nodes_removed) touched.push_back(record.id);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    resize(changes.node_capacity_after);
+    for (const NodeId n : touched)
+        if (n.index() < changes.node_capacity_after) gather(n);
+
+    supports_.apply(mesh_, changes);
+    loads_.apply(changes, loaded_body());
+}
+
+Totals Model::totals() const {
+    Sum mass, volume, kinetic, elastic, gravity;
+    std::array<Sum, 3> momentum, angular;
+    for (std::size_t n = 0; n < masses_.size(); ++n) {
+        const double m = masses_[n];
+        if (m == 0.0) continue;
+        const Vec3 p = m * velocities_[n];
+        const Vec3 l = positions_[n].cross(p);
+        mass += m;
+        kinetic += 0.5 * p.dot(velocities_[n]);
+        gravity += -m * gravity_.dot(positions_[n]);
+        for (int c = 0; c < 3; ++c) {
+            momentum[static_cast<std::size_t>(c)] += p[c];
+            angular[static_cast<std::size_t>(c)] += l[c];
+        }
+    }
+    std::vector<double> energies;
+    elements_.for_each_block([&](const ElementBlock& block) {
+        energies.clear();
+        block.append_energies(positions_, energies);
+        for (const double w : energies) elastic += w;
+        for (const ElementId e : block.elements()) volume += block.rest_volume(e);
+    });
+    Totals t;
+    t.mass = mass.value();
+    t.rest_volume = volume.value();
+    t.kinetic_energy = kinetic.value();
+    t.elastic_energy = elastic.value();
+    t.gravity_energy = gravity.value();
+    for (int c = 0; c < 3; ++c) {
+        t.momentum[c] = momentum[static_cast<std::size_t>(c)].value();
+        t.angular_momentum[c] = angular[static_cast<std::size_t>(c)].value();
+    }
+    return t;
+}
+
+double Model::min_volume_ratio() const {
+    double lowest = std::numeric_limits<double>::infinity();
+    elements_.for_each_block([&](const ElementBlock& block) {
+        lowest = std::min(lowest, block.min_volume_ratio(positions_));
+    });
+    return lowest;
+}
+
+}  // namespace incise::physics

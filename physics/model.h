@@ -1,0 +1,117 @@
+// The body in motion: state, masses, forces, integrator. It follows the mesh through edits.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/element_store.h"
+#include "physics/loads.h"
+#include "physics/stable_step.h"
+#include "physics/supports.h"
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::physics {
+
+/// What acts on a body besides its own elasticity.
+struct Surroundings {
+    Vec3 gravity = Vec3::Zero();  ///< m/s2
+    double damping = 0.0;         ///< mass-proportional, 1/s
+    std::vector<Support> supports;
+    std::vector<Load> loads;
+};
+
+/// Totals over the body. Angular momentum is about the origin.
+struct Totals {
+    double mass = 0.0;            ///< kg
+    double rest_volume = 0.0;     ///< m3
+    double kinetic_energy = 0.0;  ///< J, of the velocities as they stand
+    double elastic_energy = 0.0;  ///< J
+    double gravity_energy = 0.0;  ///< J, zero at the origin
+    Vec3 momentum = Vec3::Zero();
+    Vec3 angular_momentum = Vec3::Zero();
+};
+
+/// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
+/// node id; slots of dead nodes keep their last values, so that an undone edit finds them again.
+class Model {
+  public:
+    /// Starts at rest in the rest positions, with the forces of that state.
+    /// @param mesh must outlive the model, which reads it and never changes it
+    /// Throws InputError: see ElementStore, Supports.
+    Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings = {});
+
+    std::span<const Vec3> positions() const { return positions_; }            ///< m
+    std::span<const Vec3> velocities() const { return velocities_; }          ///< m/s
+    std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
+    std::span<const double> masses() const { return masses_; }                ///< kg
+
+    /// Replaces the state; sizes are those of node_capacity. The forces follow.
+    void set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities, double time);
+
+    /// Elastic and outer forces at the present positions and `time`.
+    void compute_forces(double time);
+
+    /// One step of semi-implicit Euler, from the forces last computed:
+    /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
+    /// to be at time + dt. Source: HEML 2015, eq. (32).
+    /// Throws PhysicsError, naming an element and the likely cause, if the state is no longer
+    /// finite or a node has moved by more than the body's size in this step.
+    void integrate(double time, double dt);
+
+    /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
+    /// the edited mesh with the same state. Copied nodes copy their state; merged ones keep
+    /// momentum. Recomputes the forces of nodes around the edit only when next asked to.
+    /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
+    void apply(const topology::ChangeSet& changes);
+
+    /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
+    double stable_step() const { return stable_step_.value(); }
+
+    Totals totals() const;
+    double min_volume_ratio() const;
+    ElementResult element_result(ElementId e) const {
+        return elements_.block_of(mesh_, e).result(e, positions_);
+    }
+
+    /// Density of what the elements of a region are made of, kg/m3.
+    double density(int region) const { return elements_.density(region); }
+
+    /// Work since the start, joules: of gravity, loads and supports; and what damping took.
+    double external_work() const { return external_work_; }
+    double dissipated_energy() const { return dissipated_energy_; }
+
+    std::size_t num_supports() const { return supports_.size(); }
+    const std::string& support_name(std::size_t i) const { return supports_.name(i); }
+    /// Force of support `i` on the body during the last step, N.
+    const Vec3& reaction(std::size_t i) const { return reactions_[i]; }
+
+    const topology::Mesh& mesh() const { return mesh_; }
+
+  private:
+    LoadedBody loaded_body() const { return {mesh_, elements_, positions_, masses_}; }
+    void resize(std::size_t num_nodes);
+    void gather(NodeId n);
+    void carry_state(const topology::ChangeSet& changes);
+    [[noreturn]] void explain_failure(double dt, const std::vector<Vec3>& velocities) const;
+
+    const topology::Mesh& mesh_;
+    std::uint64_t epoch_;
+    ElementStore elements_;
+    Vec3 gravity_;
+    double damping_;
+    double body_size_;
+
+    std::vector<Vec3> positions_, velocities_, elastic_forces_, outer_forces_;
+    std::vector<double> masses_;
+    StableStep stable_step_;
+    Supports supports_;
+    Loads loads_;
+    std::vector<Vec3> reactions_;
+    double external_work_ = 0.0, dissipated_energy_ = 0.0;
+    std::vector<ElementId> star_;  // scratch
+};
+
+}  // namespace incise::physics

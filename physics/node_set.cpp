@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/node_set.h"
+
+#include <algorithm>
+
+namespace incise::physics {
+
+using topology::NodeId;
+
+NodeSet::NodeSet(std::vector<NodeId> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (const NodeId n : nodes) members_.push_back({n, n});
+}
+
+const NodeSet::Member* NodeSet::find(NodeId n) const {
+    const auto place = std::lower_bound(members_.begin(), members_.end(), n,
+                                        [](const Member& m, NodeId id) { return m.node < id; });
+    return place != members_.end() && place->node == n ? &*place : nullptr;
+}
+
+bool NodeSet::apply(const topology::ChangeSet& changes) {
+    if (members_.empty()) return false;
+    while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
+        members_.pop_back();
+    for (const topology::NodeRecord& record : changes.nodes_added) {
+        if (record.num_sources == 0 || contains(record.id)) continue;
+        bool all = true;
+        for (int s = 0; s < record.num_sources && all; ++s)
+            all = contains(record.sources[static_cast<std::size_t>(s)].node);
+        if (!all) continue;
+        // New ids lie above all others, so the list stays sorted.
+        const bool is_copy = record.num_sources == 1;
+        members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : record.id});
+    }
+    return true;
+}
+
+}  // namespace incise::physics

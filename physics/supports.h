@@ -1,0 +1,61 @@
+// Nodes whose motion is given: held still, moved or turned. Their reactions are what it takes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/node_set.h"
+#include "physics/time_curve.h"
+#include "topology/mesh.h"
+#include "topology/types.h"
+
+namespace incise::physics {
+
+/// Prescribes some components of the positions of some nodes:
+/// x(t) = p + R(t) (X - p) + u(t), X the rest position.
+struct Support {
+    std::string name;
+    NodeSet nodes;
+    std::array<bool, 3> components{true, true, true};
+    TimeCurve<Vec3> displacement;  ///< u, metres; empty: none
+    TimeCurve<double> angle;       ///< radians about the axis; empty: none
+    Vec3 point = Vec3::Zero();     ///< p, on the axis
+    Vec3 axis = Vec3::UnitZ();     ///< unit vector
+
+    /// Where the node with rest position X is to be at `time`.
+    Vec3 target(const Vec3& X, double time) const;
+};
+
+/// All supports of a body, looked up by node.
+class Supports {
+  public:
+    /// Throws InputError, naming node and supports, if two supports prescribe the same component of
+    /// a node.
+    Supports(const topology::Mesh& mesh, std::vector<Support> supports);
+
+    std::size_t size() const { return supports_.size(); }
+    const std::string& name(std::size_t i) const { return supports_[i].name; }
+
+    /// The support of each component of node `n`, -1 for a free one; null for a free node.
+    const std::array<int, 3>* of_node(std::size_t n) const {
+        return n < row_of_node_.size() && row_of_node_[n] >= 0
+                   ? &rows_[static_cast<std::size_t>(row_of_node_[n])]
+                   : nullptr;
+    }
+    /// Sets the prescribed components of `x` to where they are to be at `time`.
+    void place(const std::array<int, 3>& support_of, const Vec3& X, double time, Vec3& x) const;
+
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+
+  private:
+    void index_nodes(const topology::Mesh& mesh);
+
+    std::vector<Support> supports_;
+    std::vector<std::int32_t> row_of_node_;
+    std::vector<std::array<int, 3>> rows_;
+};
+
+}  // namespace incise::physics

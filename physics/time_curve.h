@@ -1,0 +1,39 @@
+// Values given at times, linear between them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace incise::physics {
+
+/// Piecewise linear in time, constant before the first key and after the last.
+template <class Value>
+class TimeCurve {
+  public:
+    TimeCurve() = default;
+    /// @param keys times (s) in strictly ascending order with their values
+    explicit TimeCurve(std::vector<std::pair<double, Value>> keys) : keys_(std::move(keys)) {}
+
+    bool is_empty() const { return keys_.empty(); }
+    const std::vector<std::pair<double, Value>>& keys() const { return keys_; }
+
+    /// @pre not empty
+    Value at(double time) const {
+        const auto after = std::upper_bound(
+            keys_.begin(), keys_.end(), time,
+            [](double t, const std::pair<double, Value>& key) { return t < key.first; });
+        if (after == keys_.begin()) return keys_.front().second;
+        if (after == keys_.end()) return keys_.back().second;
+        const auto& [t0, v0] = *(after - 1);
+        const auto& [t1, v1] = *after;
+        const double s = (time - t0) / (t1 - t0);
+        return v0 + s * (v1 - v0);
+    }
+
+  private:
+    std::vector<std::pair<double, Value>> keys_;
+};
+
+}  // namespace incise::physics

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/body.h"
+
+#include <algorithm>
+#include <set>
+
+#include "io/mesh_reader.h"
+#include "sim/elastic_constants.h"
+#include "sim/selection.h"
+#include "topology/box_mesh.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+
+namespace {
+
+topology::BuiltMesh build_from_file(const std::filesystem::path& path, const MeshSpec& spec) {
+    io::MeshFile file = io::read_mesh(path, {.region_array = spec.region_array});
+    for (Vec3& x : file.mesh.points) x *= spec.scale;
+    const auto named = [&](const std::string& text) { return path.string() + ": " + text; };
+    try {
+        topology::BuiltMesh built = topology::Mesh::build(file.mesh);
+        for (std::string& warning : built.warnings) file.warnings.push_back(named(warning));
+        built.warnings = std::move(file.warnings);
+        return built;
+    } catch (const InputError& error) {
+        throw InputError(named(error.what()));
+    }
+}
+
+physics::Law build_law(const MaterialSpec& spec, const ElasticConstants& constants) {
+    switch (spec.law) {
+        case Law::saint_venant_kirchhoff:
+            return physics::SaintVenantKirchhoff{constants.lambda, constants.mu};
+        case Law::neo_hookean:
+            return physics::NeoHookean{constants.c1, constants.law_lambda};
+        case Law::mooney_rivlin:
+            break;
+    }
+    return physics::MooneyRivlin{constants.c1, constants.c2, constants.law_lambda};
+}
+
+physics::Material build_material(const MaterialSpec& spec) {
+    const ElasticConstants constants = resolve(spec.method, spec.law, spec.parameters);
+    physics::Material material;
+    material.density = spec.density;
+    if (spec.method == Method::mass_spring)
+        material.method = physics::MassSprings{constants.young()};
+    else
+        material.method =
+            physics::HyperElasticLinks{build_law(spec, constants), spec.inversion_threshold};
+    return material;
+}
+
+template <class Value>
+physics::TimeCurve<Value> curve(const std::vector<TimeKey<Value>>& keys) {
+    std::vector<std::pair<double, Value>> pairs;
+    for (const TimeKey<Value>& key : keys) pairs.emplace_back(key.time, key.value);
+    return physics::TimeCurve<Value>(std::move(pairs));
+}
+
+physics::Support build_support(const ConstraintSpec& spec, const topology::Mesh& mesh) {
+    physics::Support support;
+    support.name = spec.name;
+    auto nodes = select_nodes(mesh, spec.where);
+    require_selected(nodes.size(), mesh, "constraint '" + spec.name + "'", "node");
+    support.nodes = physics::NodeSet(std::move(nodes));
+    support.components = spec.fixed;
+    support.displacement = curve(spec.move);
+    support.angle = curve(spec.rotate);
+    support.point = spec.about_point;
+    support.axis = spec.about_axis;
+    return support;
+}
+
+physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
+    const std::string what = "load '" + spec.name + "'";
+    const auto faces = [&] {
+        auto selected = select_faces(mesh, spec.where);
+        require_selected(selected.size(), mesh, what, "face of the surface");
+        return selected;
+    };
+    physics::Load load;
+    load.name = spec.name;
+    load.factor = curve(spec.factor);
+    if (const auto* nodal = std::get_if<NodalForce>(&spec.load)) {
+        auto nodes = select_nodes(mesh, spec.where);
+        require_selected(nodes.size(), mesh, what, "node");
+        load.kind = physics::NodalLoad{physics::NodeSet(std::move(nodes)), nodal->force, {}};
+    } else if (const auto* traction = std::get_if<Traction>(&spec.load)) {
+        load.kind = physics::TractionLoad{faces(), traction->stress};
+    } else if (const auto* pressure = std::get_if<Pressure>(&spec.load)) {
+        load.kind = physics::PressureLoad{faces(), pressure->pressure};
+    } else {
+        auto elements = select_elements(mesh, spec.where);
+        require_selected(elements.size(), mesh, what, "element");
+        load.kind = physics::BodyLoad{std::move(elements), std::get<BodyForce>(spec.load).density};
+    }
+    return load;
+}
+
+std::string list(const std::set<int>& regions) {
+    std::string text;
+    for (const int region : regions) text += (text.empty() ? "" : ", ") + std::to_string(region);
+    return text;
+}
+
+}  // namespace
+
+topology::BuiltMesh build_mesh(const MeshSpec& spec) {
+    if (const auto* path = std::get_if<std::filesystem::path>(&spec.source))
+        return build_from_file(*path, spec);
+    const auto& box = std::get<BoxMeshSpec>(spec.source);
+    return topology::Mesh::build(
+        topology::box_mesh(box.element, spec.scale * box.origin, spec.scale * box.size, box.cells));
+}
+
+physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
+                                       const topology::Mesh& mesh,
+                                       std::vector<std::string>& warnings) {
+    std::set<int> present;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (mesh.is_alive(topology::ElementId(i)))
+            present.insert(mesh.region(topology::ElementId(i)));
+
+    physics::MaterialTable table;
+    for (const MaterialSpec& spec : specs) {
+        table.materials.push_back(build_material(spec));
+        if (!spec.regions) continue;
+        for (const int region : *spec.regions) {
+            table.of_region[region] = table.materials.size() - 1;
+            if (!present.contains(region))
+                warnings.push_back("material " + std::to_string(table.materials.size()) +
+                                   " names region " + std::to_string(region) +
+                                   ", which the mesh does not have (it has " + list(present) + ")");
+        }
+    }
+    std::set<int> left;
+    for (const int region : present)
+        if (!table.of_region.contains(region)) left.insert(region);
+    const auto rest = std::find_if(specs.begin(), specs.end(),
+                                   [](const MaterialSpec& spec) { return !spec.regions; });
+    if (rest == specs.end() && !left.empty())
+        throw InputError("no material for region " + list(left) +
+                         " of the mesh; add a material for it, or one without 'regions' for all "
+                         "that no other names");
+    for (const int region : left)
+        table.of_region[region] = static_cast<std::size_t>(rest - specs.begin());
+    return table;
+}
+
+physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh) {
+    physics::Surroundings surroundings;
+    surroundings.gravity = scenario.dynamics.gravity;
+    surroundings.damping = scenario.dynamics.damping;
+    for (const ConstraintSpec& spec : scenario.constraints)
+        surroundings.supports.push_back(build_support(spec, mesh));
+    for (const LoadSpec& spec : scenario.loads)
+        surroundings.loads.push_back(build_load(spec, mesh));
+    return surroundings;
+}
+
+}  // namespace incise::sim

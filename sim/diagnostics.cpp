@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/diagnostics.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace incise::sim {
+
+namespace {
+
+/// Edits between two names; a swap of neighbours counts as one, capitals as small letters.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    const auto same = [](char x, char y) {
+        const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+        return lower(x) == lower(y);
+    };
+    std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min(
+                {last[j] + 1, row[j - 1] + 1, last[j - 1] + (same(a[i - 1], b[j - 1]) ? 0u : 1u)});
+            if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
+                row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+        std::swap(before, last);
+        std::swap(last, row);
+    }
+    return last[b.size()];
+}
+
+}  // namespace
+
+void Diagnostics::key_error(const Place& place, std::string_view path, std::string_view text) {
+    error(place, std::string("key ").append(in_quotes(path)).append(": ").append(text));
+}
+
+std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) const {
+    std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+        const auto key = [](const Place& p) {
+            return std::tuple(p.override_number, p.line, p.column);
+        };
+        return key(a.place) < key(b.place);
+    });
+    std::vector<std::string> texts;
+    for (const auto& [place, text] : findings) {
+        std::string where = file_ + ": ";
+        if (place.override_number >= 0)
+            where = "--set " + overrides_[static_cast<std::size_t>(place.override_number)] + ": ";
+        else if (place.line > 0)
+            where = file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) +
+                    ": ";
+        texts.push_back(where + text);
+    }
+    return texts;
+}
+
+std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {
+    std::string_view best;
+    auto least = std::numeric_limits<std::size_t>::max();
+    for (const auto candidate : candidates)
+        if (const auto distance = edit_distance(name, candidate); distance < least) {
+            least = distance;
+            best = candidate;
+        }
+    return best;
+}
+
+std::string in_quotes(std::string_view text) {
+    std::string result = "'";
+    result.append(text).push_back('\'');
+    return result;
+}
+
+std::string list_of(std::span<const std::string_view> names) {
+    std::string text;
+    for (const auto name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+}  // namespace incise::sim

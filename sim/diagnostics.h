@@ -1,0 +1,57 @@
+// Problems found while reading a scenario: collected, so that all are told at once.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/document.h"
+
+namespace incise::sim {
+
+class Diagnostics {
+  public:
+    /// @param overrides  those of the command line, which messages about them quote; copied
+    Diagnostics(std::string file, std::span<const std::string> overrides)
+        : file_(std::move(file)), overrides_(overrides.begin(), overrides.end()) {}
+
+    void error(const Place& place, std::string text) {
+        errors_.push_back({place, std::move(text)});
+    }
+    /// "key 'PATH': TEXT"
+    void key_error(const Place& place, std::string_view path, std::string_view text);
+    void warning(const Place& place, std::string text) {
+        warnings_.push_back({place, std::move(text)});
+    }
+
+    bool has_errors() const { return !errors_.empty(); }
+
+    /// In the order of the file, then of the overrides, each as "FILE:line:column: text".
+    std::vector<std::string> errors() const { return formatted(errors_); }
+    std::vector<std::string> warnings() const { return formatted(warnings_); }
+
+  private:
+    struct Finding {
+        Place place;
+        std::string text;
+    };
+    std::vector<std::string> formatted(std::vector<Finding> findings) const;
+
+    std::string file_;
+    std::vector<std::string> overrides_;
+    std::vector<Finding> errors_, warnings_;
+};
+
+/// The candidate that takes the fewest insertions, deletions, replacements and swaps of
+/// neighbours to make of `name`; the first of equals. Empty without candidates.
+std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);
+
+/// The text between single quotes.
+std::string in_quotes(std::string_view text);
+
+/// "a, b, c".
+std::string list_of(std::span<const std::string_view> names);
+
+}  // namespace incise::sim

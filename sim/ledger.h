@@ -1,0 +1,67 @@
+// The books of a run: what each edit took and left, so that nothing is lost in silence.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "physics/model.h"
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::sim {
+
+/// The body at one moment.
+struct Account {
+    std::size_t nodes = 0, elements = 0;
+    int components = 0;
+    physics::Totals totals;
+    double stable_step = 0.0;
+};
+
+/// One edit, by one tool.
+struct EditRecord {
+    double time = 0.0;
+    std::uint64_t step = 0;
+    std::string tool;
+    std::size_t elements_removed = 0, elements_split = 0, elements_added = 0;
+    std::size_t faces_opened = 0;  ///< between elements that live on
+    std::size_t nodes_added = 0, nodes_removed = 0;
+    double mass_removed = 0.0;  ///< kg: density times rest volume of the removed elements
+    Account before, after;
+};
+
+class Ledger {
+  public:
+    explicit Ledger(const physics::Model& model);
+
+    /// The body as it is now. Cost: O(#nodes + #elements).
+    Account account() const;
+    /// Books an edit; called after the model has followed it.
+    const EditRecord& record(double time, std::uint64_t step, const std::string& tool,
+                             const topology::ChangeSet& changes, const Account& before,
+                             double mass_removed);
+
+    const std::vector<EditRecord>& edits() const { return edits_; }
+    const Account& initial() const { return initial_; }
+
+    /// |mass now + mass removed - mass at the start| over that at the start.
+    double mass_error() const;
+    /// What is missing between the energy at the start, what came in (work) and what went out
+    /// (dissipated, removed with elements) on one side and the present energy on the other, over
+    /// the sum of their sizes. Of the order of the step: the integrator's energy swings with it.
+    double energy_error() const;
+
+  private:
+    const physics::Model& model_;
+    Account initial_;
+    std::vector<EditRecord> edits_;
+    double mass_removed_ = 0.0, energy_removed_ = 0.0;
+};
+
+/// Mass of the elements that `changes` removed, from their rest volumes, kg. To be called while
+/// the model still has them: before it follows the edit.
+double removed_mass(const physics::Model& model, const topology::ChangeSet& changes);
+
+}  // namespace incise::sim

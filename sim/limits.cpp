@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/limits.h"
+
+#include <cmath>
+
+#include "io/number_format.h"
+
+namespace incise::sim {
+
+std::string Limits::text() const {
+    std::string text;
+    if (std::isfinite(low)) text = (includes_low ? "at least " : "above ") + io::format_number(low);
+    if (std::isfinite(high)) {
+        if (!text.empty()) text += " and ";
+        text += (includes_high ? "at most " : "below ") + io::format_number(high);
+    }
+    return text.empty() ? "a finite number" : text;
+}
+
+}  // namespace incise::sim

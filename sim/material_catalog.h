@@ -1,0 +1,85 @@
+// Methods, laws and elastic parameters that a scenario can name: the one place that lists them.
+// The reader checks scenarios against it and `incise materials` prints it.
+// Source of laws and methods: HEML 2015 (laws), derived in docs/theory.md.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/limits.h"
+
+namespace incise::sim {
+
+enum class Method : std::uint8_t { heml, mass_spring };
+
+enum class Law : std::uint8_t { saint_venant_kirchhoff, neo_hookean, mooney_rivlin };
+
+enum class Parameter : std::uint8_t {
+    young,
+    poisson,
+    shear_modulus,
+    bulk_modulus,
+    lame_lambda,
+    lame_mu,
+    c1,
+    c2
+};
+inline constexpr std::size_t num_parameters = 8;
+
+struct ParameterInfo {
+    Parameter parameter;
+    std::string_view key;
+    std::string_view unit;
+    std::string_view meaning;
+    Limits limits;
+};
+
+/// What a scenario gives of a material's elastic parameters.
+struct ElasticParameters {
+    std::array<std::optional<double>, num_parameters> values;
+
+    std::optional<double>& operator[](Parameter p) { return values[static_cast<std::size_t>(p)]; }
+    const std::optional<double>& operator[](Parameter p) const {
+        return values[static_cast<std::size_t>(p)];
+    }
+};
+
+/// Parameters that together determine a material.
+using ParameterSet = std::vector<Parameter>;
+
+/// What takes parameters: a law of HEML, or the mass-spring method.
+struct MaterialModel {
+    std::string_view key;
+    std::string_view title;
+    std::string_view energy;  ///< per unit rest volume
+    std::vector<ParameterSet> parameter_sets;
+    std::string_view admissible;
+    std::string_view use;
+    std::string_view limits;
+};
+
+std::span<const ParameterInfo> parameters();
+const ParameterInfo& info(Parameter parameter);
+
+/// Indexed by Law.
+std::span<const MaterialModel> laws();
+const MaterialModel& model(Law law);
+const MaterialModel& mass_spring_model();
+
+/// The model that a material of this method and law follows.
+const MaterialModel& model(Method method, Law law);
+
+/// Indexed by Method.
+std::span<const std::string_view> method_names();
+
+/// Such as "young + poisson, or shear_modulus + bulk_modulus".
+std::string list_of_sets(std::span<const ParameterSet> sets);
+
+}  // namespace incise::sim

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/run_writer.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+#include "io/number_format.h"
+#include "sim/frame_builder.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::filesystem::path make_folder(std::filesystem::path folder) {
+    io::make_output_folder(folder);
+    // A summary speaks of a whole run: that of a former one must not outlive its frames.
+    io::remove_output_file(folder / "summary.json");
+    return folder;
+}
+
+Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json to_json(const Account& account) {
+    return {{"nodes", account.nodes},
+            {"elements", account.elements},
+            {"components", account.components},
+            {"mass", account.totals.mass},
+            {"volume", account.totals.rest_volume},
+            {"kinetic_energy", account.totals.kinetic_energy},
+            {"elastic_energy", account.totals.elastic_energy},
+            {"momentum", to_json(account.totals.momentum)},
+            {"angular_momentum", to_json(account.totals.angular_momentum)},
+            {"stable_step", account.stable_step}};
+}
+
+Json to_json(const EditRecord& edit) {
+    return {{"time", edit.time},
+            {"step", edit.step},
+            {"tool", edit.tool},
+            {"elements_removed", edit.elements_removed},
+            {"elements_split", edit.elements_split},
+            {"elements_added", edit.elements_added},
+            {"faces_opened", edit.faces_opened},
+            {"nodes_added", edit.nodes_added},
+            {"nodes_removed", edit.nodes_removed},
+            {"mass_removed", edit.mass_removed},
+            {"before", to_json(edit.before)},
+            {"after", to_json(edit.after)}};
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> history_row(const Simulation& simulation) {
+    const physics::Model& model = simulation.model();
+    const Account account = simulation.ledger().account();
+    const physics::Totals& t = account.totals;
+    std::vector<std::pair<std::string, double>> row = {
+        {"time", simulation.time()},
+        {"step", static_cast<double>(simulation.num_steps())},
+        {"nodes", static_cast<double>(account.nodes)},
+        {"elements", static_cast<double>(account.elements)},
+        {"components", static_cast<double>(account.components)},
+        {"mass", t.mass},
+        {"volume", t.rest_volume},
+        {"kinetic_energy", t.kinetic_energy},
+        {"elastic_energy", t.elastic_energy},
+        {"external_work", model.external_work()},
+        {"dissipated_energy", model.dissipated_energy()},
+        {"momentum_x", t.momentum.x()},
+        {"momentum_y", t.momentum.y()},
+        {"momentum_z", t.momentum.z()},
+        {"angular_momentum_x", t.angular_momentum.x()},
+        {"angular_momentum_y", t.angular_momentum.y()},
+        {"angular_momentum_z", t.angular_momentum.z()},
+        {"min_J", model.min_volume_ratio()},
+        {"time_step", simulation.time_step()},
+        {"stable_step", account.stable_step}};
+    for (std::size_t s = 0; s < model.num_supports(); ++s)
+        for (int c = 0; c < 3; ++c)
+            row.emplace_back("reaction_" + model.support_name(s) + "_" + "xyz"[c],
+                             model.reaction(s)[c]);
+    return row;
+}
+
+std::vector<std::pair<std::string, double>> summary_quantities(const Simulation& simulation) {
+    auto quantities = history_row(simulation);
+    std::size_t removed = 0, opened = 0;
+    double mass_removed = 0.0;
+    for (const EditRecord& edit : simulation.ledger().edits()) {
+        removed += edit.elements_removed;
+        opened += edit.faces_opened;
+        mass_removed += edit.mass_removed;
+    }
+    quantities.emplace_back("gravity_energy", simulation.model().totals().gravity_energy);
+    quantities.emplace_back("edits", static_cast<double>(simulation.ledger().edits().size()));
+    quantities.emplace_back("elements_removed", static_cast<double>(removed));
+    quantities.emplace_back("faces_opened", static_cast<double>(opened));
+    quantities.emplace_back("mass_removed", mass_removed);
+    quantities.emplace_back("mass_error", simulation.ledger().mass_error());
+    quantities.emplace_back("energy_error", simulation.ledger().energy_error());
+    return quantities;
+}
+
+std::vector<std::string> failed_expectations(const Simulation& simulation) {
+    const auto quantities = summary_quantities(simulation);
+    std::vector<std::string> failures;
+    for (const Expectation& expected : simulation.scenario().expect) {
+        const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) {
+            return q.first == expected.quantity;
+        });
+        if (found == quantities.end()) {
+            std::string names;
+            for (const auto& q : quantities) names += (names.empty() ? "" : ", ") + q.first;
+            throw InputError("expect." + expected.quantity +
+                             " is no quantity of a run; there are: " + names);
+        }
+        const double value = found->second;
+        const auto fail = [&](const char* side, double limit) {
+            failures.push_back("expected " + expected.quantity + " " + side + " " +
+                               io::format_number(limit) + ", it is " + io::format_number(value));
+        };
+        // Written so that a value that is no number fails.
+        if (expected.min && !(value >= *expected.min)) fail("of at least", *expected.min);
+        if (expected.max && !(value <= *expected.max)) fail("of at most", *expected.max);
+    }
+    return failures;
+}
+
+RunWriter::RunWriter(const Simulation& simulation, std::filesystem::path folder)
+    : folder_(make_folder(std::move(folder))),
+      series_(folder_, simulation.scenario().name, simulation.scenario().output.compression),
+      history_(folder_ / "history.csv"),
+      edits_(folder_ / "edits.jsonl") {
+    std::string header;
+    for (const auto& [name, value] : history_row(simulation))
+        header += (header.empty() ? "" : ",") + name;
+    history_.append(header);
+}
+
+void RunWriter::append_history(const Simulation& simulation) {
+    std::string line;
+    for (const auto& [name, value] : history_row(simulation)) {
+        if (!line.empty()) line += ',';
+        io::append_number(line, value);
+    }
+    history_.append(line);
+}
+
+void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
+    edits_.append(to_json(edit).dump());
+    append_history(simulation);
+}
+
+void RunWriter::on_frame(const Simulation& simulation) {
+    series_.add(
+        build_frame(simulation.model(), simulation.time(), simulation.scenario().output.fields));
+    append_history(simulation);
+}
+
+void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
+    history_.sync();
+    edits_.sync();
+    Json summary;
+    const Scenario& scenario = simulation.scenario();
+    summary["status"] = outcome.status;
+    if (!outcome.message.empty()) summary["message"] = outcome.message;
+    summary["title"] = scenario.title;
+    summary["scenario"] = scenario.name;
+    summary["scenario_hash"] = scenario.hash;
+    summary["version"] = INCISE_VERSION;
+    summary["threads"] = 1;
+    for (const auto& [name, value] : summary_quantities(simulation)) summary[name] = value;
+    for (const char* count :
+         {"step", "nodes", "elements", "components", "edits", "elements_removed", "faces_opened"})
+        summary[count] = summary[count].get<std::int64_t>();
+    summary["frames"] = num_frames();
+    summary["wall_time"] = outcome.wall_time;
+    if (outcome.wall_time > 0.0) {
+        summary["steps_per_second"] =
+            static_cast<double>(simulation.num_steps()) / outcome.wall_time;
+        summary["real_time_factor"] = simulation.time() / outcome.wall_time;
+    }
+    summary["warnings"] = simulation.warnings();
+    io::write_file(folder_ / "summary.json", summary.dump(2) + "\n");
+}
+
+}  // namespace incise::sim

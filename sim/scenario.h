@@ -1,0 +1,198 @@
+// A scenario as plain data: what to simulate, how long, and what to write.
+// docs/scenario.md describes the file that it is read from; scenario_reader.h reads it.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "io/frame.h"
+#include "sim/material_catalog.h"
+#include "topology/cell_kind.h"
+#include "topology/types.h"
+
+namespace incise::sim {
+
+/// A box meshed by topology::box_mesh.
+struct BoxMeshSpec {
+    Vec3 size;
+    std::array<int, 3> cells{1, 1, 1};
+    topology::CellKind element = topology::CellKind::tetrahedron;
+    Vec3 origin = Vec3::Zero();
+};
+
+struct MeshSpec {
+    /// A file (already relative to the scenario's folder, or absolute), or a box.
+    std::variant<std::filesystem::path, BoxMeshSpec> source;
+    double scale = 1.0;  ///< all coordinates of the source are multiplied by it
+    std::string region_array = "region";
+};
+
+struct MaterialSpec {
+    /// Without: all regions that no other material names. At most one material is without.
+    std::optional<std::vector<int>> regions;
+    Method method = Method::heml;
+    Law law = Law::neo_hookean;  ///< without meaning for mass-spring
+    double density = 0.0;
+    ElasticParameters parameters;      ///< as given; resolve() makes constants of them
+    double inversion_threshold = 0.4;  ///< J0, in (0, 1)
+};
+
+struct DynamicsSpec {
+    double end_time = 0.0;
+    std::optional<double> time_step;  ///< without: the stable step times `safety`
+    double safety = 0.8;              ///< in (0, 1]
+    double damping = 0.0;             ///< mass-proportional, 1/s
+    Vec3 gravity = Vec3::Zero();
+    std::uint64_t seed = 1;
+};
+
+/// A place and an extent along the axes.
+struct BoxRegion {
+    Vec3 min, max;
+};
+struct SphereRegion {
+    Vec3 center;
+    double radius = 0.0;
+};
+/// The points x with (x - point) . normal >= 0.
+struct HalfSpaceRegion {
+    Vec3 point, normal;  ///< the normal is of unit length
+};
+
+/// Nodes or faces for which everything given holds, at rest. Nothing given: all.
+struct Selection {
+    std::optional<BoxRegion> box;  ///< closed
+    std::optional<SphereRegion> sphere;
+    std::optional<HalfSpaceRegion> half_space;
+    std::optional<std::vector<std::int64_t>> nodes;  ///< numbers in the source, from 0; ascending
+    std::optional<std::vector<int>> regions;         ///< in an element of one of these; ascending
+    bool surface = false;                            ///< on the boundary
+
+    bool selects_all() const {
+        return !box && !sphere && !half_space && !nodes && !regions && !surface;
+    }
+};
+
+/// Key of something that is linear between keys and constant before the first and after the last.
+/// Times ascend strictly.
+template <class Value>
+struct TimeKey {
+    double time = 0.0;
+    Value value;
+};
+
+/// Nodes that are held or led. Either `fixed` has an axis, or `move` or `rotate` has keys, and
+/// these prescribe all three axes: x = about + R(angle) (X - about) + by.
+struct ConstraintSpec {
+    std::string name;
+    Selection where;
+    std::array<bool, 3> fixed{};
+    std::vector<TimeKey<Vec3>> move;
+    std::vector<TimeKey<double>> rotate;  ///< radians
+    Vec3 about_point = Vec3::Zero();
+    Vec3 about_axis = Vec3::UnitZ();  ///< of unit length
+};
+
+struct NodalForce {
+    Vec3 force;  ///< newtons, on each selected node
+};
+struct Traction {
+    Vec3 stress;  ///< newtons a square metre of rest area, in a fixed direction
+};
+struct Pressure {
+    double pressure = 0.0;  ///< pascal; follows the surface, positive pushes inwards
+};
+struct BodyForce {
+    Vec3 density;  ///< newtons a cubic metre of rest volume
+};
+
+/// A force on the selected nodes, boundary faces or elements, times a factor of time.
+struct LoadSpec {
+    std::string name;
+    Selection where;
+    std::variant<NodalForce, Traction, Pressure, BodyForce> load;
+    std::vector<TimeKey<double>> factor;  ///< empty: 1
+};
+
+struct SphereShape {
+    double radius = 0.0;
+};
+struct CapsuleShape {
+    Vec3 from, to;
+    double radius = 0.0;
+};
+struct BoxShape {
+    Vec3 size;  ///< edge lengths
+};
+
+/// Removes the elements whose centroid its shape covers. The shape is in the tool's frame;
+/// spheres and boxes are centred at its origin.
+struct Carver {
+    std::variant<SphereShape, CapsuleShape, BoxShape> shape;
+};
+
+/// Opens the faces that its edge sweeps across.
+struct Blade {
+    std::vector<Vec3> edge;  ///< polyline in the tool's frame, at least two points
+};
+
+/// Where a tool's frame is: p -> at + R(axis, angle) p.
+struct Pose {
+    Vec3 at = Vec3::Zero();
+    Vec3 axis = Vec3::UnitZ();  ///< of unit length
+    double angle = 0.0;         ///< radians
+};
+
+/// A tool is there from the first to the last key of its path.
+struct ToolSpec {
+    std::string name;
+    std::variant<Carver, Blade> kind;
+    std::vector<TimeKey<Pose>> path;  ///< at least one key, for a blade two
+};
+
+/// What a frame can hold besides points, rest positions, ids and regions.
+enum class Field { displacement, velocity, mass, force, stress, von_mises, J, energy_density };
+
+struct OutputSpec {
+    double interval = 0.01;     ///< simulated seconds between frames; 0: none
+    std::vector<Field> fields;  ///< each once
+    io::Compression compression = io::Compression::zlib;
+};
+
+/// A quantity of the finished run, and what it must be.
+struct Expectation {
+    std::string quantity;
+    std::optional<double> min, max;  ///< at least one; both allowed values themselves
+};
+
+struct Scenario {
+    std::string name;              ///< the file's name without folder and ending
+    std::filesystem::path folder;  ///< where the file lies
+    std::string title;
+    MeshSpec mesh;
+    std::vector<MaterialSpec> materials;
+    DynamicsSpec dynamics;
+    std::vector<ConstraintSpec> constraints;
+    std::vector<LoadSpec> loads;
+    std::vector<ToolSpec> tools;
+    OutputSpec output;
+    std::vector<Expectation> expect;
+    /// 16 hexadecimal digits that change with anything the scenario says (overrides included),
+    /// not with layout or comments, nor with the contents of the mesh file.
+    std::string hash;
+};
+
+/// The names by which scenarios and frames know fields and compressions, indexed by them.
+inline constexpr std::array<std::string_view, 8> field_names = {
+    "displacement", "velocity", "mass", "force", "stress", "von_mises", "J", "energy_density"};
+inline constexpr std::array<std::string_view, 4> compression_names = {"none", "lz4", "zlib",
+                                                                      "lzma"};
+
+}  // namespace incise::sim

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/scenario_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "io/number_format.h"
+#include "sim/scenario_sections.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+
+namespace {
+
+using io::format_number;
+using Keys = std::string_view;
+
+constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "constraint",
+                              "load",  "tool", "output",   "expect"};
+constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array"};
+constexpr Keys box_keys[] = {"size", "cells", "element", "origin"};
+constexpr Keys element_names[] = {"tet", "hex"};
+constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
+                                                topology::CellKind::hexahedron};
+constexpr Keys dynamics_keys[] = {"end_time", "time_step", "safety", "damping", "gravity", "seed"};
+constexpr Keys output_keys[] = {"interval", "fields", "compression"};
+constexpr Keys planned_output_keys[] = {"checkpoint_interval"};
+constexpr Keys expectation_keys[] = {"min", "max"};
+
+/// More than memory can hold on any machine that this program is made for.
+constexpr double max_box_elements = 1e8;
+/// More frames than this are more likely a slip than a wish.
+constexpr double many_frames = 1e5;
+
+void check_mesh_file(const TableReader& mesh, const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+        mesh.error("file", "there is no file " + file.string() +
+                               " (paths are relative to the scenario's folder)");
+    else if (std::filesystem::is_directory(file, error))
+        mesh.error("file", file.string() + " is a folder, not a mesh file");
+    else if (!std::ifstream(file))
+        mesh.error("file", file.string() + " cannot be read; check its permissions");
+}
+
+BoxMeshSpec read_box_mesh(const TableReader& box) {
+    BoxMeshSpec spec;
+    box.require("size", "edge lengths, as in size = [0.1, 0.1, 0.4]");
+    spec.size = box.vector("size", Vec3::Ones());
+    if (!(spec.size.minCoeff() > 0.0))
+        box.error("size", "is not allowed: all three lengths must be above 0");
+    box.require("cells", "numbers of bricks along the axes, as in cells = [4, 4, 16]");
+    const Vec3 cells = box.vector("cells", Vec3::Ones());
+    const bool is_whole = cells == cells.array().floor().matrix() && cells.minCoeff() >= 1.0;
+    if (const auto kind = box.choice("element", {element_names}))
+        spec.element = element_kinds[*kind];
+    const double elements =
+        cells.prod() * (spec.element == topology::CellKind::tetrahedron ? 6.0 : 1.0);
+    if (!is_whole)
+        box.error("cells", "is not allowed: must be three whole numbers, each at least 1");
+    else if (elements > max_box_elements)
+        box.error("cells", "makes " + format_number(elements) + " elements, more than the " +
+                               format_number(max_box_elements) + " allowed: lower the numbers");
+    else
+        for (std::size_t i = 0; i < 3; ++i)
+            spec.cells[i] = static_cast<int>(cells[static_cast<Eigen::Index>(i)]);
+    spec.origin = box.vector("origin");
+    return spec;
+}
+
+bool is_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+}
+
+Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
+    Scenario scenario;
+    scenario.name = file.stem().string();
+    scenario.folder = file.parent_path();
+    scenario.title = root.text("title", scenario.name);
+    scenario.mesh = read_mesh_spec(root, scenario.folder);
+    scenario.materials = read_materials(root);
+    scenario.dynamics = read_dynamics(root);
+    const double end_time = scenario.dynamics.end_time;
+    scenario.constraints = read_constraints(root, end_time);
+    scenario.loads = read_loads(root, end_time);
+    scenario.tools = read_tools(root, end_time);
+    scenario.output = read_output(root, end_time);
+    scenario.expect = read_expectations(root);
+    return scenario;
+}
+
+}  // namespace
+
+MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder) {
+    MeshSpec spec;
+    root.require("mesh", "add a section [mesh] with file = \"...\" or box = { ... }");
+    const auto mesh = root.table("mesh", {mesh_keys});
+    if (!mesh) return spec;
+    const auto source = mesh->one_of({"file", "box"});
+    if (source == "file") {
+        const std::string file = mesh->text("file");
+        spec.source = folder / file;
+        if (!file.empty())
+            check_mesh_file(*mesh, folder / file);
+        else if (mesh->is_text("file"))
+            mesh->error("file", "is empty: name a mesh file");
+    } else if (const auto box = mesh->table("box", {box_keys}); source == "box" && box) {
+        spec.source = read_box_mesh(*box);
+    }
+    spec.scale = mesh->number("scale", spec.scale, limits::positive);
+    spec.region_array = mesh->text("region_array", spec.region_array);
+    return spec;
+}
+
+DynamicsSpec read_dynamics(const TableReader& root) {
+    DynamicsSpec spec;
+    root.require("dynamics", "add a section [dynamics] with an end_time");
+    const auto dynamics = root.table("dynamics", {dynamics_keys});
+    if (!dynamics) return spec;
+    dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
+    spec.end_time = dynamics->number("end_time", spec.end_time, limits::positive);
+    if (dynamics->is_text("time_step")) {
+        if (const auto text = dynamics->text("time_step"); text != "auto")
+            dynamics->error("time_step", in_quotes(text) +
+                                             " is not allowed: must be \"auto\" or a "
+                                             "number of seconds");
+    } else {
+        spec.time_step = dynamics->number_if_given("time_step", limits::positive);
+    }
+    spec.safety =
+        dynamics->number("safety", spec.safety, {.low = 0.0, .high = 1.0, .includes_high = true});
+    spec.damping = dynamics->number("damping", spec.damping, limits::non_negative);
+    spec.gravity = dynamics->vector("gravity");
+    spec.seed = static_cast<std::uint64_t>(dynamics->integer("seed", 1, {.low = 0}));
+    return spec;
+}
+
+OutputSpec read_output(const TableReader& root, double end_time) {
+    OutputSpec spec;
+    const auto all_fields = [&] {
+        for (std::size_t i = 0; i < field_names.size(); ++i)
+            spec.fields.push_back(static_cast<Field>(i));
+    };
+    const auto output = root.table("output", {output_keys, planned_output_keys});
+    if (!output) {
+        all_fields();
+        return spec;
+    }
+    spec.interval = output->number("interval", spec.interval, limits::non_negative);
+    if (end_time > 0.0 && spec.interval > end_time)
+        output->warning("interval", "the output interval of " + format_number(spec.interval) +
+                                        " s is longer than the run of " + format_number(end_time) +
+                                        " s: only the first and last state are written");
+    if (spec.interval > 0.0 && end_time / spec.interval > many_frames)
+        output->warning("interval",
+                        "the output interval of " + format_number(spec.interval) + " s makes " +
+                            format_number(std::floor(end_time / spec.interval)) + " frames");
+    if (output->has("fields"))
+        for (const auto index : output->choices("fields", {field_names}))
+            spec.fields.push_back(static_cast<Field>(index));
+    else
+        all_fields();
+    if (const auto index = output->choice("compression", {compression_names}))
+        spec.compression = static_cast<io::Compression>(*index);
+    return spec;
+}
+
+std::vector<Expectation> read_expectations(const TableReader& root) {
+    std::vector<Expectation> expectations;
+    std::vector<std::string_view> any_key;
+    if (const Value* value = find(root.entries(), "expect"))
+        if (const auto* table = value->get<Table>())
+            for (const auto& entry : *table) any_key.push_back(entry.key);
+    const auto expect = root.table("expect", {any_key});
+    for (const auto quantity : any_key) {
+        const auto range = expect->table(quantity, {expectation_keys});
+        if (!range) continue;
+        Expectation expectation{std::string(quantity), range->number_if_given("min"),
+                                range->number_if_given("max")};
+        if (!range->has("min") && !range->has("max"))
+            range->error({}, "must have min, max or both, as in { max = 1e-9 }");
+        if (expectation.min && expectation.max && *expectation.min > *expectation.max)
+            range->error({}, "min " + format_number(*expectation.min) + " is above max " +
+                                 format_number(*expectation.max));
+        expectations.push_back(std::move(expectation));
+    }
+    return expectations;
+}
+
+std::string read_name(const TableReader& table, const std::string& fallback,
+                      std::vector<std::string>& used) {
+    const std::string name = table.text("name", fallback);
+    if (name.empty() || !std::all_of(name.begin(), name.end(), is_name_character))
+        table.error("name", in_quotes(name) + " is not allowed: use letters, digits, _ and -");
+    else if (std::find(used.begin(), used.end(), name) != used.end())
+        table.error("name", in_quotes(name) + " is taken already: names must differ");
+    used.push_back(name);
+    return name;
+}
+
+void check_times(const TableReader& table, std::string_view key, std::span<const TableReader> rows,
+                 std::span<const double> times, double end_time) {
+    if (table.is_empty_array(key)) table.error(key, "is empty: give at least one time");
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (rows[i].has("time") && !(times[i] > times[i - 1]))
+            rows[i].error("time", format_number(times[i]) + " is not allowed: must be above " +
+                                      format_number(times[i - 1]) + ", the time before it");
+    if (end_time > 0.0 && !times.empty() && times.back() > end_time)
+        rows.back().warning("time", in_quotes(table.path_of(key)) + " goes on until " +
+                                        format_number(times.back()) + " s, but the run ends at " +
+                                        format_number(end_time) + " s");
+}
+
+ScenarioReport read_scenario(const std::filesystem::path& file,
+                             std::span<const std::string> overrides) {
+    ScenarioReport report;
+    Diagnostics diagnostics(file.string(), overrides);
+    try {
+        Value document = read_document(file);
+        for (std::size_t i = 0; i < overrides.size(); ++i)
+            apply_override(document, overrides[i], static_cast<int>(i));
+        const TableReader root(*document.get<Table>(), Place{}, "", {root_keys}, diagnostics);
+        report.scenario = read_all(root, file);
+        report.scenario.hash = content_hash(document);
+    } catch (const DocumentError& failure) {
+        diagnostics.error(failure.place, failure.text);
+    } catch (const InputError& failure) {
+        report.errors.push_back(failure.what());
+        return report;
+    }
+    report.errors = diagnostics.errors();
+    report.warnings = diagnostics.warnings();
+    return report;
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,59 @@
+// The parts of the scenario reader, one a group of sections; used by scenario_reader.cpp alone.
+// Each reads its sections from the root table and reports what is wrong with them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/scenario.h"
+#include "sim/table_reader.h"
+
+namespace incise::sim {
+
+MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
+std::vector<MaterialSpec> read_materials(const TableReader& root);
+DynamicsSpec read_dynamics(const TableReader& root);
+/// @param end_time  later keys are warned of; not above 0 if it is not known
+std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time);
+std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
+std::vector<ToolSpec> read_tools(const TableReader& root, double end_time);
+OutputSpec read_output(const TableReader& root, double end_time);
+std::vector<Expectation> read_expectations(const TableReader& root);
+
+/// The name that a constraint, load or tool gives itself, or `fallback`. Reports one that is used
+/// already or has other characters than letters, digits, _ and -: it becomes part of the names of
+/// columns. Adds it to `used`.
+std::string read_name(const TableReader& table, const std::string& fallback,
+                      std::vector<std::string>& used);
+
+/// Reads an array of tables that each have a time and something else, in ascending order of time.
+/// Reports an empty array, and times that are negative, do not ascend or come after `end_time`.
+/// @param read_value  makes the value of one table
+template <class T, class ReadValue>
+std::vector<TimeKey<T>> read_time_keys(const TableReader& table, std::string_view key,
+                                       const Names& names, double end_time,
+                                       const ReadValue& read_value);
+
+/// What read_time_keys does with the times.
+void check_times(const TableReader& table, std::string_view key, std::span<const TableReader> rows,
+                 std::span<const double> times, double end_time);
+
+template <class T, class ReadValue>
+std::vector<TimeKey<T>> read_time_keys(const TableReader& table, std::string_view key,
+                                       const Names& names, double end_time,
+                                       const ReadValue& read_value) {
+    std::vector<TimeKey<T>> keys;
+    std::vector<double> times;
+    const auto rows = table.tables(key, names);
+    for (const auto& row : rows) {
+        row.require("time", "seconds, as in time = 0.5");
+        times.push_back(row.number("time", 0.0, limits::non_negative));
+        keys.push_back({times.back(), read_value(row)});
+    }
+    check_times(table, key, rows, times, end_time);
+    return keys;
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/selection.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "topology/error.h"
+
+namespace incise::sim {
+
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+
+namespace {
+
+/// By node id: whether it is alive and selected.
+std::vector<char> selected(const Mesh& mesh, const Selection& where) {
+    std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
+    if (where.regions)
+        for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+            const ElementId e(i);
+            if (mesh.is_alive(e) &&
+                std::binary_search(where.regions->begin(), where.regions->end(), mesh.region(e)))
+                for (const NodeId n : mesh.corners(e)) in_regions[n.index()] = 1;
+        }
+    std::vector<char> on_surface(mesh.node_capacity(), !where.surface);
+    if (where.surface)
+        for (const FaceId f : topology::boundary_faces(mesh))
+            for (int p = 0; p < mesh.face_size(f); ++p)
+                on_surface[mesh.face_corner(f, p).index()] = 1;
+
+    std::vector<char> result(mesh.node_capacity(), 0);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const NodeId n(i);
+        if (!mesh.is_alive(n)) continue;
+        const Vec3& x = mesh.rest_position(n);
+        bool is_in = in_regions[i] && on_surface[i];
+        if (where.box)
+            is_in = is_in && (x.array() >= where.box->min.array()).all() &&
+                    (x.array() <= where.box->max.array()).all();
+        if (where.sphere)
+            is_in = is_in && (x - where.sphere->center).norm() <= where.sphere->radius;
+        if (where.half_space)
+            is_in = is_in && (x - where.half_space->point).dot(where.half_space->normal) >= 0.0;
+        if (where.nodes)
+            is_in = is_in &&
+                    std::binary_search(where.nodes->begin(), where.nodes->end(), mesh.label(n));
+        result[i] = is_in;
+    }
+    // A pinched point has several nodes; those but the first have labels of their own.
+    if (where.nodes)
+        for (const std::int64_t label : *where.nodes)
+            for (const NodeId n : mesh.nodes_with_label(label))
+                if (mesh.is_alive(n) && result[mesh.nodes_with_label(label).front().index()])
+                    result[n.index()] = 1;
+    return result;
+}
+
+}  // namespace
+
+std::vector<NodeId> select_nodes(const Mesh& mesh, const Selection& where) {
+    const auto is_in = selected(mesh, where);
+    std::vector<NodeId> nodes;
+    for (std::size_t i = 0; i < is_in.size(); ++i)
+        if (is_in[i]) nodes.emplace_back(i);
+    return nodes;
+}
+
+std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
+    const auto is_in = selected(mesh, where);
+    std::vector<FaceId> faces = topology::boundary_faces(mesh);
+    std::erase_if(faces, [&](FaceId f) {
+        for (int p = 0; p < mesh.face_size(f); ++p)
+            if (!is_in[mesh.face_corner(f, p).index()]) return true;
+        return false;
+    });
+    return faces;
+}
+
+std::vector<ElementId> select_elements(const Mesh& mesh, const Selection& where) {
+    const auto is_in = selected(mesh, where);
+    std::vector<ElementId> elements;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        const auto corners = mesh.corners(e);
+        if (std::all_of(corners.begin(), corners.end(), [&](NodeId n) { return is_in[n.index()]; }))
+            elements.push_back(e);
+    }
+    return elements;
+}
+
+void require_selected(std::size_t count, const Mesh& mesh, const std::string& what,
+                      const std::string& things) {
+    if (count > 0) return;
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
+        if (mesh.is_alive(NodeId(i))) box.extend(mesh.rest_position(NodeId(i)));
+    const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    std::ostringstream text;
+    text << what << " selects no " << things << "; the mesh lies between "
+         << box.min().transpose().format(list) << " and " << box.max().transpose().format(list);
+    throw InputError(text.str());
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "cutting/cut_plan.h"
+#include "sim/body.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+
+namespace {
+
+topology::Mesh take_mesh(const MeshSpec& spec, std::vector<std::string>& warnings) {
+    topology::BuiltMesh built = build_mesh(spec);
+    warnings.insert(warnings.end(), built.warnings.begin(), built.warnings.end());
+    return std::move(built.mesh);
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& scenario)
+    : scenario_(scenario),
+      mesh_(take_mesh(scenario.mesh, warnings_)),
+      model_(mesh_, build_materials(scenario.materials, mesh_, warnings_),
+             build_surroundings(scenario, mesh_)),
+      ledger_(model_),
+      tools_(scenario.tools.begin(), scenario.tools.end()) {
+    step_limit();  // a fixed step that is too large is refused before anything is written
+}
+
+void Simulation::start() { tell_frame(); }
+
+bool Simulation::is_finished() const { return time_ >= scenario_.dynamics.end_time; }
+
+void Simulation::step() {
+    const auto [from, to] = next_step();
+    previous_positions_.assign(model_.positions().begin(), model_.positions().end());
+
+    model_.integrate(from, to - from);
+
+    const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions()};
+    std::vector<cutting::CutPlan> plans;
+    for (const Tool& tool : tools_) plans.push_back(tool.plan(tissue, from, to));
+
+    time_ = to;
+    last_step_ = to - from;
+    ++num_steps_;
+    for (std::size_t t = 0; t < tools_.size(); ++t) cut(plans[t], tools_[t]);
+
+    model_.compute_forces(time_);
+    for (Observer* observer : observers_) observer->on_step(*this);
+    tell_frame();
+}
+
+void Simulation::cut(const cutting::CutPlan& plan, const Tool& tool) {
+    if (plan.is_empty()) return;
+    const Account before = ledger_.account();
+    const topology::ChangeSet changes = cutting::execute(plan, mesh_);
+    if (changes.is_empty()) return;
+    const double mass_removed = removed_mass(model_, changes);
+    model_.apply(changes);
+    const EditRecord& edit =
+        ledger_.record(time_, num_steps_, tool.name(), changes, before, mass_removed);
+    for (Observer* observer : observers_) observer->on_edit(*this, edit);
+}
+
+double Simulation::time_step() const {
+    if (num_steps_ > 0) return last_step_;
+    const auto [from, to] = next_step();
+    return to - from;
+}
+
+// Frames fall on exact multiples of their interval, and the run ends exactly at its end: the way
+// to the next of these moments is divided evenly in steps below the limit.
+Simulation::Interval Simulation::next_step() const {
+    double stop = scenario_.dynamics.end_time;
+    if (scenario_.output.interval > 0.0)
+        stop = std::min(stop, static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) *
+                                  scenario_.output.interval);
+    // A hair's breadth over a whole number of steps is rounding, not another step.
+    constexpr double rounding = 1e-9;
+    const double steps = std::ceil((stop - time_) / step_limit() * (1.0 - rounding));
+    if (steps <= 1.0) return {time_, stop};
+    return {time_, time_ + (stop - time_) / steps};
+}
+
+double Simulation::step_limit() const {
+    const DynamicsSpec& dynamics = scenario_.dynamics;
+    const double stable = model_.stable_step();
+    if (!dynamics.time_step) return dynamics.safety * stable;
+    if (*dynamics.time_step > stable) {
+        std::ostringstream text;
+        text << "dynamics.time_step of " << *dynamics.time_step << " s is above the stable step of "
+             << stable << " s";
+        if (num_steps_ > 0) text << " that the edits have left";
+        text << ": use a smaller one, or time_step = \"auto\"";
+        throw PhysicsError(text.str());
+    }
+    return *dynamics.time_step;
+}
+
+void Simulation::tell_frame() {
+    const double interval = scenario_.output.interval;
+    if (interval == 0.0) return;
+    const bool is_due = time_ >= static_cast<double>(num_frames_) * interval;
+    if (!is_due && !is_finished()) return;
+    ++num_frames_;
+    for (Observer* observer : observers_) observer->on_frame(*this);
+}
+
+}  // namespace incise::sim

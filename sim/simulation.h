@@ -1,0 +1,78 @@
+// The run: a body, its tools, and the loop that moves both.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "physics/model.h"
+#include "sim/ledger.h"
+#include "sim/scenario.h"
+#include "sim/tool.h"
+#include "topology/mesh.h"
+
+namespace incise::sim {
+
+class Simulation;
+
+/// Watches a run. All functions may throw, which ends the run.
+class Observer {
+  public:
+    virtual ~Observer() = default;
+    virtual void on_edit(const Simulation&, const EditRecord&) {}
+    virtual void on_frame(const Simulation&) {}  ///< when a frame is due, the first at time 0
+    virtual void on_step(const Simulation&) {}
+};
+
+class Simulation {
+  public:
+    /// Builds what the scenario describes, at time 0.
+    /// Throws InputError for a mesh, selection or material at fault, PhysicsError for a fixed step
+    /// above the bound.
+    explicit Simulation(const Scenario& scenario);
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
+
+    /// Observers must outlive the simulation's last step.
+    void add_observer(Observer& observer) { observers_.push_back(&observer); }
+
+    /// One time step; see the implementation for its phases.
+    void step();
+    bool is_finished() const;
+    /// Tells the observers of the state at time 0, before the first step.
+    void start();
+
+    const Scenario& scenario() const { return scenario_; }
+    const topology::Mesh& mesh() const { return mesh_; }
+    const physics::Model& model() const { return model_; }
+    const Ledger& ledger() const { return ledger_; }
+    double time() const { return time_; }  ///< s
+    double time_step() const;              ///< s, of the last step, or of the first
+    std::uint64_t num_steps() const { return num_steps_; }
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+  private:
+    struct Interval {
+        double from, to;  // s
+    };
+    Interval next_step() const;
+    double step_limit() const;
+    void cut(const cutting::CutPlan& plan, const Tool& tool);
+    void tell_frame();
+
+    Scenario scenario_;
+    std::vector<std::string> warnings_;
+    topology::Mesh mesh_;
+    physics::Model model_;
+    Ledger ledger_;
+    std::vector<Tool> tools_;
+    std::vector<Observer*> observers_;
+
+    double time_ = 0.0;
+    double last_step_ = 0.0;
+    std::uint64_t num_steps_ = 0, num_frames_ = 0;
+    std::vector<Vec3> previous_positions_;
+};
+
+}  // namespace incise::sim

@@ -1,0 +1,129 @@
+// The [[tool]] sections.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/number_format.h"
+#include "sim/scenario_sections.h"
+
+namespace incise::sim {
+
+namespace {
+
+using io::format_number;
+using Keys = std::string_view;
+
+constexpr Keys tool_keys[] = {"kind", "name", "path", "shape", "edge", "mode"};
+constexpr Keys planned_tool_keys[] = {"time", "plane", "surface", "file"};
+constexpr Keys kinds[] = {"carver", "blade"};
+constexpr Keys planned_kinds[] = {"cut"};
+constexpr Keys modes[] = {"separate"};
+constexpr Keys planned_modes[] = {"split"};
+constexpr Keys pose_keys[] = {"time", "at", "rotate"};
+constexpr Keys rotation_keys[] = {"axis", "angle"};
+constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
+constexpr Keys sphere_keys[] = {"radius"};
+constexpr Keys capsule_keys[] = {"from", "to", "radius"};
+constexpr Keys box_keys[] = {"size"};
+
+Pose read_pose(const TableReader& row) {
+    Pose pose;
+    row.require("at", "where the tool's origin is, as in at = [0, 0, 0.1]");
+    pose.at = row.vector("at");
+    if (const auto rotation = row.table("rotate", {rotation_keys})) {
+        rotation->require("axis", "its direction, as in axis = [1, 0, 0]");
+        rotation->require("angle", "radians, as in angle = 0.2");
+        pose.axis = rotation->direction("axis", pose.axis);
+        pose.angle = rotation->number("angle", 0.0);
+    }
+    return pose;
+}
+
+Carver read_carver(const TableReader& tool) {
+    Carver carver;
+    tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
+    const auto shape = tool.table("shape", {shape_keys});
+    if (!shape) return carver;
+    const auto kind = shape->one_of({"sphere", "capsule", "box"});
+    const auto radius_of = [](const TableReader& table) {
+        table.require("radius", "a length, as in radius = 0.008");
+        return table.number("radius", 1.0, limits::positive);
+    };
+    if (const auto sphere = shape->table("sphere", {sphere_keys}); sphere && kind)
+        carver.shape = SphereShape{radius_of(*sphere)};
+    if (const auto capsule = shape->table("capsule", {capsule_keys}); capsule && kind) {
+        capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
+        capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
+        carver.shape =
+            CapsuleShape{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
+    }
+    if (const auto box = shape->table("box", {box_keys}); box && kind) {
+        box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
+        const Vec3 size = box->vector("size", Vec3::Ones());
+        if (!(size.minCoeff() > 0.0))
+            box->error("size", "is not allowed: all three lengths must be above 0");
+        carver.shape = BoxShape{size};
+    }
+    return carver;
+}
+
+Blade read_blade(const TableReader& tool) {
+    Blade blade;
+    if (tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]"))
+        blade.edge = tool.vectors("edge");
+    if (tool.has("edge") && blade.edge.size() < 2)
+        tool.error("edge", "must have at least 2 points");
+    for (std::size_t i = 1; i < blade.edge.size(); ++i)
+        if (blade.edge[i] == blade.edge[i - 1])
+            tool.error("edge", "points " + std::to_string(i - 1) + " and " + std::to_string(i) +
+                                   " (from 0) are the same: leave one out");
+    tool.require("mode",
+                 "this version supports mode = \"separate\" only, which opens the faces between "
+                 "elements that the edge sweeps across");
+    tool.choice("mode", {modes, planned_modes});
+    return blade;
+}
+
+void refuse(const TableReader& tool, std::initializer_list<std::string_view> keys,
+            const std::string& owner) {
+    for (const auto key : keys)
+        if (tool.has(key)) tool.error(key, "belongs to " + owner + ": leave it out");
+}
+
+void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
+    if (std::holds_alternative<Blade>(spec.kind) && spec.path.size() == 1)
+        tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
+    if (end_time > 0.0 && !spec.path.empty() && spec.path.front().time > end_time)
+        tool.warning("path", "tool " + in_quotes(spec.name) + " starts at " +
+                                 format_number(spec.path.front().time) + " s, after the end at " +
+                                 format_number(end_time) + " s");
+}
+
+}  // namespace
+
+std::vector<ToolSpec> read_tools(const TableReader& root, double end_time) {
+    std::vector<ToolSpec> specs;
+    std::vector<std::string> names;
+    std::array<int, std::size(kinds)> counts{};
+    for (const auto& tool : root.tables("tool", {tool_keys, planned_tool_keys})) {
+        tool.require("kind", "must be one of " + list_of(kinds));
+        const auto kind = tool.choice("kind", {kinds, planned_kinds});
+        if (!kind) continue;
+        ToolSpec spec;
+        spec.name = read_name(
+            tool, std::string(kinds[*kind]) + "_" + std::to_string(++counts[*kind]), names);
+        if (kinds[*kind] == "carver") {
+            spec.kind = read_carver(tool);
+            refuse(tool, {"edge", "mode"}, "a blade");
+        } else {
+            spec.kind = read_blade(tool);
+            refuse(tool, {"shape"}, "a carver");
+        }
+        tool.require("path",
+                     "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = "
+                     "[0, 0, 0] }]");
+        spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
+        check_path(tool, spec, end_time);
+        specs.push_back(std::move(spec));
+    }
+    return specs;
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,223 @@
+// The command as users and scripts meet it: exit statuses, messages, what goes to which stream.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "support/temporary_folder.h"
+
+namespace incise {
+namespace {
+
+struct Outcome {
+    int status = -1;
+    std::string out, err;
+};
+
+const std::string scenario = R"([mesh]
+box = { size = [1, 1, 1], cells = [2, 2, 2] }
+[[material]]
+density = 1060
+young = 1600
+poisson = 0.45
+[dynamics]
+end_time = 1
+)";
+
+/// Two tetrahedra that share a face, in regions 3 and 5; the second has `apex`.
+std::string mesh(const std::string& apex = "1 1 1") {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+           "5 " +
+           apex +
+           "\n$EndNodes\n$Elements\n2\n1 4 2 3 1 1 2 3 4\n2 4 2 5 1 2 3 4 5\n"
+           "$EndElements\n";
+}
+
+class Command : public testing::Test {
+  protected:
+    void write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    /// Runs the program in the folder; the arguments are words of a shell.
+    Outcome run(const std::string& arguments, const std::string& program = INCISE_PROGRAM) {
+        const auto out = folder_ / "stdout", err = folder_ / "stderr";
+        const std::string line = "cd '" + folder_.path().string() + "' && '" + program + "' " +
+                                 arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+        const int result = std::system(line.c_str());
+        return {WIFEXITED(result) ? WEXITSTATUS(result) : -1, support::read_text(out),
+                support::read_text(err)};
+    }
+
+    support::TemporaryFolder folder_;
+};
+
+TEST_F(Command, TellsItsVersionAndHelp) {
+    EXPECT_EQ(run("--version").out, "incise " INCISE_VERSION "\n");
+    const auto help = run("--help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(help.err, "");
+    for (const auto* word : {"run", "check", "info", "convert", "materials", "render",
+                             "Examples:", "Exit status: 0 done"})
+        EXPECT_NE(help.out.find(word), std::string::npos) << word;
+    for (const auto* verb : {"run", "check", "info", "convert", "materials"}) {
+        const auto of_verb = run(std::string(verb) + " --help");
+        EXPECT_EQ(of_verb.status, 0) << verb;
+        EXPECT_NE(of_verb.out.find(std::string("Usage: incise ") + verb), std::string::npos);
+        EXPECT_NE(of_verb.out.find("Example"), std::string::npos) << verb;
+    }
+}
+
+TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
+    const auto refused = [&](const std::string& arguments) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+        return outcome.err;
+    };
+    EXPECT_EQ(refused("").substr(0, 26), "incise: a verb is missing:");
+    EXPECT_EQ(refused("inof a.vtu").substr(0, 57),
+              "incise: verb 'inof': is not known; did you mean 'info'? Kn");
+    EXPECT_EQ(refused("cut a.vtu").substr(0, 61),
+              "incise: verb 'cut': this version does not support it yet; sup");
+    EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
+    EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
+    EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
+}
+
+TEST_F(Command, DescribesAMeshAsJson) {
+    write("two.msh", mesh());
+    const auto outcome = run("info two.msh --json");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["points"], 5);
+    EXPECT_EQ(json["tets"], 2);
+    EXPECT_EQ(json["hexes"], 0);
+    EXPECT_EQ(json["wedges"], 0);
+    EXPECT_EQ(json["pyramids"], 0);
+    EXPECT_EQ(json["components"], 1);
+    EXPECT_NEAR(json["volume"].get<double>(), 0.5, 1e-14);  // 1/6 and 2/6
+    EXPECT_GT(json["surface_area"].get<double>(), 0.0);
+    EXPECT_EQ(json["bounding_box"]["max"], (std::vector{1.0, 1.0, 1.0}));
+    EXPECT_EQ(json["regions"], (nlohmann::json{{"3", 1}, {"5", 1}}));
+    EXPECT_GT(json["min_altitude"].get<double>(), 0.0);
+    EXPECT_GT(json["min_dihedral_deg"].get<double>(), 0.0);
+    EXPECT_EQ(json["edge_length"]["min"], 1.0);
+    EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST_F(Command, DescribesAMeshInWords) {
+    write("two.msh", mesh());
+    const auto outcome = run("info two.msh");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.out.find("tetrahedra       2\nregion 3         1 cells\n"),
+              std::string::npos);
+}
+
+TEST_F(Command, NamesTheFileOfABrokenMesh) {
+    write("flat.msh", mesh("0 0 1"));  // the second has no volume
+    for (const auto* verb : {"info ", "check "}) {
+        const auto outcome = run(std::string(verb) + "flat.msh");
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_EQ(outcome.err.substr(0, 18), "incise: flat.msh: ") << verb;
+    }
+    const auto missing = run("info none.vtu");
+    EXPECT_EQ(missing.status, 2);
+    EXPECT_EQ(missing.err.substr(0, 17), "incise: none.vtu:");
+}
+
+TEST_F(Command, ConvertsThereAndBack) {
+    write("two.msh", mesh());
+    const auto there = run("convert two.msh two.vtu");
+    EXPECT_EQ(there.status, 0);
+    EXPECT_EQ(there.out, "two.vtu: 5 points, 2 cells\n");
+    EXPECT_EQ(run("info two.vtu --json").out, run("info two.msh --json").out);
+}
+
+TEST_F(Command, TellsInputFromOutputFailures) {
+    write("two.msh", mesh());
+    EXPECT_EQ(run("convert two.msh two.doc").status, 2);
+    EXPECT_EQ(run("convert none.msh two.vtu").status, 2);
+    const auto unwritable = run("convert two.msh no/such/folder/two.vtu");
+    EXPECT_EQ(unwritable.status, 4);
+    EXPECT_EQ(unwritable.err.substr(0, 31), "incise: no/such/folder/two.vtu:");
+}
+
+TEST_F(Command, ChecksEveryFileAndCountsProblems) {
+    write("good.toml", scenario);
+    write("bad.toml", scenario + "dampin = 2\nsafety = 7\n");
+    write("two.msh", mesh());
+    const auto good = run("check good.toml two.msh");
+    EXPECT_EQ(good.status, 0);
+    EXPECT_EQ(good.err, "");
+    EXPECT_EQ(good.out,
+              "good.toml: OK, scenario of 1 s with 1 material, 0 constraints, 0 loads, 0 tools\n"
+              "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
+    const auto bad = run("check bad.toml none.msh two.msh");
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_NE(bad.err.find("incise: bad.toml:9:1: key 'dynamics.dampin': is not known; did you "
+                           "mean 'damping'?"),
+              std::string::npos);
+    EXPECT_NE(bad.err.find("incise: bad.toml:10:10: key 'dynamics.safety': 7 is not allowed"),
+              std::string::npos);
+    EXPECT_NE(bad.err.find("incise: none.msh: "), std::string::npos);
+    EXPECT_EQ(bad.out,
+              "bad.toml: 2 problems\nnone.msh: 1 problem\n"
+              "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
+}
+
+TEST_F(Command, ChecksTheMeshOfAScenario) {
+    write("flat.msh", mesh("0 0 1"));
+    write("scene.toml", "[mesh]\nfile = \"flat.msh\"\n" + scenario.substr(scenario.find("[[")));
+    const auto outcome = run("check scene.toml");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err.substr(0, 18), "incise: flat.msh: ");
+}
+
+TEST_F(Command, RefusesToRunABadScenario) {
+    write("scene.toml", scenario);
+    const auto outcome = run("run scene.toml --set dynamics.safety=7 --set material[0].young=-1");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("incise: --set dynamics.safety=7: key 'dynamics.safety'"),
+              std::string::npos);
+    EXPECT_NE(outcome.err.find("incise: --set material[0].young=-1: key 'material[0].young'"),
+              std::string::npos);
+    EXPECT_NE(run("run scene.toml --end-time=-1").err.find("'dynamics.end_time': -1"),
+              std::string::npos);
+    EXPECT_EQ(run("run none.toml").err, "incise: none.toml: there is no such file\n");
+}
+
+TEST_F(Command, ListsMaterials) {
+    const auto all = run("materials");
+    EXPECT_EQ(all.status, 0);
+    for (const auto* name :
+         {"saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin", "mass-spring"})
+        EXPECT_NE(all.out.find(name), std::string::npos) << name;
+    EXPECT_NE(run("materials mooney-rivlin").out.find("law = \"mooney-rivlin\""),
+              std::string::npos);
+    const auto json = nlohmann::json::parse(run("materials --json").out);
+    ASSERT_EQ(json["materials"].size(), 4u);
+    EXPECT_EQ(json["materials"][1]["name"], "neo-hookean");
+    EXPECT_EQ(json["materials"][1]["parameter_sets"][0], (std::vector{"young", "poisson"}));
+    EXPECT_EQ(run("materials neo-hooke").status, 2);
+}
+
+TEST_F(Command, HandsRenderingOverWithAllArguments) {
+    const auto program = (folder_ / "incise").string();
+    std::filesystem::copy_file(INCISE_PROGRAM, program);
+    const auto missing = run("render scene.out", program);
+    EXPECT_EQ(missing.status, 2);
+    EXPECT_NE(missing.err.find("incise-render: cannot be started"), std::string::npos);
+
+    write("incise-render", "#!/bin/sh\nprintf '<%s>' \"$@\"\nexit 4\n");
+    std::filesystem::permissions(folder_ / "incise-render", std::filesystem::perms::owner_all);
+    const auto handed = run("render 'a b.out' --frame 3 --help --all=x", program);
+    EXPECT_EQ(handed.out, "<a b.out><--frame><3><--help><--all=x>");
+    EXPECT_EQ(handed.status, 4);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,195 @@
+// Files are whole or not there, and a failure says what, why and what to do.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <functional>
+
+#include "io/atomic_file.h"
+#include "io/line_file.h"
+#include "tests/support/temporary_folder.h"
+#include "topology/error.h"
+
+namespace incise::io {
+namespace {
+
+namespace fs = std::filesystem;
+using support::count_entries;
+using support::read_text;
+using support::TemporaryFolder;
+using testing::HasSubstr;
+
+/// The text of the OutputError that `action` throws, or what else happens.
+std::string output_error(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const OutputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Lets no file grow beyond `bytes`, as a full disk would, while it lives.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        former_handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        ::getrlimit(RLIMIT_FSIZE, &former_);
+        const rlimit limit{bytes, former_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &former_);
+        std::signal(SIGXFSZ, former_handler_);
+    }
+
+  private:
+    rlimit former_{};
+    void (*former_handler_)(int) = nullptr;
+};
+
+TEST(WriteFile, WritesAndReplaces) {
+    const TemporaryFolder folder;
+    const std::string bytes("a\0b\n", 4);
+    write_file(folder / "file", "former contents");
+    write_file(folder / "file", bytes);
+    EXPECT_EQ(read_text(folder / "file"), bytes);
+    EXPECT_EQ(count_entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, TakesTheLongestNamesThatThereAre) {
+    const TemporaryFolder folder;
+    const std::string name(255, 'n');
+    write_file(folder / name, "contents");
+    EXPECT_EQ(read_text(folder / name), "contents");
+    EXPECT_THAT(output_error([&] { write_file(folder / (name + "n"), ""); }),
+                HasSubstr("choose a shorter name"));
+}
+
+TEST(WriteFile, KeepsTheFormerContentsAndLeavesNothingBehindOnFailure) {
+    const TemporaryFolder folder;
+    write_file(folder / "file", "former contents");
+    {
+        const FileSizeLimit limit(1000);
+        const auto text =
+            output_error([&] { write_file(folder / "file", std::string(5000, 'x')); });
+        EXPECT_THAT(text, HasSubstr((folder / "file").string() + ": cannot be written: "));
+        EXPECT_THAT(text, HasSubstr("file too large"));
+    }
+    EXPECT_EQ(read_text(folder / "file"), "former contents");
+    EXPECT_EQ(count_entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, SaysThatADiskIsFullAndLeavesTheDevice) {
+    EXPECT_EQ(output_error([] { write_file("/dev/full", "x"); }),
+              "/dev/full: cannot be written: no space left on device; make room there, or write "
+              "to another disk");
+    EXPECT_TRUE(fs::is_character_file("/dev/full"));
+    write_file("/dev/null", "x");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(WriteFile, NamesTheReasonWhereThereCanBeNoFile) {
+    const TemporaryFolder folder;
+    write_file(folder / "file", "");
+    const auto error_at = [&](const char* name) {
+        return output_error([&] { write_file(folder / name, "x"); });
+    };
+    EXPECT_THAT(error_at("missing/file"), HasSubstr("no such file or directory; make the folder"));
+    EXPECT_THAT(error_at("file/below"), HasSubstr("not a directory"));
+    EXPECT_THAT(error_at("."), HasSubstr("is a directory; name a file in that folder"));
+    EXPECT_THAT(output_error([] { write_file("", "x"); }), HasSubstr("cannot be written"));
+}
+
+TEST(WriteFile, FollowsLinks) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "other");
+    fs::create_symlink("other/target", folder / "link");
+    for (const auto* contents : {"new", "newer"}) {  // the target is missing at first
+        write_file(folder / "link", contents);
+        EXPECT_TRUE(fs::is_symlink(folder / "link"));
+        EXPECT_EQ(read_text(folder / "other/target"), contents);
+    }
+    EXPECT_EQ(count_entries(folder / "other"), 1U);
+}
+
+TEST(WriteFile, GivesThePermissionsOfAnyNewFile) {
+    const TemporaryFolder folder;
+    const auto former_mask = ::umask(0027);
+    write_file(folder / "file", "");
+    ::umask(former_mask);
+    EXPECT_EQ(fs::status(folder / "file").permissions(), fs::perms(0640));
+}
+
+TEST(MakeOutputFolder, MakesParentsAndRefusesWhereNoFileCanBe) {
+    const TemporaryFolder folder;
+    make_output_folder(folder / "a/b");
+    make_output_folder(folder / "a/b");
+    EXPECT_EQ(count_entries(folder / "a/b"), 0U);
+    write_file(folder / "file", "");
+    EXPECT_THAT(output_error([&] { make_output_folder(folder / "file"); }), HasSubstr("file"));
+    EXPECT_THAT(output_error([&] { make_output_folder(folder / "file/below"); }),
+                HasSubstr("not a directory; a file is in the place of a folder"));
+    EXPECT_THAT(output_error([] { make_output_folder("/proc/incise"); }),
+                HasSubstr("/proc/incise: cannot be written: "));
+}
+
+TEST(LineFile, HoldsEveryLineAsSoonAsItIsAppended) {
+    const TemporaryFolder folder;
+    LineFile file(folder / "history.csv");
+    std::string expected;
+    for (const auto* line : {"time,mass", "0,1", ""}) {
+        file.append(line);
+        expected += std::string(line) + "\n";
+        EXPECT_EQ(read_text(folder / "history.csv"), expected);
+        EXPECT_EQ(file.size(), expected.size());
+    }
+    file.sync();
+}
+
+TEST(LineFile, BeginsAnewOrGoesOnFromAFormerSize) {
+    const TemporaryFolder folder;
+    std::uint64_t size = 0;
+    {
+        LineFile file(folder / "lines");
+        file.append("kept");
+        size = file.size();
+        file.append("written after the checkpoint");
+    }
+    {
+        LineFile file(folder / "lines", size);
+        file.append("resumed");
+    }
+    EXPECT_EQ(read_text(folder / "lines"), "kept\nresumed\n");
+    EXPECT_THAT(output_error([&] { LineFile(folder / "lines", 1000); }), HasSubstr("has 13 bytes"));
+    EXPECT_EQ(read_text(folder / "lines"), "kept\nresumed\n");
+    LineFile(folder / "lines");
+    EXPECT_EQ(read_text(folder / "lines"), "");
+}
+
+TEST(LineFile, TakesBackALineThatFails) {
+    const TemporaryFolder folder;
+    LineFile file(folder / "lines");
+    file.append("whole");
+    {
+        const FileSizeLimit limit(20);
+        EXPECT_THAT(output_error([&] { file.append(std::string(100, 'x')); }),
+                    HasSubstr("lines: cannot be written: file too large"));
+    }
+    EXPECT_EQ(read_text(folder / "lines"), "whole\n");
+    file.append("next");
+    EXPECT_EQ(read_text(folder / "lines"), "whole\nnext\n");
+}
+
+TEST(LineFile, SaysThatADiskIsFull) {
+    LineFile file("/dev/full");
+    EXPECT_THAT(output_error([&] { file.append("line"); }),
+                HasSubstr("/dev/full: cannot be written: no space left on device"));
+    EXPECT_THAT(output_error([] { LineFile("/dev/full/below"); }), HasSubstr("not a directory"));
+}
+
+}  // namespace
+}  // namespace incise::io

@@ -1,0 +1,178 @@
+// What a Gmsh file means, and what is refused in one.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/gmsh_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/io/reader_samples.h"
+
+namespace incise::io {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string version_2 = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+5
+30 0 0 0
+10 1 0 0
+20 0 1 0
+50 0 0 1
+40 1 1 1
+$EndNodes
+$Elements
+3
+1 15 2 9 1 30
+2 4 2 7 1 30 10 20 50
+3 4 0 10 20 50 40
+$EndElements
+)";
+
+const std::string version_4 = R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Entities
+0 0 0 2
+1 0 0 0 1 1 1 2 7 8 0
+2 0 0 0 1 1 1 0 0
+$EndEntities
+$Nodes
+1 5 1 5
+3 1 0 5
+1
+2
+3
+4
+5
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+1 1 1
+$EndNodes
+$Elements
+2 2 1 2
+3 1 4 1
+1 1 2 3 4
+3 2 4 1
+2 2 3 4 5
+$EndElements
+)";
+
+std::string refusal_2(std::string_view from, std::string_view to) {
+    return refusal("liver.msh", replaced(version_2, from, to));
+}
+std::string refusal_4(std::string_view from, std::string_view to) {
+    return refusal("liver.msh", replaced(version_4, from, to));
+}
+
+TEST(GmshReader, NumbersPointsInTheOrderOfTheFile) {
+    const auto file = read_bytes("a.msh", version_2);
+    EXPECT_EQ(file.mesh.points[0], Vec3(0, 0, 0));
+    EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("ignored 1 point element:")));
+}
+
+TEST(GmshReader, TakesPhysicalGroupsAsRegions) {
+    EXPECT_THAT(read_bytes("a.msh", version_2).mesh.regions, ElementsAre(7, 0));
+    const auto file = read_bytes("a.msh", version_4);
+    EXPECT_THAT(file.mesh.regions, ElementsAre(7, 0));
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("1 volumes are in several physical groups")));
+}
+
+TEST(GmshReader, TurnsPrismsIntoWedges) {
+    // Positive volume in Gmsh: the triangle 0, 1, 2 faces 3, 4, 5; in the mesh it faces away.
+    const auto file = read_bytes("a.msh", R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 1 0 1
+6 0 1 1
+$EndNodes
+$Elements
+1
+1 6 2 1 1 1 2 3 4 5 6
+$EndElements
+)");
+    ASSERT_EQ(file.mesh.num_cells(), 1u);
+    const auto corner = [&](std::size_t i) {
+        return file.mesh.points[static_cast<std::size_t>(file.mesh.cell(0)[i])];
+    };
+    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    EXPECT_LT(normal.dot(corner(3) - corner(0)), 0);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(corner(i + 3), corner(i) + Vec3(0, 0, 1));
+}
+
+TEST(GmshReader, RefusesUnknownNodes) {
+    EXPECT_EQ(refusal_2("10 20 50 40", "10 20 50 927"),
+              "liver.msh:16: element 3: node tag 927 is not one of the 5 nodes");
+    EXPECT_EQ(refusal_4("2 2 3 4 5", "2 2 3 4 0"),
+              "liver.msh:28: element 2: node tag 0 is not one of the 5 nodes");
+    EXPECT_EQ(refusal_2("40 1 1 1", "10 1 1 1"), "liver.msh: node tag 10 is given to two nodes");
+}
+
+TEST(GmshReader, RefusesCountsThatTheFileCannotHold) {
+    EXPECT_THAT(refusal_2("$Nodes\n5", "$Nodes\n4000000000"),
+                AllOf(StartsWith("liver.msh:5: the number of nodes is 4000000000"),
+                      HasSubstr("more than can be in the remaining")));
+    EXPECT_THAT(refusal_4("1 5 1 5", "1 400000000000 1 5"), HasSubstr("400000000000"));
+    EXPECT_THAT(refusal_4("3 1 0 5", "3 1 0 99999"), HasSubstr("99999"));
+    EXPECT_THAT(refusal_4("1 1 1 2 7 8 0", "1 1 1 99999 7 8 0"), HasSubstr("99999"));
+    EXPECT_THAT(refusal_4("1 5 1 5", "1 6 1 5"), HasSubstr("hold 5 nodes, but 6 are announced"));
+    EXPECT_THAT(refusal_4("2 2 1 2", "2 3 1 2"), HasSubstr("hold 2 elements, but 3"));
+    EXPECT_THAT(refusal_2("$Nodes\n5", "$Nodes\n4"),
+                StartsWith("liver.msh:10: expected $EndNodes, found '40'"));
+    EXPECT_THAT(refusal_2("3 4 0 10", "3 4 -1 10"), HasSubstr("the number of tags is -1"));
+}
+
+TEST(GmshReader, RefusesWhatItCannotRead) {
+    EXPECT_THAT(refusal_2("2.2 0 8", "4 0 8"),
+                StartsWith("liver.msh:2: version '4' cannot be read"));
+    EXPECT_THAT(refusal_2("2.2 0 8", "2.2 3 8"), HasSubstr("file type is 3"));
+    EXPECT_THAT(refusal_2("2.2 0 8", "2.2 0 16"), HasSubstr("data size is 16"));
+    EXPECT_THAT(refusal("liver.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n"), HasSubstr("of version 1"));
+    EXPECT_THAT(refusal("liver.msh", "$Nodes\n1\n"), HasSubstr("before $MeshFormat"));
+    EXPECT_THAT(refusal("liver.msh", "$Comments\nhello\n"),
+                StartsWith("liver.msh:1: section 'Comments' has no $EndComments"));
+    EXPECT_THAT(refusal("liver.msh", version_2.substr(0, version_2.find("$Elements"))),
+                HasSubstr("has no $Elements section"));
+    EXPECT_THAT(
+        refusal_2("3 4 0 10", "3 11 0 10"),
+        StartsWith("liver.msh: element 3: a second-order tetrahedron (Gmsh element type 11)"));
+    EXPECT_THAT(refusal_2("3 4 0 10", "3 77 0 10"), HasSubstr("element type 77 is not known"));
+    EXPECT_THAT(refusal_2("10 1 0 0", "10 1 zero 0"),
+                StartsWith("liver.msh:7: expected a y coordinate, found 'zero'"));
+    EXPECT_THAT(refusal_2("2 4 2 7", "2 5 2 7"),
+                HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
+}
+
+TEST(GmshReader, RefusesBinaryCountsThatTheFileCannotHold) {
+    for (const auto& sample : gmsh_samples()) {
+        if (sample.name.starts_with("ascii") || sample.name.ends_with("-2.msh")) continue;
+        SCOPED_TRACE(sample.name);
+        auto bytes = sample.bytes;
+        const std::string mark = "$Nodes\n";
+        // The second of the 8-byte numbers: how many nodes there are.
+        bytes.replace(bytes.find(mark) + mark.size() + 8, 8, std::string(8, '\x11'));
+        EXPECT_THAT(refusal("liver.msh", bytes),
+                    AllOf(StartsWith("liver.msh: byte "),
+                          HasSubstr("the number of nodes is 1229782938247303441")));
+    }
+}
+
+}  // namespace
+}  // namespace incise::io

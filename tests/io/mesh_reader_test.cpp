@@ -1,0 +1,117 @@
+// What all formats share: every encoding gives the same mesh, and files that are none are refused.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/mesh_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "io/mesh_writer.h"
+#include "tests/io/reader_samples.h"
+#include "tests/support/temporary_folder.h"
+#include "topology/box_mesh.h"
+#include "topology/error.h"
+
+namespace incise::io {
+namespace {
+
+using support::TemporaryFolder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using topology::CellKind;
+
+TEST(MeshReader, ReadsTheSameMeshFromEveryEncoding) {
+    for (const auto& sample : all_samples()) {
+        SCOPED_TRACE(sample.name);
+        const auto file = read_bytes(sample.name, sample.bytes);
+        expect_same_mesh(file.mesh, sample_mesh());
+        EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("ignored 1 line and 2 triangles")));
+    }
+}
+
+TEST(MeshReader, TellsTheFormatByTheContentWhateverTheSuffix) {
+    for (const auto& sample : all_samples()) {
+        SCOPED_TRACE(sample.name);
+        expect_same_mesh(read_bytes("mesh.dat", sample.bytes).mesh, sample_mesh());
+    }
+}
+
+TEST(MeshReader, AcceptsByteOrderMarkLeadingBlankLinesAndWindowsLineEnds) {
+    for (const auto& sample : all_samples()) {
+        if (!sample.name.starts_with("ascii")) continue;
+        SCOPED_TRACE(sample.name);
+        std::string bytes = "\xEF\xBB\xBF\r\n \r\n";
+        for (const char c : sample.bytes) {
+            if (c == '\n') bytes += '\r';
+            bytes += c;
+        }
+        expect_same_mesh(read_bytes(sample.name, bytes).mesh, sample_mesh());
+    }
+}
+
+TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
+    const TemporaryFolder folder;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> shift(-0.01, 0.01);
+    for (const auto kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
+        auto mesh = topology::box_mesh(kind, Vec3(0.1, -0.2, 1e-5), Vec3(1, 2, 3), {3, 4, 5});
+        for (auto& point : mesh.points)
+            for (auto& x : point) x += shift(random);
+        for (std::size_t c = 0; c < mesh.num_cells(); ++c)
+            mesh.regions[c] = static_cast<int>(c % 3);
+        for (const char* suffix : {".vtu", ".vtk", ".msh"}) {
+            SCOPED_TRACE(suffix);
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, mesh);
+            const auto file = read_mesh(path);
+            EXPECT_THAT(file.warnings, ElementsAre());
+            expect_same_mesh(file.mesh, mesh);
+        }
+    }
+}
+
+TEST(MeshReader, RefusesFilesThatAreCutShort) {
+    for (const auto& sample : all_samples()) {
+        // Legacy VTK has no end mark: what follows the cells may be missing unnoticed.
+        const std::size_t last = sample.name.ends_with(".vtk") ? 4 : 9;
+        for (std::size_t tenths = 1; tenths <= last; tenths += 2) {
+            SCOPED_TRACE(sample.name + ", tenths: " + std::to_string(tenths));
+            const auto size = sample.bytes.size() * tenths / 10;
+            refusal(sample.name, std::string_view(sample.bytes).substr(0, size));
+        }
+    }
+}
+
+TEST(MeshReader, RefusesWhatIsNoMeshFile) {
+    EXPECT_THAT(refusal("notes.txt", "Dear diary,\n"),
+                AllOf(HasSubstr("no mesh format known"), HasSubstr("VTU (.vtu)")));
+    EXPECT_THAT(refusal("liver.vtu", "  \n\n"), HasSubstr("no mesh format known"));
+    EXPECT_THAT(refusal("liver.vtu", ""), HasSubstr("the file is empty"));
+}
+
+/// The message about a path that names no file to read.
+std::string refusal_of_path(const std::filesystem::path& path) {
+    try {
+        read_mesh(path);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "not refused";
+}
+
+TEST(MeshReader, RefusesPathsThatNameNoFile) {
+    const TemporaryFolder folder;
+    EXPECT_THAT(refusal_of_path(folder / "liver.vtu"),
+                AllOf(HasSubstr("liver.vtu: "), HasSubstr("no such file")));
+    EXPECT_THAT(refusal_of_path(folder.path()), HasSubstr("is a directory"));
+    EXPECT_THAT(refusal_of_path("/dev/null"), HasSubstr("is not a regular file"));
+    std::ofstream(folder / "file") << "x";
+    EXPECT_THAT(refusal_of_path(folder / "file" / "liver.vtu"), HasSubstr("liver.vtu: "));
+}
+
+}  // namespace
+}  // namespace incise::io

@@ -1,0 +1,105 @@
+// Damaged files are read or refused, never more: no crash, no other exception, no large allocation.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+#include "io/gmsh_reader.h"
+#include "io/legacy_vtk_reader.h"
+#include "io/vtu_reader.h"
+#include "tests/io/reader_samples.h"
+#include "topology/error.h"
+
+namespace incise::io {
+namespace {
+
+using Reader = MeshFile (*)(const InputFile&, const ReadOptions&);
+constexpr int num_mutations = 1500;  // of each sample
+
+/// One to four bytes changed, inserted, removed or copied; one in eight files is cut short.
+std::string mutated(std::string bytes, std::mt19937& random) {
+    const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
+    if (below(8) == 0) bytes.resize(below(bytes.size()));
+    const auto num_changes = 1 + below(4);
+    for (std::size_t i = 0; i < num_changes && !bytes.empty(); ++i) {
+        const auto position = below(bytes.size());
+        const auto digits = std::string("0123456789-.e \n<\"");
+        switch (below(5)) {
+            case 0:
+                bytes[position] = static_cast<char>(below(256));
+                break;
+            case 1:
+                bytes[position] = digits[below(digits.size())];
+                break;
+            case 2:
+                bytes[position] = static_cast<char>(bytes[position] ^ (1 << below(8)));
+                break;
+            case 3:
+                bytes.erase(position, 1 + below(6));
+                break;
+            case 4:
+                bytes.insert(position, bytes.substr(below(bytes.size()), 1 + below(6)));
+                break;
+        }
+    }
+    return bytes;
+}
+
+/// Whatever was read is a mesh whose parts fit one another.
+void expect_consistent(const topology::MeshData& mesh) {
+    ASSERT_EQ(mesh.offsets.size(), mesh.num_cells() + 1);
+    ASSERT_EQ(mesh.regions.size(), mesh.num_cells());
+    ASSERT_EQ(mesh.offsets.back(), mesh.corners.size());
+    EXPECT_GT(mesh.num_cells(), 0u);
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        ASSERT_EQ(mesh.cell(c).size(),
+                  static_cast<std::size_t>(topology::traits(mesh.kinds[c]).num_corners));
+        for (const auto corner : mesh.cell(c))
+            ASSERT_TRUE(corner >= 0 && static_cast<std::size_t>(corner) < mesh.points.size());
+    }
+}
+
+void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
+    int num_refused = 0;
+    for (const auto& sample : samples) {
+        std::mt19937 random(12345);
+        for (int i = 0; i < num_mutations; ++i) {
+            const InputFile file{sample.name, mutated(sample.bytes, random)};
+            try {
+                expect_consistent(reader(file, {}).mesh);
+            } catch (const InputError& error) {
+                ++num_refused;
+                EXPECT_TRUE(std::string_view(error.what()).starts_with(sample.name + ":"))
+                    << error.what();
+            } catch (const std::exception& error) {
+                FAIL() << sample.name << ", mutation " << i << ": " << error.what();
+            }
+        }
+    }
+    EXPECT_GT(num_refused, 0);
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesVtu) {
+    auto samples = vtu_samples();
+    // Byte order and header size change little: each encoding once, with either by turns. LZMA,
+    // slow to set up, only appended raw.
+    std::erase_if(samples, [](const Sample& sample) {
+        const auto has = [&](const char* part) {
+            return sample.name.find(part) != std::string::npos;
+        };
+        return has("-32-big-") || has("-64-little-") || (has("lzma") && !has("raw"));
+    });
+    ASSERT_EQ(samples.size(), 21u);
+    expect_read_or_refused(read_vtu, samples);
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesLegacyVtk) {
+    expect_read_or_refused(read_legacy_vtk, legacy_vtk_samples());
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesGmsh) { expect_read_or_refused(read_gmsh, gmsh_samples()); }
+
+}  // namespace
+}  // namespace incise::io

@@ -1,0 +1,45 @@
+// One small mesh in every format and encoding that the readers know.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/mesh_reader.h"
+#include "topology/mesh_data.h"
+
+namespace incise::io {
+
+/// A file by what it is called and what is in it.
+struct Sample {
+    std::string name;
+    std::string bytes;
+};
+
+/// One cell of each kind with positive volume, and regions. In the files there are a line and
+/// two triangles besides.
+topology::MeshData sample_mesh();
+
+/// Written by VTK: ascii, inline, appended raw and in base64; all compressors; headers of 32 and
+/// 64 bits; both byte orders.
+std::vector<Sample> vtu_samples();
+/// Written by VTK: ascii and binary, versions 4.2 and 5.1, among all kinds of other attributes.
+std::vector<Sample> legacy_vtk_samples();
+/// Versions 2.2 and 4.1, ascii and binary in both byte orders; tags with gaps, in disorder.
+std::vector<Sample> gmsh_samples();
+std::vector<Sample> all_samples();
+
+/// Reads bytes as a file of this name in a temporary folder.
+MeshFile read_bytes(const std::string& name, std::string_view bytes,
+                    const ReadOptions& options = {});
+/// The message with which they are refused, without the folder; fails the test if they are not.
+std::string refusal(const std::string& name, std::string_view bytes,
+                    const ReadOptions& options = {});
+/// `text` with the first `from` replaced by `to`; fails the test if there is none.
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+
+/// Expects the same points, cells and regions, to the bit.
+void expect_same_mesh(const topology::MeshData& actual, const topology::MeshData& expected);
+
+}  // namespace incise::io

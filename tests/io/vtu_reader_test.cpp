@@ -1,0 +1,233 @@
+// What a VTU file means, and what is refused in one.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/vtu_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/io/reader_samples.h"
+
+namespace incise::io {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+using topology::CellKind;
+
+/// Two tetrahedra in ascii; the arrays are on lines of their own.
+const std::string two_tetrahedra = R"(<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<UnstructuredGrid>
+<Piece NumberOfPoints="5" NumberOfCells="2">
+<Points>
+<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="ascii">
+0 0 0 1 0 0 0 1 0 0 0 1 1 1 1
+</DataArray>
+</Points>
+<CellData>
+<DataArray type="Int32" Name="region" format="ascii">5 -6</DataArray>
+<DataArray type="Float32" Name="tissue" format="ascii">2.0 3e0</DataArray>
+<DataArray type="Float32" Name="stiffness" format="ascii">2.0 0.25</DataArray>
+<DataArray type="Float32" Name="fibre" NumberOfComponents="3" format="ascii">1 0 0 1 0 0</DataArray>
+</CellData>
+<PointData></PointData>
+<Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 1 2 3 4</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray>
+</Cells>
+</Piece>
+</UnstructuredGrid>
+</VTKFile>
+)";
+
+std::string with(std::string_view from, std::string_view to) {
+    return replaced(two_tetrahedra, from, to);
+}
+std::string refusal_with(std::string_view from, std::string_view to) {
+    return refusal("liver.vtu", with(from, to));
+}
+
+TEST(VtuReader, TakesTheNamedArrayAsRegions) {
+    EXPECT_THAT(read_bytes("a.vtu", two_tetrahedra).mesh.regions, ElementsAre(5, -6));
+    EXPECT_THAT(read_bytes("a.vtu", two_tetrahedra, {.region_array = "tissue"}).mesh.regions,
+                ElementsAre(2, 3));
+    const auto absent = read_bytes("a.vtu", two_tetrahedra, {.region_array = "none"});
+    EXPECT_THAT(absent.mesh.regions, ElementsAre(0, 0));
+    EXPECT_THAT(absent.warnings, ElementsAre());
+}
+
+TEST(VtuReader, RefusesRegionsThatAreNoWholeNumbers) {
+    EXPECT_THAT(refusal("liver.vtu", two_tetrahedra, {.region_array = "stiffness"}),
+                StartsWith("liver.vtu: cell 1: region 0.25 is not a whole number"));
+    EXPECT_THAT(refusal("liver.vtu", two_tetrahedra, {.region_array = "fibre"}),
+                StartsWith("liver.vtu:14: array 'fibre': regions need 1 component, "
+                           "this array has 3"));
+    EXPECT_THAT(refusal_with(">5 -6<", ">5 4294967296<"),
+                HasSubstr("cell 1: region 4294967296 is not a whole number of 32 bits"));
+}
+
+TEST(VtuReader, StartsFromTheRestPositionsOfAFrame) {
+    const auto file = read_bytes("frame.vtu", with("<PointData>", R"(<PointData>
+<DataArray type="Float64" Name="rest_position" NumberOfComponents="3" format="ascii">
+0 0 0 2 0 0 0 2 0 0 0 2 2 2 2</DataArray>)"));
+    EXPECT_EQ(file.mesh.points[4], Vec3(2, 2, 2));
+    const auto scalar = read_bytes("frame.vtu", with("<PointData>", R"(<PointData>
+<DataArray type="Float64" Name="rest_position" format="ascii">0 0 0 0 0</DataArray>)"));
+    EXPECT_EQ(scalar.mesh.points[4], Vec3(1, 1, 1));
+}
+
+TEST(VtuReader, PutsPiecesOneBehindTheOther) {
+    const auto begin = two_tetrahedra.find("<Piece");
+    const auto end = two_tetrahedra.find("</UnstructuredGrid>");
+    auto text = two_tetrahedra;
+    text.insert(begin, two_tetrahedra.substr(begin, end - begin));
+    text.insert(begin, R"(<Piece NumberOfPoints="0" NumberOfCells="0"/>)");
+    const auto file = read_bytes("pieces.vtu", text);
+    EXPECT_EQ(file.mesh.points.size(), 10u);
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4, 5, 6, 7, 8, 6, 7, 8, 9));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(5, -6, 5, -6));
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("3 pieces")));
+    EXPECT_THAT(refusal("pieces.vtu", replaced(text, "1 2 3 4<", "1 2 3 5<")),
+                StartsWith("pieces.vtu: piece 1: cell 1: node index 5 is out of range (5 points)"));
+}
+
+TEST(VtuReader, ReadsNumbersWithCommentsSignsAndExtremes) {
+    const auto file = read_bytes(
+        "a.vtu", with("0 0 0 1 0 0", "+0 -0 1e-400 <!-- here --> 1 4.9e-324 <![CDATA[1e308]]>"));
+    const auto& points = file.mesh.points;
+    EXPECT_EQ(points[0], Vec3(0, 0, 0));
+    EXPECT_EQ(points[1], Vec3(1, std::numeric_limits<double>::denorm_min(), 1e308));
+}
+
+TEST(VtuReader, RefusesIndexOutOfRange) {
+    EXPECT_EQ(refusal_with("1 2 3 4<", "1 2 3 927<"),
+              "liver.vtu: cell 1: node index 927 is out of range (5 points)");
+    EXPECT_EQ(refusal_with("1 2 3 4<", "1 2 3 -1<"),
+              "liver.vtu: cell 1: node index -1 is out of range (5 points)");
+}
+
+TEST(VtuReader, RefusesOffsetsThatDescendOrDoNotFit) {
+    EXPECT_THAT(refusal_with(">4 8<", ">8 4<"),
+                StartsWith("liver.vtu: cell 1: ends at offset 4, before it begins at 8"));
+    EXPECT_THAT(refusal_with(">4 8<", ">-4 8<"), HasSubstr("cell 0: ends at offset -4"));
+    EXPECT_THAT(refusal_with(">4 8<", ">4 9<"),
+                StartsWith("liver.vtu:18: array 'connectivity': holds 8 values, expected 9"));
+    EXPECT_THAT(refusal_with(">4 8<", ">4 7<"), HasSubstr("holds more values, expected 7"));
+    EXPECT_THAT(refusal_with(">4 8<", ">3 8<"),
+                StartsWith("liver.vtu: cell 0: a tetrahedron has 4 nodes, this one has 3"));
+    EXPECT_THAT(
+        refusal_with(">4 8<", ">4 9223372036854775807<"),
+        AllOf(HasSubstr("9223372036854775807"), HasSubstr("more than a file of this size")));
+}
+
+TEST(VtuReader, RefusesCountsThatTheArraysDoNotHold) {
+    EXPECT_THAT(refusal_with("NumberOfPoints=\"5\"", "NumberOfPoints=\"2000000000\""),
+                StartsWith("liver.vtu:6: array 'Points': holds 15 values, expected 6000000000"));
+    EXPECT_THAT(refusal_with("NumberOfCells=\"2\"", "NumberOfCells=\"3\""),
+                HasSubstr("array 'types': holds 2 values, expected 3"));
+    EXPECT_THAT(refusal_with("NumberOfCells=\"2\"", "NumberOfCells=\"-2\""),
+                StartsWith("liver.vtu:4: Piece: NumberOfCells should be a whole number from 0 to "
+                           "2147483647, it is '-2'"));
+    EXPECT_THAT(refusal_with("NumberOfCells=\"2\"", ""), HasSubstr("NumberOfCells"));
+}
+
+TEST(VtuReader, RefusesCellsOfUnsupportedKinds) {
+    EXPECT_THAT(refusal_with(">10 10<", ">10 24<"),
+                AllOf(StartsWith("liver.vtu: cell 1: a quadratic tetrahedron (VTK cell type 24)"),
+                      HasSubstr("export linear elements")));
+    EXPECT_THAT(refusal_with(">10 10<", ">42 10<"), HasSubstr("cell 0: a polyhedron"));
+    EXPECT_THAT(refusal_with(">10 10<", ">10 99<"), HasSubstr("cell 1: cell type 99"));
+}
+
+TEST(VtuReader, RefusesSurfacesWithoutVolume) {
+    EXPECT_THAT(refusal_with(">10 10<", ">9 9<"),
+                StartsWith("liver.vtu: holds 2 quadrilaterals but no tetrahedra"));
+    EXPECT_THAT(refusal_with("NumberOfCells=\"2\"", "NumberOfCells=\"0\""),
+                StartsWith("liver.vtu: holds no cells at all"));
+}
+
+TEST(VtuReader, RefusesTextThatIsNoNumber) {
+    EXPECT_THAT(refusal_with("0 0 0 1", "0 0 zero 1"),
+                StartsWith("liver.vtu:6: array 'Points': value 2 is 'zero', not a number"));
+    EXPECT_THAT(refusal_with("0 0 0 1", "0 0 0x1 1"), HasSubstr("'0x1'"));
+    EXPECT_THAT(refusal_with("0 0 0 1", "0 0 1,5 1"), HasSubstr("'1,5'"));
+    EXPECT_THAT(refusal_with("0 0 0 1", "0 0 1e999 1"), HasSubstr("'1e999'"));
+    EXPECT_THAT(refusal_with("0 1 2 3 1", "0 1 2 3.5 1"), HasSubstr("'3.5', not a whole number"));
+}
+
+TEST(VtuReader, RefusesOtherFilesOfVtkAndUnknownEncodings) {
+    EXPECT_THAT(refusal_with("\"UnstructuredGrid\"", "\"PolyData\""),
+                StartsWith("liver.vtu: holds a VTK dataset of type 'PolyData'"));
+    EXPECT_THAT(refusal("liver.vtu", "<html></html>"), HasSubstr("no VTKFile element"));
+    EXPECT_THAT(refusal_with("LittleEndian", "MiddleEndian"), HasSubstr("'MiddleEndian'"));
+    EXPECT_THAT(refusal_with("header_type=\"UInt64\"", "header_type=\"UInt16\""),
+                HasSubstr("'UInt16'; it must be UInt32 or UInt64"));
+    EXPECT_THAT(refusal_with("header_type=\"UInt64\"", "compressor=\"vtkZip\""),
+                HasSubstr("'vtkZip'"));
+    EXPECT_THAT(refusal_with("\"ascii\">\n0 0 0", "\"hex\">\n0 0 0"), HasSubstr("format 'hex'"));
+    EXPECT_THAT(refusal_with("\"Float64\"", "\"Float128\""), HasSubstr("type 'Float128'"));
+    EXPECT_THAT(refusal_with("type=\"Int64\"", "type=\"Float32\""),
+                HasSubstr("array 'connectivity': holds Float32, but must hold whole numbers"));
+    EXPECT_THAT(refusal_with("Name=\"types\"", "Name=\"kinds\""), HasSubstr("no 'types' array"));
+    EXPECT_THAT(refusal_with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""),
+                HasSubstr("points need 3 components, this array has 2"));
+    EXPECT_THAT(refusal_with("</Cells>", ""), AllOf(StartsWith("liver.vtu:2"), HasSubstr("XML")));
+}
+
+/// A file in which the arrays of the cells stay ascii and the points are `data` in base64.
+std::string with_binary_points(const std::string& root_attributes, const std::string& data) {
+    auto text = with("header_type=\"UInt64\"", root_attributes);
+    text = replaced(text, "format=\"ascii\">\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1",
+                    "format=\"binary\">" + data);
+    return text;
+}
+
+TEST(VtuReader, RefusesBinaryDataThatLieAboutTheirSize) {
+    // 15 doubles are 120 bytes. The first four bytes claim other sizes.
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points("", "gAAAAA==")),
+                HasSubstr("array 'Points': holds 128 bytes, expected 120"));
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points("", "eAAAAAAAAA==")),
+                HasSubstr("array 'Points': ends before 120 bytes"));
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points("", "eA!AAA==")),
+                HasSubstr("array 'Points': is not sound base64"));
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points("", "")), HasSubstr("ends before 4 bytes"));
+}
+
+TEST(VtuReader, RefusesBlocksThatLieAboutTheirSize) {
+    const std::string zlib = "compressor=\"vtkZLibDataCompressor\"";
+    // Three words: blocks, size of each, size of the last. 0xFFFFFFFF blocks of 1 byte:
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points(zlib, "/////wEAAAABAAAA")),
+                HasSubstr("has 4294967295 blocks of 1 bytes, the last of 1; they should make 120"));
+    // One block of 120 bytes, packed in 0xFFFFFFFF bytes:
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points(zlib, "AQAAAHgAAAAAAAAA/////w==")),
+                HasSubstr("block 0 has 4294967295 bytes, more than the file"));
+    // One block of 120 bytes, packed in 3 bytes of nonsense:
+    EXPECT_THAT(refusal("liver.vtu", with_binary_points(zlib, "AQAAAHgAAAAAAAAAAwAAAA==AAAA")),
+                HasSubstr("block 0 does not unpack to its 120 bytes"));
+    // 2000000000 points in one block of 3 packed bytes: refused before memory is asked for.
+    auto text = with_binary_points(zlib, "AQAAAACwjvAAAAAAAwAAAA==AAAA");
+    text = replaced(text, "NumberOfPoints=\"5\"", "NumberOfPoints=\"168180394\"");
+    EXPECT_THAT(refusal("liver.vtu", text), HasSubstr("array 'Points': "));
+}
+
+TEST(VtuReader, RefusesAppendedDataOutsideTheFile) {
+    for (const auto& sample : vtu_samples()) {
+        if (!sample.name.starts_with("raw-")) continue;
+        SCOPED_TRACE(sample.name);
+        auto far = sample.bytes;
+        const std::string attribute = "offset=\"";
+        for (auto at = far.find(attribute); at != far.npos; at = far.find(attribute, at + 1))
+            far.replace(at, attribute.size(), attribute + "18446744073709550000");
+        const auto message = refusal("liver.vtu", far);
+        EXPECT_THAT(message, HasSubstr("is outside the appended data"));
+    }
+}
+
+}  // namespace
+}  // namespace incise::io

@@ -1,0 +1,229 @@
+// Static equilibria of whole and cut bodies, reached by the model's own damped motion, against
+// independent finite elements (data/references). A cut that is there from the start and one that
+// comes while the body moves have to end in the same state.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "physics/test_bodies.h"
+#include "topology/mesh_edit.h"
+#include "topology/validate.h"
+
+namespace incise::physics {
+namespace {
+
+using test::CutReference;
+using test::StaticSolution;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+
+constexpr double displacement_tolerance = 1e-7;  // of the largest displacement
+constexpr double reaction_tolerance = 1e-6;      // of the reaction
+constexpr double ramp_time = 0.2;                // s, of the moved points
+constexpr double damping = 60.0;                 // 1/s, near critical for the lowest modes
+
+topology::ChangeSet open_cut_faces(Mesh& mesh, const CutReference& reference) {
+    std::set<std::array<std::int64_t, 3>> wanted;
+    for (auto face : reference.cut_faces) {
+        std::sort(face.begin(), face.end());
+        wanted.insert(face);
+    }
+    topology::MeshEdit edit(mesh);
+    for (const ElementId e : living_elements(mesh))
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            const FaceId face{e, f};
+            if (!mesh.neighbor(face).is_valid()) continue;
+            std::array<std::int64_t, 3> labels{};
+            for (int p = 0; p < 3; ++p)
+                labels[static_cast<std::size_t>(p)] = mesh.label(mesh.face_corner(face, p));
+            std::sort(labels.begin(), labels.end());
+            if (wanted.contains(labels)) edit.open(face);
+        }
+    const auto changes = edit.commit();
+    EXPECT_EQ(changes.faces_opened.size(), wanted.size());
+    return changes;
+}
+
+// The point of the reference that each corner of the mesh came from: `tets` are the corners of the
+// reference's elements, by their labels. Throws if a node is two points.
+std::map<NodeId, std::int64_t> points_of_nodes(
+    const Mesh& mesh, const std::vector<std::array<std::int64_t, 4>>& tets) {
+    std::map<NodeId, std::int64_t> points;
+    for (const ElementId e : living_elements(mesh))
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::int64_t point = tets.at(static_cast<std::size_t>(mesh.label(e)))[k];
+            const auto [place, is_new] = points.try_emplace(mesh.corners(e)[k], point);
+            if (place->second != point) throw std::runtime_error("a node stands for two points");
+        }
+    return points;
+}
+
+std::vector<std::array<std::int64_t, 4>> uncut_tets(const CutReference& reference) {
+    std::vector<std::array<std::int64_t, 4>> tets;
+    for (std::size_t c = 0; c < reference.mesh.num_cells(); ++c) {
+        const auto cell = reference.mesh.cell(c);
+        tets.push_back({cell[0], cell[1], cell[2], cell[3]});
+    }
+    return tets;
+}
+
+Support support(const Mesh& mesh, const CutReference& reference, const std::string& name,
+                const std::vector<std::int64_t>& points, const Vec3& displacement) {
+    const std::set<std::int64_t> selected(points.begin(), points.end());
+    std::vector<NodeId> nodes;
+    for (const auto& [node, point] : points_of_nodes(mesh, uncut_tets(reference)))
+        if (selected.contains(point)) nodes.push_back(node);
+    Support s;
+    s.name = name;
+    s.nodes = NodeSet(nodes);
+    s.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {ramp_time, displacement}});
+    return s;
+}
+
+/// A body of the reference on its way to equilibrium.
+class Relaxation {
+  public:
+    Relaxation(const Mesh& mesh, const CutReference& reference, const Law& law)
+        : model_(mesh, table_of_one_law(law), surroundings(mesh, reference)),
+          dt_(0.85 * model_.stable_step()) {}
+
+    void run_until(double time) {
+        while (time_ < time) step(model_, time_, dt_);
+    }
+
+    /// Goes on until no free node feels a net force of more than 1e-11 of the reaction.
+    /// Damping lets motion die only with the net force, so that one tells of both.
+    void run_to_equilibrium() {
+        run_until(ramp_time + 2.0 * dt_);
+        for (int round = 0; round < 400; ++round) {
+            for (int i = 0; i < 100; ++i) step(model_, time_, dt_);
+            if (net_force_in_next_step() < 1e-11 * model_.reaction(1).norm()) return;
+        }
+        FAIL() << "no equilibrium by " << time_ << " s";
+    }
+
+    void apply(const topology::ChangeSet& changes) {
+        model_.apply(changes);
+        dt_ = 0.85 * model_.stable_step();
+    }
+
+    const Model& model() const { return model_; }
+
+  private:
+    static Surroundings surroundings(const Mesh& mesh, const CutReference& reference) {
+        Surroundings s;
+        s.damping = damping;
+        s.supports.push_back(support(mesh, reference, "fixed", reference.fixed, Vec3::Zero()));
+        s.supports.push_back(
+            support(mesh, reference, "moved", reference.moved, reference.displacement));
+        return s;
+    }
+
+    // What accelerates a node and what damping takes from it; supported nodes stand still.
+    double net_force_in_next_step() {
+        const BodyState before = state_of(model_);
+        step(model_, time_, dt_);
+        double largest = 0.0;
+        for (std::size_t n = 0; n < before.velocities.size(); ++n) {
+            const Vec3& v = model_.velocities()[n];
+            const Vec3 force =
+                model_.masses()[n] * ((v - before.velocities[n]) / dt_ + damping * v);
+            largest = std::max(largest, force.norm());
+        }
+        return largest;
+    }
+
+    Model model_;
+    double time_ = 0.0, dt_;
+};
+
+void expect_solution(const Model& model, const CutReference& reference,
+                     const StaticSolution& solution) {
+    const Mesh& mesh = model.mesh();
+    const auto points =
+        points_of_nodes(mesh, solution.is_cut ? reference.cut_tets : uncut_tets(reference));
+    ASSERT_EQ(points.size(), solution.displacements.size());
+    double largest = 0.0, largest_error = 0.0;
+    for (const auto& [node, point] : points) {
+        const Vec3& u = solution.displacements[static_cast<std::size_t>(point)];
+        const Vec3 ours = model.positions()[node.index()] - mesh.rest_position(node);
+        largest = std::max(largest, u.norm());
+        largest_error = std::max(largest_error, (ours - u).norm());
+    }
+    EXPECT_LE(largest_error, displacement_tolerance * largest);
+
+    const Vec3& reaction = model.reaction(1);
+    for (int c = 0; c < 3; ++c) {
+        if (std::isnan(solution.reaction[c])) continue;
+        EXPECT_NEAR(reaction[c], solution.reaction[c], reaction_tolerance * reaction.norm());
+    }
+    if (solution.deformed_volume) {
+        double volume = 0.0;
+        for (const ElementId e : living_elements(mesh)) {
+            const ElementResult result = model.element_result(e);
+            volume += result.volume * result.volume_ratio;
+        }
+        EXPECT_NEAR(volume, *solution.deformed_volume, 1e-8 * volume);
+    }
+}
+
+/// Calls visit(mesh, law, solution) on the whole body, for each of its solutions with a known law.
+template <class Visit>
+void for_each_solution(const CutReference& reference, bool is_cut, Visit visit) {
+    std::size_t num_solutions = 0;
+    for (const StaticSolution& solution : reference.solutions) {
+        const auto law = law_of(solution.law);
+        if (!law || solution.is_cut != is_cut) continue;
+        SCOPED_TRACE(reference.name + ", " + solution.law.name);
+        Mesh mesh = Mesh::build(reference.mesh).mesh;
+        visit(mesh, *law, solution);
+        ++num_solutions;
+    }
+    EXPECT_GE(num_solutions, 2u);
+}
+
+void check_uncut(const CutReference& reference) {
+    for_each_solution(reference, false, [&](Mesh& mesh, const Law& law, const auto& solution) {
+        Relaxation relaxation(mesh, reference, law);
+        relaxation.run_to_equilibrium();
+        expect_solution(relaxation.model(), reference, solution);
+    });
+}
+
+void check_cut_from_the_start(const CutReference& reference) {
+    for_each_solution(reference, true, [&](Mesh& mesh, const Law& law, const auto& solution) {
+        open_cut_faces(mesh, reference);
+        Relaxation relaxation(mesh, reference, law);
+        relaxation.run_to_equilibrium();
+        expect_solution(relaxation.model(), reference, solution);
+    });
+}
+
+void check_cut_during_the_run(const CutReference& reference) {
+    for_each_solution(reference, true, [&](Mesh& mesh, const Law& law, const auto& solution) {
+        Relaxation relaxation(mesh, reference, law);
+        relaxation.run_until(1.1 * ramp_time);  // loaded, and still in motion
+        relaxation.apply(open_cut_faces(mesh, reference));
+        EXPECT_EQ(topology::validate(mesh), std::vector<std::string>());
+        relaxation.run_to_equilibrium();
+        expect_solution(relaxation.model(), reference, solution);
+    });
+}
+
+TEST(StaticReference, OrganUncut) { check_uncut(test::organ_reference()); }
+TEST(StaticReference, OrganCutFromTheStart) { check_cut_from_the_start(test::organ_reference()); }
+TEST(StaticReference, OrganCutDuringTheRun) { check_cut_during_the_run(test::organ_reference()); }
+TEST(StaticReference, NotchCutFromTheStart) {
+    for (const auto& reference : test::notch_references()) check_cut_from_the_start(reference);
+}
+TEST(StaticReference, NotchCutDuringTheRun) {
+    for (const auto& reference : test::notch_references()) check_cut_during_the_run(reference);
+}
+
+}  // namespace
+}  // namespace incise::physics

@@ -1,0 +1,101 @@
+// Bodies for the tests of this folder: materials by region, random states, runs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/model.h"
+#include "physics/test_materials.h"
+#include "topology/mesh_data.h"
+
+namespace incise::physics {
+
+/// Every law of test_laws() and springs, each with a density of its own, in as many regions.
+inline MaterialTable table_of_all_materials() {
+    MaterialTable table;
+    double density = 900.0;
+    const auto add = [&](const auto& method) {
+        table.of_region[static_cast<int>(table.materials.size())] = table.materials.size();
+        table.materials.push_back({density, method});
+        density += 37.0;
+    };
+    for (const NamedLaw& named : test_laws()) add(HyperElasticLinks{named.law});
+    add(MassSprings{1e4});
+    return table;
+}
+
+/// The same material everywhere.
+template <class Method>
+MaterialTable table_of_one_material(const Method& method, double density = 1000.0) {
+    MaterialTable table;
+    table.materials.push_back({density, method});
+    table.of_region[0] = 0;
+    return table;
+}
+inline MaterialTable table_of_one_law(const Law& law, double density = 1000.0) {
+    return table_of_one_material(HyperElasticLinks{law}, density);
+}
+
+/// Gives the cells the regions 0 to num_regions - 1 in turn, so that every node sees several.
+inline topology::MeshData with_regions(topology::MeshData data, std::size_t num_regions) {
+    for (std::size_t c = 0; c < data.num_cells(); ++c)
+        data.regions[c] = static_cast<int>(c % num_regions);
+    return data;
+}
+
+struct BodyState {
+    std::vector<Vec3> positions, velocities;
+    bool operator==(const BodyState&) const = default;
+};
+
+inline BodyState state_of(const Model& model) {
+    return {{model.positions().begin(), model.positions().end()},
+            {model.velocities().begin(), model.velocities().end()}};
+}
+
+inline BodyState rest_state(const topology::Mesh& mesh) {
+    return {{mesh.rest_positions().begin(), mesh.rest_positions().end()},
+            std::vector<Vec3>(mesh.node_capacity(), Vec3::Zero())};
+}
+
+/// A stretched and sheared body whose nodes are shaken besides, moving at random.
+/// @param shake in metres
+inline BodyState random_state(const topology::Mesh& mesh, test::Random& random, double shake,
+                              double speed) {
+    BodyState state = rest_state(mesh);
+    Mat3 F = Mat3::Identity();
+    for (int c = 0; c < 3; ++c) F.col(c) += random.vector(0.1);
+    for (Vec3& x : state.positions) x = F * x + random.vector(shake);
+    for (Vec3& v : state.velocities) v = random.vector(speed);
+    return state;
+}
+
+inline void set_state(Model& model, const BodyState& state, double time = 0.0) {
+    model.set_state(state.positions, state.velocities, time);
+}
+
+inline void step(Model& model, double& time, double dt) {
+    model.compute_forces(time);
+    model.integrate(time, dt);
+    time += dt;
+}
+
+/// Living nodes whose rest position is where `is_inside` says.
+template <class Predicate>
+std::vector<topology::NodeId> nodes_where(const topology::Mesh& mesh, Predicate is_inside) {
+    std::vector<topology::NodeId> nodes;
+    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
+        if (const topology::NodeId n(i); mesh.is_alive(n) && is_inside(mesh.rest_position(n)))
+            nodes.push_back(n);
+    return nodes;
+}
+
+inline std::vector<topology::ElementId> living_elements(const topology::Mesh& mesh) {
+    std::vector<topology::ElementId> elements;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i); mesh.is_alive(e)) elements.push_back(e);
+    return elements;
+}
+
+}  // namespace incise::physics

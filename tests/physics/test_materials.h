@@ -1,0 +1,93 @@
+// The laws that the tests of this folder run over, and random tetrahedra to run them on.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "physics/heml_kernel.h"
+#include "physics/mass_spring_kernel.h"
+#include "physics/material.h"
+#include "support/mesh_families.h"
+#include "support/reference_data.h"
+
+namespace incise::physics {
+
+struct NamedLaw {
+    std::string name;
+    Law law;
+};
+
+/// Every law at several parameters, shear moduli of some kPa.
+inline std::vector<NamedLaw> test_laws() {
+    return {
+        {"Saint Venant-Kirchhoff, nu 0.3", SaintVenantKirchhoff{5769.0, 3846.0}},
+        {"Saint Venant-Kirchhoff, nu 0", SaintVenantKirchhoff{0.0, 5000.0}},
+        {"Saint Venant-Kirchhoff, nu 0.49", SaintVenantKirchhoff{1.6e5, 3356.0}},
+        {"neo-Hookean, nu 0.3", NeoHookean{1923.0, 5769.0}},
+        {"neo-Hookean, nu 0", NeoHookean{2500.0, 0.0}},
+        {"neo-Hookean, nu 0.49", NeoHookean{1678.0, 1.6e5}},
+        {"Mooney-Rivlin", MooneyRivlin{1346.0, 577.0, 3462.0}},
+        {"Mooney-Rivlin without C2", MooneyRivlin{1923.0, 0.0, 5769.0}},
+        {"Mooney-Rivlin without lambda", MooneyRivlin{500.0, 1400.0, 0.0}},
+    };
+}
+
+/// The law of a reference file; none if the program has not that law.
+inline std::optional<Law> law_of(const test::ReferenceLaw& reference) {
+    const auto at = [&](const char* key) { return reference.parameters.at(key); };
+    if (reference.name == "stvk") return SaintVenantKirchhoff{at("lam"), at("mu")};
+    if (reference.name == "nh26") return NeoHookean{0.5 * at("mu"), at("lam")};
+    if (reference.name == "mr_ln") return MooneyRivlin{at("C1"), at("C2"), at("lam")};
+    return std::nullopt;
+}
+
+/// Calls visit(name, kernel) for HEML with each law.
+template <class Visit>
+void for_each_heml_kernel(Visit visit, double inversion_threshold = 0.4) {
+    for (const NamedLaw& named : test_laws())
+        std::visit(
+            [&](const auto& law) {
+                visit(named.name,
+                      HemlKernel<std::decay_t<decltype(law)>>{law, inversion_threshold});
+            },
+            named.law);
+}
+
+/// Calls visit(name, kernel) for each law of HEML and for springs.
+template <class Visit>
+void for_each_kernel(Visit visit) {
+    for_each_heml_kernel(visit);
+    visit(std::string("springs"), MassSpringKernel{1e4});
+}
+
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// A tetrahedron of side about `size`, near the origin, far from flat.
+inline Tetrahedron random_tetrahedron(test::Random& random, double size = 1.0) {
+    Tetrahedron X{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 0.87, 0), Vec3(0.5, 0.29, 0.82)};
+    const Vec3 shift = random.vector(1.0);
+    for (Vec3& x : X) x = size * (x + shift + random.vector(0.2));
+    return X;
+}
+
+inline Mat3 random_rotation(test::Random& random) {
+    Eigen::Quaterniond q;
+    q.coeffs() << random.vector(1.0), random.uniform(0.1, 1.0);
+    return q.normalized().toRotationMatrix();
+}
+
+/// Turned stretches, given along random axes.
+inline Mat3 random_deformation(test::Random& random, const Vec3& stretches) {
+    const Mat3 Q = random_rotation(random);
+    return random_rotation(random) * Q * stretches.asDiagonal() * Q.transpose();
+}
+
+inline Tetrahedron deformed(const Tetrahedron& X, const Mat3& F) {
+    return {F * X[0], F * X[1], F * X[2], F * X[3]};
+}
+
+}  // namespace incise::physics

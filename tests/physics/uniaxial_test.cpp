@@ -1,0 +1,144 @@
+// Homogeneous bodies against the tables of data/references/uniaxial.json.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "physics/test_bodies.h"
+#include "topology/box_mesh.h"
+
+namespace incise::physics {
+namespace {
+
+constexpr double side = 0.1;          // m
+constexpr double tolerance = 1e-9;    // relative; the tables are good to 1e-13
+
+class UniaxialCube {
+  public:
+    explicit UniaxialCube(const Law& law)
+        : mesh_(topology::Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron,
+                                                         Vec3::Zero(), Vec3::Constant(side),
+                                                         {3, 3, 3}))
+                    .mesh),
+          model_(mesh_, table_of_one_law(law)) {}
+
+    void stretch(double axial, double lateral) {
+        BodyState state = rest_state(mesh_);
+        for (Vec3& x : state.positions) x = x.cwiseProduct(Vec3(lateral, lateral, axial));
+        set_state(model_, state);
+    }
+
+    /// Sum of the elastic forces on the face where component c of the rest position is `side`.
+    Vec3 face_force(int c) const {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n)
+            if (is_at(mesh_.rest_positions()[n][c], side)) sum += model_.elastic_forces()[n];
+        return sum;
+    }
+
+    /// Largest force on a node, of its components along which it may move freely.
+    double largest_free_force() const {
+        double largest = 0.0;
+        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n) {
+            Vec3 f = model_.elastic_forces()[n];
+            const double z = mesh_.rest_positions()[n].z();
+            if (is_at(z, 0.0) || is_at(z, side)) f.z() = 0.0;
+            largest = std::max(largest, f.norm());
+        }
+        return largest;
+    }
+
+    /// The lateral stretch at which the sides are free of force, by bisection.
+    double free_lateral_stretch(double axial) {
+        double low = 0.3, high = 2.0;  // at the low end the sides push out, at the high end in
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (low + high);
+            stretch(axial, middle);
+            (face_force(0).x() > 0.0 ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+    }
+
+    const Model& model() const { return model_; }
+
+  private:
+    static bool is_at(double x, double plane) { return std::abs(x - plane) < 1e-9 * side; }
+
+    topology::Mesh mesh_;
+    Model model_;
+};
+
+template <class Visit>
+void for_each_reference(Visit visit) {
+    std::size_t num_laws = 0;
+    for (const auto& reference : test::uniaxial_references()) {
+        const auto law = law_of(reference.law);
+        if (!law) continue;
+        SCOPED_TRACE(reference.law.name);
+        ++num_laws;
+        UniaxialCube cube(*law);
+        for (const auto& row : reference.rows) {
+            SCOPED_TRACE(row.stretch);
+            visit(reference, row, cube);
+        }
+    }
+    EXPECT_EQ(num_laws, std::variant_size_v<Law>) << "a law without a table";
+}
+
+TEST(UniaxialReference, ForcesAtTheLateralStretchOfTheTable) {
+    for_each_reference([](const auto& reference, const auto& row, UniaxialCube& cube) {
+        cube.stretch(row.stretch, row.lateral_stretch);
+        const double scale = reference.young * side * side;
+        EXPECT_LE(cube.largest_free_force(), tolerance * scale);
+        // The body pulls its ends together with the force that holds them apart.
+        EXPECT_NEAR(-cube.face_force(2).z(), row.first_piola_kirchhoff * side * side,
+                    tolerance * std::abs(row.first_piola_kirchhoff) * side * side + 1e-13 * scale);
+    });
+}
+
+TEST(UniaxialReference, LateralStretchIsFoundFromTheForces) {
+    for_each_reference([](const auto&, const auto& row, UniaxialCube& cube) {
+        EXPECT_NEAR(cube.free_lateral_stretch(row.stretch), row.lateral_stretch,
+                    tolerance * row.lateral_stretch);
+    });
+}
+
+TEST(UniaxialReference, StressAndVolumeOfTheElements) {
+    for_each_reference([](const auto& reference, const auto& row, UniaxialCube& cube) {
+        cube.stretch(row.stretch, row.lateral_stretch);
+        const double axial = row.first_piola_kirchhoff * row.stretch / row.volume_ratio;
+        const Mat3 expected = Vec3(0.0, 0.0, axial).asDiagonal();
+        for (const auto e : living_elements(cube.model().mesh())) {
+            const ElementResult result = cube.model().element_result(e);
+            EXPECT_NEAR(result.volume_ratio, row.volume_ratio, tolerance * row.volume_ratio);
+            EXPECT_LE((result.cauchy_stress - expected).norm(), tolerance * reference.young);
+        }
+        EXPECT_NEAR(cube.model().min_volume_ratio(), row.volume_ratio,
+                    tolerance * row.volume_ratio);
+    });
+}
+
+// The work of the end force from rest is the elastic energy: Simpson's rule over the table's own
+// stretches, whose force is not known between them, is good to the fourth power of their distance.
+TEST(UniaxialReference, EnergyIsTheWorkOfTheEndForce) {
+    for (const auto& reference : test::uniaxial_references()) {
+        const auto law = law_of(reference.law);
+        if (!law) continue;
+        SCOPED_TRACE(reference.law.name);
+        UniaxialCube cube(*law);
+        const auto energy = [&](const test::UniaxialRow& row) {
+            cube.stretch(row.stretch, row.lateral_stretch);
+            return cube.model().totals().elastic_energy / (side * side * side);
+        };
+        const auto& rows = reference.rows;
+        for (std::size_t i = 0; i + 2 < rows.size(); i += 2) {
+            const double h = rows[i + 1].stretch - rows[i].stretch;
+            const double work =
+                h / 3.0 *
+                (rows[i].first_piola_kirchhoff + 4.0 * rows[i + 1].first_piola_kirchhoff +
+                 rows[i + 2].first_piola_kirchhoff);
+            EXPECT_NEAR(energy(rows[i + 2]) - energy(rows[i]), work, 1e-5 * reference.young);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::physics

@@ -1,0 +1,304 @@
+// Bad scenarios: every problem is found, at its place, in words that help.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "scenario_file.h"
+
+namespace incise::sim {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+/// The one error of the minimal scenario with `text` added: `text` begins on line 9.
+std::string error_of(const std::string& text) {
+    const auto errors = ScenarioFile(minimal + text).errors();
+    std::string all;
+    for (const auto& error : errors) all += (all.empty() ? "" : " | ") + error;
+    return all;
+}
+
+/// The same with one line for the material.
+std::string material_error(const std::string& lines) {
+    const auto errors = ScenarioFile("[[material]]\n" + lines +
+                                     "\n[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\n"
+                                     "[dynamics]\nend_time = 1\n")
+                            .errors();
+    std::string all;
+    for (const auto& error : errors) all += (all.empty() ? "" : " | ") + error;
+    return all;
+}
+
+TEST(ScenarioErrors, AreAllFoundAtOnceInTheOrderOfTheFile) {
+    const ScenarioFile file(R"(titel = "x"
+[mesh]
+file = "kidney.vtu"
+scale = -1
+[[material]]
+density = "heavy"
+young = 1600
+poisson = 0.6
+[dynamics]
+gravity = [0, 0]
+safety = 1.5
+seed = 1.5
+[[constraint]]
+where = { nodes = [-1], spere = { center = [0, 0, 0], radius = 1 } }
+fix = "xxy"
+)");
+    EXPECT_EQ(
+        file.errors(),
+        (Lines{"scene.toml:1:1: key 'titel': is not known; did you mean 'title'? Known here: "
+               "title, mesh, material, dynamics, constraint, load, tool, output, expect",
+               "scene.toml:3:8: key 'mesh.file': there is no file kidney.vtu (paths are relative "
+               "to the scenario's folder)",
+               "scene.toml:4:9: key 'mesh.scale': -1 is not allowed: must be above 0",
+               "scene.toml:6:11: key 'material[0].density': must be a number, but is the text "
+               "\"heavy\"",
+               "scene.toml:8:11: key 'material[0].poisson': 0.6 is not allowed: must be above -1 "
+               "and below 0.5",
+               "scene.toml:9:1: key 'dynamics.end_time': is missing: simulated seconds, as in "
+               "end_time = 1.0",
+               "scene.toml:10:11: key 'dynamics.gravity': must be an array of 3 numbers, as in "
+               "[0, 0, 1], but is an array of 2",
+               "scene.toml:11:10: key 'dynamics.safety': 1.5 is not allowed: must be above 0 and "
+               "at most 1",
+               "scene.toml:12:8: key 'dynamics.seed': must be a whole number, but is the number "
+               "1.5",
+               "scene.toml:14:20: key 'constraint[0].where.nodes[0]': -1 is not allowed: must be "
+               "at least 0",
+               "scene.toml:14:25: key 'constraint[0].where.spere': is not known; did you mean "
+               "'sphere'? Known here: box, sphere, half_space, nodes, region, surface",
+               "scene.toml:15:7: key 'constraint[0].fix': 'xxy' is not allowed: any of the "
+               "letters x, y and z, each at most once, as in fix = \"xyz\""}));
+}
+
+TEST(ScenarioErrors, OfSyntaxHaveLineAndColumn) {
+    const auto errors = ScenarioFile("[mesh]\nfile = \"liver.vtu\n").errors();
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].substr(0, 13), "scene.toml:2:");
+}
+
+TEST(ScenarioErrors, OfAnEmptyFileNameWhatIsMissing) {
+    const auto errors = ScenarioFile("").errors();
+    ASSERT_EQ(errors.size(), 3u);
+    EXPECT_EQ(errors[0],
+              "scene.toml: key 'mesh': is missing: add a section [mesh] with file = "
+              "\"...\" or box = { ... }");
+    EXPECT_EQ(errors[1],
+              "scene.toml: key 'material': is missing: add a section [[material]] with "
+              "density, young and poisson");
+    EXPECT_EQ(errors[2],
+              "scene.toml: key 'dynamics': is missing: add a section [dynamics] with an end_time");
+}
+
+TEST(ScenarioErrors, OfTheFileItself) {
+    const support::TemporaryFolder folder;
+    EXPECT_EQ(read_scenario(folder / "none.toml").errors,
+              Lines{(folder / "none.toml").string() + ": there is no such file"});
+    EXPECT_EQ(read_scenario(folder.path()).errors,
+              Lines{folder.path().string() + ": is a folder, not a scenario file"});
+}
+
+TEST(ScenarioErrors, OfTheMesh) {
+    const auto error = [](const std::string& mesh) {
+        return ScenarioFile("[mesh]\n" + mesh + "\n" + minimal_rest).errors();
+    };
+    EXPECT_EQ(error("scale = 2"),
+              Lines{"scene.toml:1:1: key 'mesh': must have exactly one of file, box"});
+    EXPECT_EQ(error("file = \"liver.vtu\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }"),
+              Lines{"scene.toml:1:1: key 'mesh': has file, box, but only one of file, box is "
+                    "allowed"});
+    EXPECT_EQ(error("file = \".\""),
+              Lines{"scene.toml:2:8: key 'mesh.file': . is a folder, not a mesh file"});
+    EXPECT_EQ(error("box = { size = [1, 0, 1], cells = [1, 1.5, 1], element = \"quad\" }"),
+              (Lines{"scene.toml:2:16: key 'mesh.box.size': is not allowed: all three lengths must "
+                     "be above 0",
+                     "scene.toml:2:35: key 'mesh.box.cells': is not allowed: must be three whole "
+                     "numbers, each at least 1",
+                     "scene.toml:2:58: key 'mesh.box.element': 'quad': is not known; did you mean "
+                     "'tet'? Known here: tet, hex"}));
+    EXPECT_EQ(error("box = { size = [1, 1, 1], cells = [1000, 1000, 1000] }"),
+              Lines{"scene.toml:2:35: key 'mesh.box.cells': makes 6e+09 elements, more than the "
+                    "1e+08 allowed: lower the numbers"});
+}
+
+TEST(ScenarioErrors, OfNumbersThatAreNotFinite) {
+    EXPECT_EQ(error_of("damping = inf\n"),
+              "scene.toml:9:11: key 'dynamics.damping': inf is not allowed: must be at least 0");
+    EXPECT_EQ(error_of("gravity = [0, nan, 0]\n"),
+              "scene.toml:9:15: key 'dynamics.gravity[1]': nan is not allowed: must be a finite "
+              "number");
+}
+
+TEST(ScenarioErrors, OfMaterials) {
+    EXPECT_EQ(material_error("density = 1\nyoung = 1"),
+              "scene.toml:1:1: key 'material[0]': neo-hookean takes young + poisson, or "
+              "shear_modulus + bulk_modulus, or lame_lambda + lame_mu, or c1 + bulk_modulus, or "
+              "c1 + lame_lambda; given: young");
+    EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nlaw = \"neohook\""),
+              "scene.toml:5:7: key 'material[0].law': 'neohook': is not known; did you mean "
+              "'neo-hookean'? Known here: saint-venant-kirchhoff, neo-hookean, mooney-rivlin");
+    EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nmethod = \"mass-spring\""),
+              "scene.toml:4:11: key 'material[0].poisson': is not used by the mass-spring method, "
+              "whose springs take young and density only and fix Poisson's ratio near 1/4: leave "
+              "it out");
+    EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nregions = [1, 2]\n"
+                             "[[material]]\nyoung = 1\npoisson = 0.3\ndensity = 1\nregions = 2\n"
+                             "[[material]]\nyoung = 1\npoisson = 0.3\ndensity = 1\n"
+                             "[[material]]\nyoung = 1\npoisson = 0.3\ndensity = 1\n"),
+              "scene.toml:10:11: key 'material[1].regions': region 2 belongs to another material "
+              "already | scene.toml:15:1: key 'material[3]': has no regions, like another material "
+              "before it: only one material can take all that is left");
+}
+
+TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
+    const std::string good = "density = 1\nyoung = 1\npoisson = 0.3\n";
+    EXPECT_EQ(material_error(good + "method = \"hybmss\""),
+              "scene.toml:5:10: key 'material[0].method': 'hybmss': this version does not support "
+              "it yet; supported: heml, mass-spring");
+    for (const auto& line : {"law = \"ogden\"", "law = \"fung-demiray\"", "preset = \"liver\"",
+                             "prony = [{ alpha = 0.3, tau = 0.5 }]", "face_diagonals = true",
+                             "stiffness_ratio = 1", "gamma = 1", "terms = []"})
+        EXPECT_NE(material_error(good + line).find("does not support it yet; supported: "),
+                  std::string::npos)
+            << line;
+    EXPECT_NE(error_of("[output]\ncheckpoint_interval = 1\n").find("not support it yet"),
+              std::string::npos);
+    EXPECT_NE(error_of("[[tool]]\nkind = \"cut\"\n").find("'cut': this version does not support"),
+              std::string::npos);
+    const std::string blade =
+        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
+        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
+    EXPECT_EQ(error_of(blade + "mode = \"split\"\n"),
+              "scene.toml:13:8: key 'tool[0].mode': 'split': this version does not support it yet; "
+              "supported: separate");
+    EXPECT_EQ(error_of(blade),
+              "scene.toml:9:1: key 'tool[0].mode': is missing: this version supports mode = "
+              "\"separate\" only, which opens the faces between elements that the edge sweeps "
+              "across");
+}
+
+TEST(ScenarioErrors, OfConstraints) {
+    const auto error = [](const std::string& lines) {
+        return error_of("[[constraint]]\nwhere = { surface = true }\n" + lines);
+    };
+    EXPECT_EQ(error(""),
+              "scene.toml:9:1: key 'constraint[0]': holds nothing: give fix = \"xyz\", "
+              "or move, or rotate");
+    EXPECT_EQ(error("fix = \"x\"\nmove = [{ time = 0, by = [0, 0, 0] }]\n"),
+              "scene.toml:11:7: key 'constraint[0].fix': cannot go with move or rotate, which "
+              "prescribe all three axes: leave one out");
+    EXPECT_EQ(error("rotate = [{ time = 0, angle = 0 }]\n"),
+              "scene.toml:9:1: key 'constraint[0].about': is missing: the axis of rotate, as in "
+              "about = { point = [0, 0, 0], axis = [0, 0, 1] }");
+    EXPECT_EQ(error("fix = \"x\"\nabout = { point = [0, 0, 0], axis = [0, 0, 0] }\n"),
+              "scene.toml:12:9: key 'constraint[0].about': belongs to rotate, which is not there | "
+              "scene.toml:12:37: key 'constraint[0].about.axis': is not allowed: a direction must "
+              "have a length above 0");
+    EXPECT_EQ(error("move = [{ time = 0.5, by = [0, 0, 0] }, { time = 0.5, by = [0, 0, 1] }]\n"),
+              "scene.toml:11:50: key 'constraint[0].move[1].time': 0.5 is not allowed: must be "
+              "above 0.5, the time before it");
+    EXPECT_EQ(error("move = []\n"),
+              "scene.toml:11:8: key 'constraint[0].move': is empty: give at least one time");
+    EXPECT_EQ(error("fix = \"\"\n"),
+              "scene.toml:11:7: key 'constraint[0].fix': '' is not allowed: any of the letters x, "
+              "y and z, each at most once, as in fix = \"xyz\"");
+    EXPECT_EQ(error("fix = \"x\"\nname = \"left side\"\n"),
+              "scene.toml:12:8: key 'constraint[0].name': 'left side' is not allowed: use letters, "
+              "digits, _ and -");
+    EXPECT_EQ(error("fix = \"x\"\nname = \"a\"\n[[constraint]]\nname = \"a\"\nfix = \"y\"\n"
+                    "where = {}\n"),
+              "scene.toml:14:8: key 'constraint[1].name': 'a' is taken already: names must differ "
+              "| scene.toml:16:9: key 'constraint[1].where': is empty: give at least one of box, "
+              "sphere, half_space, nodes, region, surface");
+}
+
+TEST(ScenarioErrors, OfLoads) {
+    EXPECT_EQ(error_of("[[load]]\n"),
+              "scene.toml:9:1: key 'load[0]': must have exactly one of "
+              "nodal_force, traction, pressure, body_force");
+    EXPECT_EQ(error_of("[[load]]\npressure = 1\ntraction = [0, 0, 1]\n"),
+              "scene.toml:9:1: key 'load[0]': has traction, pressure, but only one of "
+              "nodal_force, traction, pressure, body_force is allowed");
+    EXPECT_EQ(error_of("[[load]]\npressure = [0, 0, 1]\n"),
+              "scene.toml:10:12: key 'load[0].pressure': must be a number, but is an array of 3");
+    EXPECT_EQ(error_of("[[load]]\npressure = 1\nfactor = [{ time = -1, value = 0 }]\n"),
+              "scene.toml:11:20: key 'load[0].factor[0].time': -1 is not allowed: must be at least "
+              "0");
+    EXPECT_EQ(error_of("[load]\npressure = 1\n"),
+              "scene.toml:9:1: key 'load': must be an array of tables, as in [[load]], but is a "
+              "table");
+}
+
+TEST(ScenarioErrors, OfTools) {
+    EXPECT_EQ(error_of("[[tool]]\nedge = []\n"),
+              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade");
+    const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
+              "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
+              "scene.toml:12:9: key 'tool[0].shape': must have exactly one of sphere, capsule, "
+              "box");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nshape = { sphere = { radius = 0 } }\n" + path),
+              "scene.toml:11:31: key 'tool[0].shape.sphere.radius': 0 is not allowed: must be "
+              "above 0");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"blade\"\nmode = \"separate\"\n"
+                       "edge = [[0, 0, 1], [0, 0, 1]]\n" +
+                       path),
+              "scene.toml:12:8: key 'tool[0].edge': points 0 and 1 (from 0) are the same: leave "
+              "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a blade "
+              "cuts where it moves");
+}
+
+TEST(ScenarioErrors, OfOutputAndExpect) {
+    EXPECT_EQ(error_of("[output]\nfields = [\"mass\", \"strain\", \"mass\"]\n"
+                       "compression = \"zip\"\n"),
+              "scene.toml:10:19: key 'output.fields[1]': 'strain': is not known; did you mean "
+              "'stress'? Known here: displacement, velocity, mass, force, stress, von_mises, J, "
+              "energy_density | scene.toml:10:29: key 'output.fields[2]': 'mass' is there twice | "
+              "scene.toml:11:15: key 'output.compression': 'zip': is not known; did you mean "
+              "'zlib'? Known here: none, lz4, zlib, lzma");
+    EXPECT_EQ(error_of("[expect]\nmass = { max = 1, mn = 0 }\nnodes = {}\n"
+                       "volume = { min = 2, max = 1 }\nJ = 3\n"),
+              "scene.toml:10:19: key 'expect.mass.mn': is not known; did you mean 'min'? Known "
+              "here: min, max | scene.toml:11:9: key 'expect.nodes': must have min, max or both, "
+              "as in { max = 1e-9 } | scene.toml:12:10: key 'expect.volume': min 2 is above max 1 "
+              "| scene.toml:13:5: key 'expect.J': must be a table, but is the number 3");
+}
+
+TEST(ScenarioErrors, OfOverridesQuoteThem) {
+    const ScenarioFile file(minimal);
+    const auto error = [&](const std::string& text) {
+        const auto errors = file.errors({"title=fine", text});
+        return errors.size() == 1 ? errors[0] : std::to_string(errors.size()) + " errors";
+    };
+    EXPECT_EQ(error("dynamics.end_time=-1"),
+              "--set dynamics.end_time=-1: key 'dynamics.end_time': -1 is not allowed: must be "
+              "above 0");
+    EXPECT_EQ(error("dynamics.end_tim=1"),
+              "--set dynamics.end_tim=1: key 'dynamics.end_tim': is not known; did you mean "
+              "'end_time'? Known here: end_time, time_step, safety, damping, gravity, seed");
+    EXPECT_EQ(error("dynamics.end_time=2s"),
+              "--set dynamics.end_time=2s: key 'dynamics.end_time': must be a number, but is the "
+              "text \"2s\"");
+    EXPECT_EQ(error("dynamics.end_time"),
+              "--set dynamics.end_time: an override has the form key.path=value");
+    EXPECT_EQ(error("material[1].young=1"),
+              "--set material[1].young=1: 'material' has no element "
+              "1: it has 1, numbered from 0");
+    EXPECT_EQ(error("material.young=1"),
+              "--set material.young=1: 'material' is an array: go on "
+              "with the number of an element, as in material[0]");
+    EXPECT_EQ(error("dynamics[0]=1"),
+              "--set dynamics[0]=1: 'dynamics' is a table, not an array: "
+              "it has keys, no [0]");
+    EXPECT_EQ(error("dynamics.end_time.x=1"),
+              "--set dynamics.end_time.x=1: 'dynamics.end_time' is the number 1: there is nothing "
+              "below it");
+    for (const auto& text : {"a..b=1", "=1", "a[=1", "a[x]=1", "a]=1"})
+        EXPECT_NE(error(text).find("is not a path"), std::string::npos) << text;
+    for (const auto& text : {"dynamics.gravity=[0, 0", "title=", "title=1\nx=2"})
+        EXPECT_NE(error(text).find("is no TOML value"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace incise::sim

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "support/mesh_families.h"
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "topology/box_mesh.h"
+#include "topology/error.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::test {
+
+using namespace topology;
+
+namespace {
+
+MeshData tetrahedra(std::vector<Vec3> points,
+                    const std::vector<std::array<std::int64_t, 4>>& tets) {
+    MeshData data;
+    data.points = std::move(points);
+    for (const auto& tet : tets) data.add_cell(CellKind::tetrahedron, tet);
+    return data;
+}
+
+MeshData ball(int n) {
+    // A cube whose concentric shells are drawn onto spheres.
+    MeshData data = jittered_cube(n, 0.0, 0);
+    for (Vec3& x : data.points) {
+        const Vec3 y = 2.0 * (x - Vec3::Constant(0.5));
+        const double size = y.cwiseAbs().maxCoeff();
+        x = size == 0.0 ? Vec3::Zero().eval() : (size / y.norm() * y).eval();
+    }
+    return data;
+}
+
+MeshData ring(int around) {
+    // A bar whose ends are joined: the last layer of points is the first one.
+    MeshData bar = box_mesh(CellKind::tetrahedron, Vec3::Zero(), {1, 1, 1}, {2, 2, around});
+    const std::int64_t layer = 9;
+    const auto num_points = static_cast<std::int64_t>(bar.points.size()) - layer;
+    for (std::int64_t& corner : bar.corners) corner %= num_points;
+    bar.points.resize(static_cast<std::size_t>(num_points));
+    for (Vec3& x : bar.points) {
+        const double angle = 2.0 * std::numbers::pi * x.z();
+        const double radius = 1.0 + 0.6 * x.x();
+        x = Vec3(radius * std::cos(angle), radius * std::sin(angle), -0.6 * x.y());
+    }
+    return bar;
+}
+
+MeshData organ() {
+    std::ifstream file(std::string(INCISE_DATA_DIR) + "/references/organ_ellipsoid.json");
+    const auto json = nlohmann::json::parse(file);
+    MeshData data;
+    for (const auto& x : json["nodes"]) data.points.emplace_back(x[0], x[1], x[2]);
+    for (const auto& t : json["tets"])
+        data.add_cell(CellKind::tetrahedron, t.get<std::vector<std::int64_t>>());
+    return data;
+}
+
+// A hexahedron with a pyramid on one side, a wedge on another, and tetrahedra on the free
+// triangles of both.
+MeshData mixed() {
+    MeshData data;
+    data.points = {{0, 0, 0},     {1, 0, 0},      {1, 1, 0},      {0, 1, 0}, {0, 0, 1},
+                   {1, 0, 1},     {1, 1, 1},      {0, 1, 1},      {2, 0, 0}, {2, 0, 1},
+                   {0.5, 0.5, 2}, {1.5, -1, 0.5}, {1.6, 1.2, 1.4}};
+    const auto add = [&](CellKind kind, std::vector<std::int64_t> corners) {
+        data.add_cell(kind, corners, static_cast<int>(kind));
+    };
+    add(CellKind::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7});
+    add(CellKind::pyramid, {4, 5, 6, 7, 10});
+    // The wedge's quadrilateral 1, 2, 6, 5 is the hexahedron's far face in x.
+    add(CellKind::wedge, {1, 2, 8, 5, 6, 9});
+    add(CellKind::tetrahedron, {6, 5, 9, 12});
+    add(CellKind::tetrahedron, {6, 5, 12, 10});
+    return data;
+}
+
+std::vector<ElementId> living_elements(const Mesh& mesh) {
+    std::vector<ElementId> alive;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (mesh.is_alive(ElementId(i))) alive.emplace_back(i);
+    return alive;
+}
+
+std::vector<FaceId> inner_faces(const Mesh& mesh) {
+    std::vector<FaceId> faces;
+    for (const ElementId e : living_elements(mesh))
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (FaceId{e, f} < mesh.neighbor({e, f})) faces.push_back({e, f});
+    return faces;
+}
+
+// Pairs of boundary faces at the same rest positions: what an opened face left.
+std::vector<FacePair> open_pairs(const Mesh& mesh) {
+    std::map<std::vector<double>, FaceId> seen;
+    std::vector<FacePair> pairs;
+    for (const FaceId f : boundary_faces(mesh)) {
+        std::vector<std::array<double, 3>> corners;
+        for (int p = 0; p < mesh.face_size(f); ++p) {
+            const Vec3& x = mesh.rest_position(mesh.face_corner(f, p));
+            corners.push_back({x.x(), x.y(), x.z()});
+        }
+        std::sort(corners.begin(), corners.end());
+        std::vector<double> key;
+        for (const auto& c : corners) key.insert(key.end(), c.begin(), c.end());
+        const auto [place, is_new] = seen.try_emplace(key, f);
+        if (!is_new) pairs.push_back({place->second, f});
+    }
+    return pairs;
+}
+
+}  // namespace
+
+MeshData jittered_cube(int n, double jitter, std::uint64_t seed) {
+    MeshData data = box_mesh(CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n});
+    Random random(seed);
+    for (Vec3& x : data.points) {
+        const Vec3 shift = random.vector(jitter / n);
+        for (int c = 0; c < 3; ++c)
+            if (x[c] > 0.0 && x[c] < 1.0) x[c] += shift[c];
+    }
+    return data;
+}
+
+const std::vector<MeshFamily>& mesh_families() {
+    static const std::vector<MeshFamily> families = [] {
+        const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0},   {0, 1, 0},
+                                          {0, 0, 1}, {1, 1, 1.1}, {0.9, -1, 1}};
+        std::vector<MeshFamily> all;
+        all.push_back(
+            {"one tetrahedron", tetrahedra({points.begin(), points.begin() + 4}, {{0, 1, 2, 3}})});
+        all.push_back({"two by a face", tetrahedra({points.begin(), points.begin() + 5},
+                                                   {{0, 1, 2, 3}, {3, 1, 2, 4}})});
+        all.push_back(
+            {"two by an edge",
+             tetrahedra(
+                 {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {1, 1, 0.5}, {-1, 0, 0.5}, {-1, -1, 0.5}},
+                 {{0, 2, 3, 1}, {0, 4, 5, 1}})});
+        all.push_back({"cube", jittered_cube(4, 0.2, 7)});
+        all.push_back({"ring", ring(12)});
+        all.push_back({"ball", ball(4)});
+        all.push_back({"organ", organ()});
+        all.push_back(
+            {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.5, 2}, {4, 3, 5})});
+        all.push_back({"mixed", mixed()});
+        return all;
+    }();
+    return families;
+}
+
+std::vector<const MeshFamily*> tetrahedral_families() {
+    std::vector<const MeshFamily*> families;
+    for (const MeshFamily& family : mesh_families())
+        if (std::all_of(family.data.kinds.begin(), family.data.kinds.end(),
+                        [](CellKind kind) { return kind == CellKind::tetrahedron; }))
+            families.push_back(&family);
+    return families;
+}
+
+ChangeSet random_edit(Mesh& mesh, Random& random) {
+    MeshEdit edit(mesh);
+    const std::size_t kind = random.below(5);
+    const auto elements = living_elements(mesh);
+    if (elements.empty()) return edit.commit();
+    const std::size_t budget = 1 + (random.below(4) == 0 ? elements.size() / 20 : 0);
+
+    if (kind == 0 || kind == 3) {  // removals, scattered or side by side
+        std::vector<ElementId> pending{elements[random.below(elements.size())]};
+        for (std::size_t i = 0; i < budget && !pending.empty(); ++i) {
+            const ElementId e = pending.back();
+            pending.pop_back();
+            if (!mesh.is_alive(e)) continue;
+            for (int f = 0; f < mesh.num_faces(e); ++f)
+                if (mesh.neighbor({e, f}).is_valid())
+                    pending.push_back(mesh.neighbor({e, f}).element);
+            edit.remove(e);
+        }
+    }
+    if (kind == 1 || kind == 3) {  // openings: those across a random plane, or any
+        const auto faces = inner_faces(mesh);
+        const std::size_t count = faces.empty() ? 0 : 1 + random.below(3 * budget + 2);
+        for (std::size_t i = 0; i < count; ++i) {
+            const FaceId f = faces[random.below(faces.size())];
+            if (mesh.is_alive(f.element) && mesh.neighbor(f).is_valid()) edit.open(f);
+        }
+    }
+    if (kind == 2) {  // all faces whose elements lie on two sides of a plane, in part of the body
+        const FaceId through = [&] {
+            const auto faces = inner_faces(mesh);
+            return faces.empty() ? FaceId{} : faces[random.below(faces.size())];
+        }();
+        if (through.is_valid()) {
+            const Vec3 normal = random.vector(1.0);
+            const Vec3& point = mesh.rest_position(mesh.face_corner(through, 0));
+            const auto side = [&](ElementId e) {
+                Vec3 sum = Vec3::Zero();
+                for (const NodeId n : mesh.corners(e)) sum += mesh.rest_position(n) - point;
+                return sum.dot(normal) > 0.0;
+            };
+            const double share = random.uniform();
+            for (const FaceId f : inner_faces(mesh))
+                if (side(f.element) != side(mesh.neighbor(f).element) && random.uniform() < share)
+                    edit.open(f);
+        }
+    }
+    if (kind == 4 || kind == 3) {  // closings
+        const auto pairs = open_pairs(mesh);
+        const std::size_t count = pairs.empty() ? 0 : 1 + random.below(pairs.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            const FacePair pair = pairs[random.below(pairs.size())];
+            if (!mesh.neighbor(pair.a).is_valid() && !mesh.neighbor(pair.b).is_valid() &&
+                pair.a.element != pair.b.element)
+                edit.close(pair.a, pair.b);
+        }
+    }
+    return edit.commit();
+}
+
+}  // namespace incise::test

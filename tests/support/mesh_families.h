@@ -1,0 +1,54 @@
+// The bodies over which invariants are tested, and random programs of edits on them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+#include "topology/mesh_data.h"
+
+namespace incise::test {
+
+struct MeshFamily {
+    std::string name;
+    topology::MeshData data;
+};
+
+/// One tetrahedron; two by a face; two by an edge; a jittered Kuhn cube; a ring; a ball; an
+/// organ-like body; a block of hexahedra; wedge, pyramid, hexahedron and tetrahedra glued together.
+const std::vector<MeshFamily>& mesh_families();
+
+/// Those of tetrahedra only.
+std::vector<const MeshFamily*> tetrahedral_families();
+
+/// Kuhn cube of n^3 bricks, side 1, inner points moved by up to `jitter` of an edge.
+topology::MeshData jittered_cube(int n, double jitter, std::uint64_t seed);
+
+/// Random numbers that are the same on every machine: the standard leaves distributions open.
+class Random {
+  public:
+    explicit Random(std::uint64_t seed) : engine_(seed) {}
+    /// In [0, 1).
+    double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+    double uniform(double low, double high) { return low + (high - low) * uniform(); }
+    std::size_t below(std::size_t n) {
+        return static_cast<std::size_t>(uniform() * static_cast<double>(n));
+    }
+    Vec3 vector(double size) {
+        const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
+        return {x, y, z};
+    }
+
+  private:
+    std::mt19937_64 engine_;
+};
+
+/// One random transaction: removals, openings, closings or a mixture of them, near each other or
+/// scattered, small or large. Empty when the mesh has nothing left to edit.
+topology::ChangeSet random_edit(topology::Mesh& mesh, Random& random);
+
+}  // namespace incise::test

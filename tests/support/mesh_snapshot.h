@@ -1,0 +1,40 @@
+// All that a mesh's readers can see, as one comparable value.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "topology/mesh.h"
+
+namespace incise::test {
+
+struct MeshSnapshot {
+    std::uint64_t epoch;
+    std::size_t num_nodes, num_elements, element_capacity;
+    std::vector<Vec3> rest_positions;
+    std::vector<topology::ElementId> anchors;
+    std::vector<std::vector<topology::NodeId>> corners;    // of living elements
+    std::vector<std::vector<topology::FaceId>> neighbors;  // of living elements
+    bool operator==(const MeshSnapshot&) const = default;
+
+    explicit MeshSnapshot(const topology::Mesh& mesh)
+        : epoch(mesh.epoch()),
+          num_nodes(mesh.num_nodes()),
+          num_elements(mesh.num_elements()),
+          element_capacity(mesh.element_capacity()),
+          rest_positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {
+        for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
+            anchors.push_back(mesh.anchor(topology::NodeId(n)));
+        for (std::size_t i = 0; i < element_capacity; ++i) {
+            const topology::ElementId e(i);
+            corners.emplace_back();
+            neighbors.emplace_back();
+            if (!mesh.is_alive(e)) continue;
+            corners.back().assign(mesh.corners(e).begin(), mesh.corners(e).end());
+            for (int f = 0; f < mesh.num_faces(e); ++f)
+                neighbors.back().push_back(mesh.neighbor({e, f}));
+        }
+    }
+};
+
+}  // namespace incise::test

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "support/mesh_families.h"
+#include "topology/box_mesh.h"
+#include "topology/geometry.h"
+#include "topology/validate.h"
+
+namespace incise::topology {
+namespace {
+
+const std::vector<std::string> no_violations;
+
+double volume_of(const MeshData& data) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        std::vector<Vec3> x;
+        for (const std::int64_t p : data.cell(c))
+            x.push_back(data.points[static_cast<std::size_t>(p)]);
+        sum += signed_volume(data.kinds[c], x);
+    }
+    return sum;
+}
+
+TEST(CellKind, FacesRunAnticlockwiseFromOutsideAndCloseEveryCell) {
+    for (const CellTraits& t : cell_traits) {
+        SCOPED_TRACE(t.name);
+        std::multiset<std::pair<int, int>> sides;
+        for (int f = 0; f < t.num_faces; ++f) {
+            const auto face = t.face(f);
+            for (std::size_t p = 0; p < face.size(); ++p)
+                sides.emplace(face[p], face[(p + 1) % face.size()]);
+        }
+        EXPECT_EQ(sides.size(), 2u * static_cast<std::size_t>(t.num_edges));
+        for (const auto& [from, to] : sides) EXPECT_EQ(sides.count({to, from}), 1u);
+        std::set<std::pair<int, int>> edges;
+        for (int k = 0; k < t.num_edges; ++k) {
+            const auto [i, j] = t.edges[static_cast<std::size_t>(k)];
+            EXPECT_EQ(sides.count({i, j}), 1u);
+            edges.insert(std::minmax(i, j));
+        }
+        EXPECT_EQ(edges.size(), static_cast<std::size_t>(t.num_edges));
+    }
+}
+
+TEST(Geometry, VolumesOfTheReferenceCells) {
+    const std::vector<Vec3> hexahedron = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                          {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    const std::vector<Vec3> wedge = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0},
+                                     {0, 0, 1}, {0, 1, 1}, {1, 0, 1}};
+    const std::vector<Vec3> pyramid = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 1}};
+    const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    EXPECT_DOUBLE_EQ(signed_volume(CellKind::hexahedron, hexahedron), 1.0);
+    EXPECT_DOUBLE_EQ(signed_volume(CellKind::wedge, wedge), 0.5);
+    EXPECT_DOUBLE_EQ(signed_volume(CellKind::pyramid, pyramid), 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(signed_volume(CellKind::tetrahedron, tetrahedron), 1.0 / 6.0);
+}
+
+TEST(BoxMesh, FillsTheBoxAndFitsTogether) {
+    for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
+        const MeshData data = box_mesh(kind, {1, 2, 3}, {0.4, 0.3, 2.0}, {3, 2, 5});
+        EXPECT_EQ(data.num_cells(), kind == CellKind::tetrahedron ? 180u : 30u);
+        EXPECT_NEAR(volume_of(data), 0.24, 1e-15);
+        const BuiltMesh built = Mesh::build(data);
+        EXPECT_TRUE(built.warnings.empty());
+        const double outer_faces = 2.0 * (3 * 2 + 2 * 5 + 3 * 5);
+        EXPECT_EQ(boundary_faces(built.mesh).size(), static_cast<std::size_t>(outer_faces) *
+                                                         (kind == CellKind::tetrahedron ? 2u : 1u));
+    }
+}
+
+TEST(Mesh, IsValidForEveryFamily) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        const BuiltMesh built = Mesh::build(family.data);
+        EXPECT_EQ(validate(built.mesh), no_violations);
+        EXPECT_EQ(built.mesh.num_elements(), family.data.num_cells());
+        EXPECT_NEAR(volume_of(to_mesh_data(built.mesh, built.mesh.rest_positions())),
+                    volume_of(family.data), 1e-12 * volume_of(family.data));
+    }
+}
+
+TEST(Mesh, LabelsAreTheNumbersOfTheSource) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        const BuiltMesh built = Mesh::build(family.data);
+        const Mesh& mesh = built.mesh;
+        for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+            const ElementId e(i);
+            const auto cell = family.data.cell(static_cast<std::size_t>(mesh.label(e)));
+            ASSERT_EQ(mesh.region(e), family.data.regions[static_cast<std::size_t>(mesh.label(e))]);
+            for (std::size_t k = 0; k < cell.size(); ++k) {
+                const NodeId n = mesh.corners(e)[k];
+                const auto named = mesh.nodes_with_label(cell[k]);
+                ASSERT_NE(std::find(named.begin(), named.end(), n), named.end());
+                ASSERT_EQ(mesh.rest_position(n),
+                          family.data.points[static_cast<std::size_t>(cell[k])]);
+            }
+        }
+    }
+}
+
+TEST(Mesh, NumbersNeighboursNearEachOther) {
+    const BuiltMesh built =
+        Mesh::build(box_mesh(CellKind::tetrahedron, {0, 0, 0}, {1, 1, 1}, {16, 16, 16}));
+    // Most neighbours are within a cache's reach of each other, though a box is numbered row by
+    // row in its file.
+    std::size_t near = 0, all = 0;
+    for (std::size_t i = 0; i < built.mesh.num_elements(); ++i)
+        for (int f = 0; f < 4; ++f) {
+            const FaceId other = built.mesh.neighbor({ElementId(i), f});
+            if (!other.is_valid()) continue;
+            ++all;
+            near += std::max(i, other.element.index()) - std::min(i, other.element.index()) < 64;
+        }
+    EXPECT_GT(near, all * 7 / 10);
+}
+
+TEST(Mesh, DividesPinchedNodesAndSaysSo) {
+    const auto& families = test::mesh_families();
+    const auto by_edge = std::find_if(families.begin(), families.end(), [](const auto& family) {
+        return family.name == "two by an edge";
+    });
+    const BuiltMesh built = Mesh::build(by_edge->data);
+    EXPECT_EQ(built.mesh.num_nodes(), 8u);
+    EXPECT_EQ(components(built.mesh).count, 2);
+    ASSERT_EQ(built.warnings.size(), 2u);
+    EXPECT_NE(built.warnings[0].find("point 0 joins cells that share no face"), std::string::npos);
+    EXPECT_EQ(built.mesh.nodes_with_label(0).size(), 2u);
+    EXPECT_EQ(built.mesh.nodes_with_label(2).size(), 1u);
+}
+
+TEST(Mesh, LeavesUnusedPointsOut) {
+    MeshData data = test::mesh_families().front().data;
+    data.points.insert(data.points.begin() + 1, Vec3(9, 9, 9));
+    for (std::int64_t& corner : data.corners) corner += corner >= 1;
+    const BuiltMesh built = Mesh::build(data);
+    EXPECT_EQ(built.mesh.num_nodes(), 4u);
+    EXPECT_EQ(validate(built.mesh), no_violations);
+    ASSERT_EQ(built.warnings.size(), 1u);
+    EXPECT_EQ(built.warnings[0], "point 1 belongs to no cell and is left out");
+    for (const NodeId n : built.mesh.nodes_with_label(1)) EXPECT_FALSE(built.mesh.is_alive(n));
+}
+
+TEST(Mesh, StarsHoldExactlyTheElementsOfANode) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        const BuiltMesh built = Mesh::build(family.data);
+        std::vector<ElementId> star;
+        for (std::size_t n = 0; n < built.mesh.node_capacity(); ++n) {
+            std::vector<ElementId> expected;
+            for (std::size_t i = 0; i < built.mesh.element_capacity(); ++i) {
+                const auto corners = built.mesh.corners(ElementId(i));
+                if (std::find(corners.begin(), corners.end(), NodeId(n)) != corners.end())
+                    expected.emplace_back(i);
+            }
+            built.mesh.star(NodeId(n), star);
+            ASSERT_EQ(star, expected);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::topology

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/box_mesh.h"
+
+namespace incise::topology {
+
+MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::array<int, 3> cells) {
+    const std::int64_t nx = cells[0], ny = cells[1], nz = cells[2];
+    MeshData mesh;
+    mesh.points.reserve(static_cast<std::size_t>((nx + 1) * (ny + 1) * (nz + 1)));
+    for (std::int64_t k = 0; k <= nz; ++k)
+        for (std::int64_t j = 0; j <= ny; ++j)
+            for (std::int64_t i = 0; i <= nx; ++i) {
+                // Divide last: the far faces then lie exactly at origin + size.
+                const Vec3 step(static_cast<double>(i) * size.x() / static_cast<double>(nx),
+                                static_cast<double>(j) * size.y() / static_cast<double>(ny),
+                                static_cast<double>(k) * size.z() / static_cast<double>(nz));
+                mesh.points.push_back(origin + step);
+            }
+
+    const std::int64_t along[3] = {1, nx + 1, (nx + 1) * (ny + 1)};  // to the next point in x, y, z
+    // The six ways from a brick's lowest corner to its highest along its edges; odd permutations
+    // have two corners exchanged so that every tetrahedron has positive volume.
+    constexpr int paths[6][3] = {{0, 1, 2}, {1, 0, 2}, {1, 2, 0}, {2, 1, 0}, {2, 0, 1}, {0, 2, 1}};
+    for (std::int64_t k = 0; k < nz; ++k)
+        for (std::int64_t j = 0; j < ny; ++j)
+            for (std::int64_t i = 0; i < nx; ++i) {
+                const std::int64_t p = i + along[1] * j + along[2] * k;
+                if (kind == CellKind::hexahedron) {
+                    const std::int64_t q = p + along[2];
+                    const std::int64_t corners[8] = {p, p + 1, p + 1 + along[1], p + along[1],
+                                                     q, q + 1, q + 1 + along[1], q + along[1]};
+                    mesh.add_cell(kind, corners);
+                    continue;
+                }
+                for (int path = 0; path < 6; ++path) {
+                    const std::int64_t a = p + along[paths[path][0]];
+                    const std::int64_t b = a + along[paths[path][1]];
+                    const std::int64_t c = b + along[paths[path][2]];
+                    const bool odd = path % 2 == 1;
+                    const std::int64_t corners[4] = {p, odd ? b : a, odd ? a : b, c};
+                    mesh.add_cell(CellKind::tetrahedron, corners);
+                }
+            }
+    return mesh;
+}
+
+}  // namespace incise::topology

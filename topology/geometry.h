@@ -1,0 +1,50 @@
+// Volumes and centres of cells from their corner positions, of any kind alike.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "topology/cell_kind.h"
+#include "topology/types.h"
+
+namespace incise::topology {
+
+/// Volume of a tetrahedron; positive when d lies on the side to which a, b, c run anticlockwise.
+inline double tetrahedron_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return (b - a).cross(c - a).dot(d - a) / 6.0;
+}
+
+/// Signed volume of a cell with straight edges. Quadrilateral faces are the bilinear patches of
+/// the trilinear map, so that cells which share one fit without gap: the flux of x through such a
+/// patch is the mean of that through its two triangulations.
+inline double signed_volume(CellKind kind, std::span<const Vec3> corners) {
+    const Vec3& o = corners[0];
+    if (kind == CellKind::tetrahedron)
+        return tetrahedron_volume(o, corners[1], corners[2], corners[3]);
+    const CellTraits& t = traits(kind);
+    const auto flux = [&](int i, int j, int k) {
+        const auto at = [&](int corner) -> Vec3 {
+            return corners[static_cast<std::size_t>(corner)] - o;
+        };
+        return at(i).dot(at(j).cross(at(k))) / 6.0;
+    };
+    double volume = 0.0;
+    for (int f = 0; f < t.num_faces; ++f) {
+        const auto v = t.face(f);
+        if (v.size() == 3)
+            volume += flux(v[0], v[1], v[2]);
+        else
+            volume += 0.5 * (flux(v[0], v[1], v[2]) + flux(v[0], v[2], v[3]) +
+                             flux(v[0], v[1], v[3]) + flux(v[1], v[2], v[3]));
+    }
+    return volume;
+}
+
+/// Mean of the corners.
+inline Vec3 centre(std::span<const Vec3> corners) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& corner : corners) sum += corner;
+    return sum / static_cast<double>(corners.size());
+}
+
+}  // namespace incise::topology

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace incise::topology {
+
+namespace {
+
+/// Calls visit(face) for each face of `e` that has the node `n` among its corners.
+template <class Visit>
+void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
+    const CellTraits& t = traits(mesh.kind(e));
+    const auto corners = mesh.corners(e);
+    for (int f = 0; f < t.num_faces; ++f)
+        for (const int corner : t.face(f))
+            if (corners[static_cast<std::size_t>(corner)] == n) {
+                visit(FaceId{e, f});
+                break;
+            }
+}
+
+}  // namespace
+
+void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements) {
+    // Stars are small: looking through the list beats marking, and several threads may do it.
+    const std::size_t begin = elements.size();
+    elements.push_back(start);
+    for (std::size_t next = begin; next < elements.size(); ++next)
+        for_faces_at(mesh, elements[next], n, [&](FaceId f) {
+            const ElementId other = mesh.neighbor(f).element;
+            if (!other.is_valid()) return;
+            const auto known = elements.begin() + static_cast<std::ptrdiff_t>(begin);
+            if (std::find(known, elements.end(), other) == elements.end())
+                elements.push_back(other);
+        });
+    std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
+}
+
+void Mesh::star(NodeId n, std::vector<ElementId>& elements) const {
+    elements.clear();
+    if (is_alive(n)) collect_star(*this, n, anchor(n), elements);
+}
+
+std::int64_t Mesh::label(NodeId n) const {
+    return n.index() < node_labels_.size() ? node_labels_[n.index()] : n.value;
+}
+
+std::int64_t Mesh::label(ElementId e) const {
+    return e.index() < element_labels_.size() ? element_labels_[e.index()] : e.value;
+}
+
+std::vector<NodeId> Mesh::nodes_with_label(std::int64_t label) const {
+    std::vector<NodeId> nodes;
+    if (label < 0) return nodes;
+    if (static_cast<std::size_t>(label) >= label_nodes_.size()) {
+        if (static_cast<std::size_t>(label) < node_capacity())
+            nodes.emplace_back(static_cast<std::size_t>(label));
+        return nodes;
+    }
+    nodes.push_back(label_nodes_[static_cast<std::size_t>(label)]);
+    for (const auto& [of, node] : pinched_)
+        if (of == label) nodes.push_back(node);
+    return nodes;
+}
+
+void Mesh::append_element_row(CellKind kind, int region, std::span<const NodeId> corners) {
+    kinds_.push_back(kind);
+    regions_.push_back(region);
+    alive_.push_back(1);
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    corner_begin_.push_back(corners_.size());
+    neighbors_.resize(neighbors_.size() + static_cast<std::size_t>(traits(kind).num_faces));
+    face_begin_.push_back(neighbors_.size());
+    ++num_elements_;
+}
+
+void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
+    rest_positions_.resize(node_capacity);
+    anchors_.resize(node_capacity);
+    kinds_.resize(element_capacity);
+    regions_.resize(element_capacity);
+    alive_.resize(element_capacity);
+    corner_begin_.resize(element_capacity + 1);
+    face_begin_.resize(element_capacity + 1);
+    corners_.resize(corner_begin_.back());
+    neighbors_.resize(face_begin_.back());
+    map_.truncate(node_capacity, element_capacity);
+}
+
+void Mesh::glue(FaceId a, FaceId b, int shift) {
+    assert(!neighbor(a).is_valid() && !neighbor(b).is_valid());
+    map_.glue(a, b, shift);
+    set_neighbor(a, b);
+    set_neighbor(b, a);
+}
+
+void Mesh::unglue(FaceId a) {
+    const FaceId b = neighbor(a);
+    assert(b.is_valid());
+    map_.unglue(a);
+    set_neighbor(a, {});
+    set_neighbor(b, {});
+}
+
+int matching_shift(const Mesh& mesh, FaceId a, FaceId b) {
+    const int size = mesh.face_size(a);
+    if (mesh.face_size(b) != size) return -1;
+    for (int shift = 0; shift < size; ++shift) {
+        bool fits = true;
+        for (int p = 0; p < size && fits; ++p)
+            fits = mesh.face_corner(a, p) == mesh.face_corner(b, (shift - p + size) % size);
+        if (fits) return shift;
+    }
+    return -1;
+}
+
+Components components(const Mesh& mesh) {
+    Components result;
+    result.of_element.assign(mesh.element_capacity(), -1);
+    std::vector<ElementId> pending;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId seed(i);
+        if (!mesh.is_alive(seed) || result.of_element[i] >= 0) continue;
+        result.of_element[i] = result.count;
+        pending.push_back(seed);
+        while (!pending.empty()) {
+            const ElementId e = pending.back();
+            pending.pop_back();
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                const ElementId other = mesh.neighbor({e, f}).element;
+                if (!other.is_valid() || result.of_element[other.index()] >= 0) continue;
+                result.of_element[other.index()] = result.count;
+                pending.push_back(other);
+            }
+        }
+        ++result.count;
+    }
+    return result;
+}
+
+std::vector<FaceId> boundary_faces(const Mesh& mesh) {
+    std::vector<FaceId> faces;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (!mesh.neighbor({e, f}).is_valid()) faces.push_back({e, f});
+    }
+    return faces;
+}
+
+MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::vector<NodeId>* nodes,
+                      std::vector<ElementId>* elements) {
+    MeshData data;
+    std::vector<std::int64_t> row_of_node(mesh.node_capacity(), -1);
+    if (nodes) nodes->clear();
+    if (elements) elements->clear();
+    for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
+        if (!mesh.is_alive(NodeId(i))) continue;
+        row_of_node[i] = static_cast<std::int64_t>(data.points.size());
+        data.points.push_back(positions[i]);
+        if (nodes) nodes->emplace_back(i);
+    }
+    std::vector<std::int64_t> rows;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        rows.clear();
+        for (const NodeId n : mesh.corners(e)) rows.push_back(row_of_node[n.index()]);
+        data.add_cell(mesh.kind(e), rows, mesh.region(e));
+        if (elements) elements->push_back(e);
+    }
+    return data;
+}
+
+}  // namespace incise::topology

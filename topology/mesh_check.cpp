@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "topology/geometry.h"
+
+namespace incise::topology {
+
+namespace {
+
+/// Lists the first few of each kind of complaint and counts the rest.
+class Complaints {
+  public:
+    explicit Complaints(std::vector<std::string>& lines) : lines_(lines) {}
+
+    template <class... Parts>
+    void add(const char* kind, const Parts&... parts) {
+        if (++counts_[kind] > max_listed) return;
+        std::ostringstream text;
+        text.precision(6);
+        (text << ... << parts);
+        lines_.push_back(text.str());
+    }
+
+    void finish() {
+        for (const auto& [kind, count] : counts_)
+            if (count > max_listed)
+                lines_.push_back("and " + std::to_string(count - max_listed) + " more " + kind);
+    }
+
+  private:
+    static constexpr std::size_t max_listed = 5;
+    std::vector<std::string>& lines_;
+    std::map<std::string, std::size_t> counts_;
+};
+
+std::string cell_name(const MeshData& data, std::size_t c) {
+    return "cell " + std::to_string(c) + " (" + traits(data.kinds[c]).name + ")";
+}
+
+bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complaints) {
+    const auto corners = data.cell(c);
+    const auto num_points = static_cast<std::int64_t>(data.points.size());
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        if (corners[k] < 0 || corners[k] >= num_points) {
+            complaints.add("cells with a node index out of range", cell_name(data, c),
+                           ": node index ", corners[k], " is out of range (", num_points,
+                           " points)");
+            return false;
+        }
+        for (std::size_t j = 0; j < k; ++j)
+            if (corners[j] == corners[k]) {
+                complaints.add("cells with a repeated corner", cell_name(data, c), ": node ",
+                               corners[k], " stands at two of its corners; remove the cell");
+                return false;
+            }
+    }
+    for (const std::int64_t p : corners)
+        if (!data.points[static_cast<std::size_t>(p)].allFinite()) return false;  // told elsewhere
+    return true;
+}
+
+void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
+    std::array<Vec3, max_corners> x;
+    const auto corners = data.cell(c);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        x[k] = data.points[static_cast<std::size_t>(corners[k])];
+    const CellKind kind = data.kinds[c];
+    const double volume = signed_volume(kind, {x.data(), corners.size()});
+    if (!(volume > 0.0)) {
+        complaints.add("cells without positive volume", cell_name(data, c), " has ",
+                       volume == 0.0 ? "zero volume" : "negative volume ",
+                       volume == 0.0 ? std::string() : [&] {
+                           std::ostringstream text;
+                           text << volume;
+                           return text.str();
+                       }(),
+                       volume == 0.0 ? "; remove it or remesh"
+                                     : "; its corners run the wrong way round: reverse their order");
+        return;
+    }
+    if (kind == CellKind::tetrahedron) return;
+    // At a corner with three edges, the tetrahedron of those edges must point outwards too.
+    const CellTraits& t = traits(kind);
+    for (int k = 0; k < t.num_corners; ++k) {
+        if (kind == CellKind::pyramid && k == 4) continue;  // the apex has four edges
+        // Each face at the corner names the edge that leaves it; the three faces, taken in turn
+        // about the corner, name its three edges.
+        std::array<int, 3> next{}, previous{};
+        std::size_t found = 0;
+        for (int f = 0; f < t.num_faces; ++f) {
+            const auto face = t.face(f);
+            for (std::size_t p = 0; p < face.size(); ++p)
+                if (face[p] == k) {
+                    next[found] = face[(p + 1) % face.size()];
+                    previous[found] = face[(p + face.size() - 1) % face.size()];
+                    ++found;
+                }
+        }
+        // Two edges are those of the first face; the third is the other one of the second face.
+        const bool shares_next = next[1] == next[0] || next[1] == previous[0];
+        const int third = shares_next ? previous[1] : next[1];
+        const Vec3& o = x[static_cast<std::size_t>(k)];
+        const auto edge = [&](int to) -> Vec3 { return x[static_cast<std::size_t>(to)] - o; };
+        const double corner_volume = edge(previous[0]).cross(edge(next[0])).dot(edge(third));
+        if (!(corner_volume > 0.0)) {
+            complaints.add("cells with a corner turned inside out", cell_name(data, c),
+                           " is turned inside out or flat at its corner ", k, " (node ",
+                           corners[static_cast<std::size_t>(k)], "); remesh it");
+            return;
+        }
+    }
+}
+
+/// A face by its points in descending order, for matching.
+struct FaceKey {
+    std::array<std::int64_t, 4> points{-1, -1, -1, -1};
+    SourceFace face;
+    auto operator<=>(const FaceKey&) const = default;
+};
+
+/// All faces, grouped by equal points, groups in no order of meaning, faces in order of cells.
+std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::uint8_t>& usable) {
+    std::vector<FaceKey> keys;
+    keys.reserve(4 * data.num_cells());
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        if (!usable[c]) continue;
+        const CellTraits& t = traits(data.kinds[c]);
+        for (int f = 0; f < t.num_faces; ++f) {
+            FaceKey key;
+            key.face = {c, f};
+            const auto face = t.face(f);
+            for (std::size_t p = 0; p < face.size(); ++p)
+                key.points[p] = data.cell(c)[static_cast<std::size_t>(face[p])];
+            std::ranges::sort(key.points, std::greater{});
+            keys.push_back(key);
+        }
+    }
+    // Counting sort by one of the points leaves short buckets.
+    std::vector<std::size_t> begin(data.points.size() + 1, 0);
+    for (const FaceKey& key : keys) ++begin[static_cast<std::size_t>(key.points[0]) + 1];
+    for (std::size_t p = 0; p < data.points.size(); ++p) begin[p + 1] += begin[p];
+    std::vector<FaceKey> sorted(keys.size());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (const FaceKey& key : keys) sorted[next[static_cast<std::size_t>(key.points[0])]++] = key;
+    for (std::size_t p = 0; p < data.points.size(); ++p)
+        std::ranges::sort(std::span(sorted).subspan(begin[p], begin[p + 1] - begin[p]));
+    return sorted;
+}
+
+std::int64_t face_point(const MeshData& data, SourceFace f, std::size_t position) {
+    const auto face = traits(data.kinds[f.cell]).face(f.face);
+    return data.cell(f.cell)[static_cast<std::size_t>(face[position % face.size()])];
+}
+
+bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
+    if (data.kinds[a] != data.kinds[b]) return false;
+    std::vector<std::int64_t> x(data.cell(a).begin(), data.cell(a).end());
+    std::vector<std::int64_t> y(data.cell(b).begin(), data.cell(b).end());
+    std::sort(x.begin(), x.end());
+    std::sort(y.begin(), y.end());
+    return x == y;
+}
+
+void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& result,
+                Complaints& complaints) {
+    if (same_points(data, a.cell, b.cell)) {
+        if (a.face == 0 || b.face == 0)  // once a pair of cells, not once a face
+            complaints.add("duplicate cells", cell_name(data, a.cell), " and ",
+                           cell_name(data, b.cell), " have the same nodes; remove one of them");
+        return;
+    }
+    const std::size_t size = traits(data.kinds[a.cell]).face(a.face).size();
+    std::size_t shift = 0;
+    while (face_point(data, b, shift) != face_point(data, a, 0)) ++shift;
+    bool opposite = true, parallel = true;
+    for (std::size_t p = 0; p < size; ++p) {
+        const std::int64_t point = face_point(data, a, p);
+        opposite = opposite && face_point(data, b, shift + size - p) == point;
+        parallel = parallel && face_point(data, b, shift + p) == point;
+    }
+    if (opposite)
+        result.shared_faces.push_back({a, b, static_cast<int>(shift)});
+    else if (parallel)
+        complaints.add("overlapping neighbours", cell_name(data, a.cell), " and ",
+                       cell_name(data, b.cell),
+                       " lie on the same side of the face that they share, so they overlap; "
+                       "remove one of them");
+    else
+        complaints.add("twisted neighbours", cell_name(data, a.cell), " and ",
+                       cell_name(data, b.cell),
+                       " share four nodes but join them in different orders; remesh");
+}
+
+}  // namespace
+
+MeshCheck check(const MeshData& data) {
+    MeshCheck result;
+    Complaints errors(result.errors), warnings(result.warnings);
+    if (data.num_cells() == 0) {
+        result.errors.emplace_back(
+            "holds no tetrahedra, hexahedra, wedges or pyramids: a volume mesh is needed");
+        return result;
+    }
+
+    std::vector<std::uint8_t> used(data.points.size(), 0);
+    std::vector<std::uint8_t> usable(data.num_cells(), 0);
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        for (const std::int64_t p : data.cell(c))
+            if (p >= 0 && p < static_cast<std::int64_t>(used.size()))
+                used[static_cast<std::size_t>(p)] = 1;
+        usable[c] = corners_are_usable(data, c, errors);
+        if (usable[c]) check_volume(data, c, errors);
+    }
+    for (std::size_t p = 0; p < data.points.size(); ++p) {
+        if (used[p] && !data.points[p].allFinite())
+            errors.add("points that are not finite", "point ", p, " is not finite: (",
+                       data.points[p].x(), ", ", data.points[p].y(), ", ", data.points[p].z(), ")");
+        if (!used[p])
+            warnings.add("points that no cell uses", "point ", p,
+                         " belongs to no cell and is left out");
+    }
+
+    const std::vector<FaceKey> faces = sorted_faces(data, usable);
+    for (std::size_t i = 0; i < faces.size();) {
+        std::size_t end = i + 1;
+        while (end < faces.size() && faces[end].points == faces[i].points) ++end;
+        if (end - i == 2) check_pair(data, faces[i].face, faces[i + 1].face, result, errors);
+        if (end - i > 2) {
+            std::ostringstream cells;
+            for (std::size_t k = i; k < end; ++k)
+                cells << (k == i ? "" : k + 1 == end ? " and " : ", ") << faces[k].face.cell;
+            errors.add(
+                "faces shared by more than two cells", "cells ", cells.str(),
+                " all share one face; a face joins two cells at the most: remove the others");
+        }
+        i = end;
+    }
+    std::sort(result.shared_faces.begin(), result.shared_faces.end(),
+              [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
+    errors.finish();
+    warnings.finish();
+    return result;
+}
+
+}  // namespace incise::topology

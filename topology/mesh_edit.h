@@ -1,0 +1,76 @@
+// The only way to change a mesh: a transaction that ends in a ChangeSet, or leaves no trace.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::topology {
+
+/// Collects operations on a mesh. While it lives nobody else edits the mesh; if it dies without
+/// commit(), the mesh is as it was, ids included.
+///
+/// Nodes are divided once, at commit: wherever the elements round a node no longer hang together
+/// through faces at it, the part with the lowest element keeps the node and each other part gets
+/// a new one. Removing an element can therefore add nodes, and opening a face need not.
+///
+/// Cost: proportional to the stars of the nodes that the operations touch.
+class MeshEdit {
+  public:
+    explicit MeshEdit(Mesh& mesh);
+    ~MeshEdit();
+    MeshEdit(const MeshEdit&) = delete;
+    MeshEdit& operator=(const MeshEdit&) = delete;
+
+    /// Removes a living element.
+    void remove(ElementId e);
+    /// Separates the two elements at a shared face.
+    void open(FaceId f);
+    /// Joins two boundary faces whose nodes lie at the same rest positions. Nodes that meet become
+    /// one, the lower id; the record names the other's source.
+    /// Throws InputError if the faces do not fit.
+    void close(FaceId a, FaceId b);
+
+    /// Ends the transaction. The mesh's epoch grows by one, unless nothing changed.
+    ChangeSet commit();
+
+  private:
+    struct SavedRow {
+        ElementId element;
+        bool was_alive;
+        std::vector<NodeId> corners;
+        std::vector<FaceId> neighbors;
+    };
+    struct TouchedCorner {
+        NodeId node;
+        ElementId element;  // may be dead by now; invalid when only the node is of interest
+        auto operator<=>(const TouchedCorner&) const = default;
+    };
+
+    void require_alive(ElementId e) const;
+    void save(ElementId e);
+    void touch_face(FaceId f);
+    void part(FaceId f);
+    void rewire(ElementId e, int corner, NodeId to);
+    void merge(NodeId survivor, NodeId absorbed, ElementId at);
+    void divide_nodes(ChangeSet& changes);
+    void settle_node(NodeId n, const std::vector<ElementId>& candidates, ChangeSet& changes);
+    NodeId survivor_of(NodeId n) const;
+    ChangeSet differences() const;
+
+    Mesh& mesh_;
+    bool is_open_ = true;
+    std::vector<SavedRow> saved_;
+    std::vector<std::uint8_t> is_saved_;  // by element id
+    std::vector<TouchedCorner> touched_;
+    std::vector<std::pair<NodeId, NodeId>> merged_;  // absorbed, survivor
+};
+
+/// Applies a recorded edit to a mesh that stands at changes.epoch_before, with the ids recorded.
+/// Throws InputError for an edit out of turn.
+void replay(Mesh& mesh, const ChangeSet& changes);
+
+}  // namespace incise::topology

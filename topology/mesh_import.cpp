@@ -1,0 +1,180 @@
+// From plain arrays to a mesh: check, renumber for locality, divide pinched nodes, build the map.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+
+#include "topology/error.h"
+#include "topology/geometry.h"
+#include "topology/hilbert.h"
+#include "topology/mesh.h"
+#include "topology/mesh_check.h"
+
+namespace incise::topology {
+
+namespace {
+
+/// Disjoint sets of corners that faces join.
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t size) : parent_(size) {
+        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+    }
+    std::size_t find(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    /// The lower root stays a root, so a set's root is its lowest member.
+    void join(std::size_t i, std::size_t j) {
+        i = find(i);
+        j = find(j);
+        if (i != j) parent_[std::max(i, j)] = std::min(i, j);
+    }
+
+  private:
+    std::vector<std::size_t> parent_;
+};
+
+std::string refusal(const std::vector<std::string>& errors) {
+    std::string text = errors.front();
+    for (std::size_t i = 1; i < errors.size(); ++i) text += "\n  " + errors[i];
+    return text;
+}
+
+}  // namespace
+
+/// The steps of Mesh::build, which share the mesh under construction.
+class MeshImport {
+  public:
+    explicit MeshImport(const MeshData& data) : data_(data), check_(check(data)) {
+        if (!check_.errors.empty()) throw InputError(refusal(check_.errors));
+    }
+
+    BuiltMesh run() {
+        order_elements();
+        order_nodes();
+        add_rows();
+        divide_pinched_nodes();
+        build_map();
+        return {std::move(mesh_), std::move(check_.warnings)};
+    }
+
+  private:
+    void order_elements() {
+        std::vector<Vec3> centres(data_.num_cells());
+        std::vector<Vec3> x;
+        for (std::size_t c = 0; c < data_.num_cells(); ++c) {
+            x.clear();
+            for (const std::int64_t p : data_.cell(c))
+                x.push_back(data_.points[static_cast<std::size_t>(p)]);
+            centres[c] = centre(x);
+        }
+        cell_of_element_ = hilbert_order(centres);
+        element_of_cell_.resize(cell_of_element_.size());
+        for (std::size_t e = 0; e < cell_of_element_.size(); ++e)
+            element_of_cell_[cell_of_element_[e]] = ElementId(e);
+        mesh_.element_labels_.assign(cell_of_element_.begin(), cell_of_element_.end());
+    }
+
+    // Nodes in the order in which the elements first use them; unused ones, dead, at the end, so
+    // that labels stay numbers of points and ids of later nodes lie above all of them.
+    void order_nodes() {
+        mesh_.label_nodes_.resize(data_.points.size());
+        const auto number = [&](std::size_t point) {
+            mesh_.label_nodes_[point] = NodeId(mesh_.node_labels_.size());
+            mesh_.node_labels_.push_back(static_cast<std::int64_t>(point));
+            mesh_.rest_positions_.push_back(data_.points[point]);
+        };
+        for (const std::size_t c : cell_of_element_)
+            for (const std::int64_t p : data_.cell(c))
+                if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
+                    number(static_cast<std::size_t>(p));
+        mesh_.num_nodes_ = mesh_.node_labels_.size();
+        for (std::size_t p = 0; p < data_.points.size(); ++p)
+            if (!mesh_.label_nodes_[p].is_valid()) number(p);
+    }
+
+    void add_rows() {
+        std::vector<NodeId> corners;
+        for (const std::size_t c : cell_of_element_) {
+            corners.clear();
+            for (const std::int64_t p : data_.cell(c))
+                corners.push_back(mesh_.label_nodes_[static_cast<std::size_t>(p)]);
+            mesh_.append_element_row(data_.kinds[c], data_.regions[c], corners);
+        }
+    }
+
+    std::size_t corner_slot(SourceFace f, int position) const {
+        const auto face = traits(data_.kinds[f.cell]).face(f.face);
+        const auto size = static_cast<int>(face.size());
+        return mesh_.corner_begin_[element_of_cell_[f.cell].index()] +
+               static_cast<std::size_t>(face[static_cast<std::size_t>((position + size) % size)]);
+    }
+
+    void divide_pinched_nodes() {
+        DisjointSets sets(mesh_.corners_.size());
+        for (const SharedFace& shared : check_.shared_faces) {
+            const auto size =
+                static_cast<int>(traits(data_.kinds[shared.a.cell]).face(shared.a.face).size());
+            for (int p = 0; p < size; ++p)
+                sets.join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
+        }
+        // Slots ascend with elements: the set that a node's first slot is in keeps the node.
+        std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), mesh_.corners_.size());
+        std::vector<NodeId> node_of_set(mesh_.corners_.size());
+        std::size_t num_pinched = 0;
+        for (std::size_t slot = 0; slot < mesh_.corners_.size(); ++slot) {
+            const NodeId n = mesh_.corners_[slot];
+            const std::size_t set = sets.find(slot);
+            if (!node_of_set[set].is_valid()) {
+                if (first_set[n.index()] == mesh_.corners_.size()) {
+                    first_set[n.index()] = set;
+                    node_of_set[set] = n;
+                } else {
+                    node_of_set[set] = NodeId(mesh_.rest_positions_.size());
+                    mesh_.rest_positions_.push_back(mesh_.rest_positions_[n.index()]);
+                    mesh_.pinched_.emplace_back(mesh_.node_labels_[n.index()], node_of_set[set]);
+                    ++mesh_.num_nodes_;
+                    if (++num_pinched <= max_pinches_listed) {
+                        std::ostringstream text;
+                        text << "point " << mesh_.node_labels_[n.index()]
+                             << " joins cells that share no face there; the cells get a node each";
+                        check_.warnings.push_back(text.str());
+                    }
+                }
+            }
+            mesh_.corners_[slot] = node_of_set[set];
+        }
+        if (num_pinched > max_pinches_listed)
+            check_.warnings.push_back("and " + std::to_string(num_pinched - max_pinches_listed) +
+                                      " more such points");
+        std::sort(mesh_.pinched_.begin(), mesh_.pinched_.end());
+
+        mesh_.anchors_.resize(mesh_.rest_positions_.size());
+        for (std::size_t i = mesh_.num_elements(); i-- > 0;)
+            for (const NodeId n : mesh_.corners(ElementId(i)))
+                mesh_.anchors_[n.index()] = ElementId(i);
+    }
+
+    void build_map() {
+        for (std::size_t i = 0; i < mesh_.num_elements(); ++i) {
+            const ElementId e(i);
+            mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions());
+        }
+        for (const SharedFace& shared : check_.shared_faces)
+            mesh_.glue({element_of_cell_[shared.a.cell], shared.a.face},
+                       {element_of_cell_[shared.b.cell], shared.b.face}, shared.shift);
+    }
+
+    static constexpr std::size_t max_pinches_listed = 5;
+
+    const MeshData& data_;
+    MeshCheck check_;
+    Mesh mesh_;
+    std::vector<std::size_t> cell_of_element_;
+    std::vector<ElementId> element_of_cell_;
+};
+
+BuiltMesh Mesh::build(const MeshData& data) { return MeshImport(data).run(); }
+
+}  // namespace incise::topology

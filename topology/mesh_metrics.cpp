@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh_metrics.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topology/error.h"
+#include "topology/geometry.h"
+#include "topology/mesh_check.h"
+
+namespace incise::topology {
+
+namespace {
+
+/// The corners that edges join to each corner, for corners where three meet; -1 for others.
+using CornerNeighbors = std::array<std::array<int, 3>, max_corners>;
+
+constexpr CornerNeighbors corner_neighbors(const CellTraits& cell) {
+    CornerNeighbors neighbors{};
+    std::array<std::size_t, max_corners> counts{};
+    for (std::size_t e = 0; e < static_cast<std::size_t>(cell.num_edges); ++e)
+        for (std::size_t end = 0; end < 2; ++end) {
+            const auto corner = static_cast<std::size_t>(cell.edges[e][end]);
+            if (counts[corner] < 3) neighbors[corner][counts[corner]] = cell.edges[e][1 - end];
+            ++counts[corner];
+        }
+    for (std::size_t corner = 0; corner < max_corners; ++corner)
+        if (counts[corner] != 3) neighbors[corner] = {-1, -1, -1};
+    return neighbors;
+}
+
+constexpr std::array<CornerNeighbors, num_cell_kinds> neighbors_of_kind = {
+    corner_neighbors(cell_traits[0]), corner_neighbors(cell_traits[1]),
+    corner_neighbors(cell_traits[2]), corner_neighbors(cell_traits[3])};
+
+/// Looks at a cell from the corner where the edges p, q and r begin.
+void measure_corner(const std::array<Vec3, 3>& edges, MeshMetrics& metrics) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 &p = edges[i], &q = edges[(i + 1) % 3], &r = edges[(i + 2) % 3];
+        const Vec3 across_pq = p.cross(q), across_pr = p.cross(r), across_qr = q.cross(r);
+        const double volume = std::abs(p.dot(across_qr));  // of the parallelepiped
+        metrics.min_altitude = std::min(metrics.min_altitude, volume / across_qr.norm());
+        metrics.min_dihedral_angle = std::min(
+            metrics.min_dihedral_angle, std::atan2(p.norm() * volume, across_pq.dot(across_pr)));
+    }
+}
+
+void measure_cells(const MeshData& data, MeshMetrics& metrics) {
+    metrics.box_min.setConstant(std::numeric_limits<double>::infinity());
+    metrics.box_max = -metrics.box_min;
+    metrics.min_altitude = std::numeric_limits<double>::infinity();
+    metrics.min_dihedral_angle = std::numbers::pi;
+    std::array<Vec3, max_corners> points;
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        const CellKind kind = data.kinds[c];
+        const auto corners = data.cell(c);
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            points[k] = data.points[static_cast<std::size_t>(corners[k])];
+            metrics.box_min = metrics.box_min.cwiseMin(points[k]);
+            metrics.box_max = metrics.box_max.cwiseMax(points[k]);
+        }
+        ++metrics.num_of_kind[static_cast<std::size_t>(kind)];
+        ++metrics.cells_of_region[data.regions[c]];
+        metrics.volume += signed_volume(kind, {points.data(), corners.size()});
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const auto& neighbors = neighbors_of_kind[static_cast<std::size_t>(kind)][k];
+            if (neighbors[0] < 0) continue;
+            std::array<Vec3, 3> edges;
+            for (std::size_t i = 0; i < 3; ++i)
+                edges[i] = points[static_cast<std::size_t>(neighbors[i])] - points[k];
+            measure_corner(edges, metrics);
+        }
+    }
+}
+
+void measure_edges(const MeshData& data, MeshMetrics& metrics) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> edges;
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        const CellTraits& cell = traits(data.kinds[c]);
+        const auto corners = data.cell(c);
+        for (std::size_t e = 0; e < static_cast<std::size_t>(cell.num_edges); ++e)
+            edges.push_back(std::minmax({corners[static_cast<std::size_t>(cell.edges[e][0])],
+                                         corners[static_cast<std::size_t>(cell.edges[e][1])]}));
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    metrics.min_edge_length = std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    for (const auto& [a, b] : edges) {
+        const double length =
+            (data.points[static_cast<std::size_t>(b)] - data.points[static_cast<std::size_t>(a)])
+                .norm();
+        sum += length;
+        metrics.min_edge_length = std::min(metrics.min_edge_length, length);
+        metrics.max_edge_length = std::max(metrics.max_edge_length, length);
+    }
+    metrics.mean_edge_length = sum / static_cast<double>(edges.size());
+}
+
+double face_area(const MeshData& data, const SourceFace& face) {
+    const auto local = traits(data.kinds[face.cell]).face(face.face);
+    const auto at = [&](std::size_t position) -> const Vec3& {
+        const auto corner = data.cell(face.cell)[static_cast<std::size_t>(local[position])];
+        return data.points[static_cast<std::size_t>(corner)];
+    };
+    const auto triangle = [&](std::size_t i, std::size_t j, std::size_t k) {
+        return 0.5 * (at(j) - at(i)).cross(at(k) - at(i)).norm();
+    };
+    if (local.size() == 3) return triangle(0, 1, 2);
+    return 0.5 * (triangle(0, 1, 2) + triangle(0, 2, 3) + triangle(0, 1, 3) + triangle(1, 2, 3));
+}
+
+double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_faces) {
+    std::vector<SourceFace> shared;
+    for (const auto& pair : shared_faces) {
+        shared.push_back(pair.a);
+        shared.push_back(pair.b);
+    }
+    std::sort(shared.begin(), shared.end());
+    double area = 0.0;
+    auto next = shared.begin();
+    for (std::size_t c = 0; c < data.num_cells(); ++c)
+        for (int f = 0; f < traits(data.kinds[c]).num_faces; ++f) {
+            const SourceFace face{c, f};
+            if (next != shared.end() && *next == face)
+                ++next;
+            else
+                area += face_area(data, face);
+        }
+    return area;
+}
+
+}  // namespace
+
+MeshMetrics measure(const MeshData& data) {
+    const MeshCheck found = check(data);
+    if (!found.errors.empty()) {
+        std::string text = found.errors.front();
+        for (std::size_t i = 1; i < found.errors.size(); ++i) text += "\n" + found.errors[i];
+        throw InputError(text);
+    }
+    MeshMetrics metrics;
+    measure_cells(data, metrics);
+    measure_edges(data, metrics);
+    metrics.surface_area = surface_area(data, found.shared_faces);
+    return metrics;
+}
+
+}  // namespace incise::topology

@@ -1,0 +1,47 @@
+// Basic types shared by every folder: points and strongly typed ids.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+namespace incise {
+
+/// A point or vector in three dimensions.
+using Vec3 = Eigen::Vector3d;
+
+}  // namespace incise
+
+namespace incise::topology {
+
+/// An id that indexes arrays of its own kind and nothing else. Ids are given out in ascending
+/// order and stay with their node or element through all edits; an id is never handed on to
+/// another one, except that undoing an edit takes back the ids which that edit gave out.
+template <class Tag>
+struct Id {
+    std::int32_t value = -1;
+
+    constexpr Id() = default;
+    constexpr explicit Id(std::size_t index) : value(static_cast<std::int32_t>(index)) {}
+
+    constexpr bool is_valid() const { return value >= 0; }
+    constexpr std::size_t index() const { return static_cast<std::size_t>(value); }
+    constexpr auto operator<=>(const Id&) const = default;
+};
+
+using NodeId = Id<struct NodeTag>;
+using ElementId = Id<struct ElementTag>;
+
+/// One side of an element: local face numbers are those of cell_kind.h.
+struct FaceId {
+    ElementId element;
+    std::int32_t face = -1;
+
+    constexpr bool is_valid() const { return element.is_valid(); }
+    constexpr auto operator<=>(const FaceId&) const = default;
+};
+
+}  // namespace incise::topology

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/validate.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "topology/geometry.h"
+
+namespace incise::topology {
+
+std::vector<std::string> validate(const Mesh& mesh) {
+    std::vector<std::string> found = mesh.map().differences_to(mesh);
+    const auto report = [&](auto&&... parts) {
+        std::ostringstream text;
+        (text << ... << parts);
+        found.push_back(text.str());
+    };
+    if (!mesh.map().is_valid()) report("CGAL calls the map invalid");
+
+    std::size_t num_elements = 0;
+    std::vector<std::vector<ElementId>> holders(mesh.node_capacity());
+    std::vector<Vec3> x;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        ++num_elements;
+        x.clear();
+        const auto corners = mesh.corners(e);
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            if (!mesh.is_alive(corners[k]))
+                report("element ", i, " has the dead node ", corners[k].value);
+            if (std::count(corners.begin(), corners.end(), corners[k]) != 1)
+                report("element ", i, " has node ", corners[k].value, " twice");
+            holders[corners[k].index()].push_back(e);
+            x.push_back(mesh.rest_position(corners[k]));
+        }
+        if (!(signed_volume(mesh.kind(e), x) > 0.0))
+            report("element ", i, " has no positive volume at rest");
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            const FaceId face{e, f}, other = mesh.neighbor(face);
+            if (!other.is_valid()) continue;
+            if (!mesh.is_alive(other.element))
+                report("element ", i, " has the dead neighbour ", other.element.value);
+            else if (mesh.neighbor(other) != face)
+                report("element ", i, " is unknown to its neighbour ", other.element.value);
+            else if (matching_shift(mesh, face, other) < 0)
+                report("elements ", i, " and ", other.element.value, " disagree on their face");
+        }
+    }
+    if (num_elements != mesh.num_elements())
+        report("there are ", num_elements, " elements, counted as ", mesh.num_elements());
+
+    std::size_t num_nodes = 0;
+    std::vector<ElementId> star;
+    for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
+        const NodeId n(i);
+        if (!mesh.is_alive(n)) {
+            if (!holders[i].empty()) report("the dead node ", i, " has elements");
+            continue;
+        }
+        ++num_nodes;
+        mesh.star(n, star);
+        if (star != holders[i])
+            report("the elements of node ", i, " do not hang together through faces at it");
+        else if (star.front() != mesh.anchor(n))
+            report("the anchor of node ", i, " is not its lowest element");
+    }
+    if (num_nodes != mesh.num_nodes())
+        report("there are ", num_nodes, " nodes, counted as ", mesh.num_nodes());
+    return found;
+}
+
+}  // namespace incise::topology
