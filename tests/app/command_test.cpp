@@ -77,11 +77,11 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
         EXPECT_EQ(outcome.out, "") << arguments;
         return outcome.err;
     };
-    EXPECT_EQ(refused("").substr(0, 26), "incise: a verb is missing:");
-    EXPECT_EQ(refused("inof a.vtu").substr(0, 57),
-              "incise: verb 'inof': is not known; did you mean 'info'? Kn");
-    EXPECT_EQ(refused("cut a.vtu").substr(0, 61),
-              "incise: verb 'cut': this version does not support it yet; sup");
+    EXPECT_EQ(refused("").find("incise: a verb is missing:"), 0u);
+    EXPECT_EQ(refused("inof a.vtu").find("incise: verb 'inof': is not known; did you mean 'info'?"),
+              0u);
+    EXPECT_EQ(
+        refused("cut a.vtu").find("incise: verb 'cut': this version does not support it yet;"), 0u);
     EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
     EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");

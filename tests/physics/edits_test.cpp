@@ -41,8 +41,8 @@ Surroundings surroundings(const Mesh& mesh, const std::vector<FaceId>& loaded_fa
     Surroundings s;
     s.gravity = {0.3, 0.2, -9.81};
     s.damping = 2.0;
-    Support held{.name = "held", .nodes = near(0.0, 0.01)};
-    Support moved{.name = "moved", .nodes = near(0.01, 0.3), .components = {false, true, true}};
+    const Support held = holding("held", near(0.0, 0.01));
+    Support moved = holding("moved", near(0.01, 0.3), {false, true, true});
     moved.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0.2, 0.3)}});
     moved.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.5}});
     s.supports = {held, moved};
@@ -256,8 +256,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::pair{"one tetrahedron", 200}, std::pair{"two by a face", 1200},
                     std::pair{"two by an edge", 600}, std::pair{"cube", 2700},
                     std::pair{"ring", 2700}, std::pair{"ball", 2700}, std::pair{"organ", 300}),
-    [](const auto& info) {
-        std::string name = info.param.first;
+    [](const auto& row) {
+        std::string name = row.param.first;
         std::replace(name.begin(), name.end(), ' ', '_');
         return name;
     });

@@ -55,7 +55,7 @@ TEST(Supports, BearTheWeightInEquilibrium) {
     Surroundings s;
     s.gravity = {0.0, 0.0, -0.5};
     s.damping = 10.0;
-    s.supports.push_back({.name = "clamp", .nodes = left_end(mesh)});
+    s.supports.push_back(holding("clamp", left_end(mesh)));
     Model model(mesh, table_of_one_law(law, density), s);
     const double dt = 0.8 * model.stable_step(), weight = density * bar_volume * 0.5;
     double time = 0.0;
@@ -71,7 +71,7 @@ TEST(Supports, BearTheWeightInEquilibrium) {
 TEST(Supports, PrescribeDisplacementAndRotation) {
     const Mesh mesh = bar();
     Surroundings s;
-    Support support{.name = "hand", .nodes = left_end(mesh)};
+    Support support = holding("hand", left_end(mesh));
     support.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 0.0, 0.04)}});
     support.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, std::numbers::pi / 2}});
     support.point = {0.0, 0.05, 0.05};
@@ -101,9 +101,8 @@ TEST(Supports, LeaveOtherComponentsFree) {
     const Mesh mesh = bar();
     Surroundings s;
     s.gravity = {1.0, 2.0, 3.0};
-    s.supports.push_back({.name = "plane",
-                          .nodes = NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
-                          .components = {false, true, false}});
+    s.supports.push_back(holding("plane", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
+                {false, true, false}));
     Model model(mesh, table_of_one_law(law), s);
     double time = 0.0;
     for (int i = 0; i < 10; ++i) step(model, time, 1e-3);
@@ -119,8 +118,9 @@ TEST(Supports, LeaveOtherComponentsFree) {
 TEST(Supports, TakeInNodesBornBetweenTheirs) {
     Mesh mesh = bar();
     Surroundings s;
-    Support support{.name = "middle"};
-    support.nodes = NodeSet(nodes_where(mesh, [](const Vec3& x) { return std::abs(x.x() - 0.1) < 1e-9; }));
+    Support support = holding(
+        "middle",
+        NodeSet(nodes_where(mesh, [](const Vec3& x) { return std::abs(x.x() - 0.1) < 1e-9; })));
     support.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 0.01, 0.0)}});
     s.supports.push_back(support);
     s.gravity = {0.0, 0.0, -9.81};
@@ -156,7 +156,7 @@ TEST(Supports, DoNotSpreadToANodeThatComesBack) {
     for (const auto& record : opened.nodes_added) held.push_back(record.sources[0].node);
     Surroundings s;
     s.gravity = {0.0, 0.0, -9.81};
-    s.supports.push_back({.name = "one side", .nodes = NodeSet(held)});
+    s.supports.push_back(holding("one side", NodeSet(held)));
     Model model(mesh, table_of_one_law(law), s);
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
@@ -176,11 +176,10 @@ TEST(Supports, RefuseToHoldANodeTwice) {
     const Mesh mesh = bar();
     const auto table = table_of_one_law(law);
     Surroundings s;
-    s.supports.push_back({.name = "clamp", .nodes = left_end(mesh)});
-    s.supports.push_back({.name = "rail",
-                          .nodes = NodeSet(nodes_where(
-                              mesh, [](const Vec3& x) { return x.z() == 0.0; })),
-                          .components = {false, false, true}});
+    s.supports.push_back(holding("clamp", left_end(mesh)));
+    s.supports.push_back(holding(
+        "rail", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
+        {false, false, true}));
     try {
         Model model(mesh, table, s);
         FAIL() << "not refused";

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/model.h"
@@ -79,6 +81,16 @@ inline void step(Model& model, double& time, double dt) {
     model.compute_forces(time);
     model.integrate(time, dt);
     time += dt;
+}
+
+/// A support that holds its nodes where they are at rest.
+inline Support holding(std::string name, NodeSet nodes,
+                       std::array<bool, 3> components = {true, true, true}) {
+    Support support;
+    support.name = std::move(name);
+    support.nodes = std::move(nodes);
+    support.components = components;
+    return support;
 }
 
 /// Living nodes whose rest position is where `is_inside` says.
