@@ -7,7 +7,9 @@
 #include "app/verbs.h"
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
+#include "sim/run_writer.h"
 #include "sim/scenario_reader.h"
+#include "sim/simulation.h"
 #include "topology/error.h"
 #include "topology/mesh_check.h"
 
@@ -54,6 +56,16 @@ Findings check_scenario(const std::filesystem::path& path) {
         findings.errors.insert(findings.errors.end(), of_mesh.errors.begin(), of_mesh.errors.end());
         findings.warnings.insert(findings.warnings.end(), of_mesh.warnings.begin(),
                                  of_mesh.warnings.end());
+    }
+    if (findings.errors.empty()) {
+        // What only the body can tell: empty selections, regions without material, kinds of cells
+        // without a force law, too large a step, expectations of quantities that no run has.
+        try {
+            const sim::Simulation simulation(scenario);
+            sim::failed_expectations(simulation);
+        } catch (const std::runtime_error& error) {
+            findings.errors.push_back(path.string() + ": " + error.what());
+        }
     }
     findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +
                        count_of(scenario.materials.size(), "material") + ", " +

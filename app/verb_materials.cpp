@@ -96,7 +96,7 @@ void print_detail(const MaterialModel& model) {
     };
     std::cout << model.key << ": " << model.title << '\n';
     section("In a scenario", scenario_line(model));
-    section("Energy per unit rest volume", model.energy);
+    section("Energy", model.energy);
     section("Takes exactly one of these sets, besides density",
             sim::list_of_sets(model.parameter_sets));
     std::cout << "\nParameters\n";

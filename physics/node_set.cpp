@@ -24,7 +24,8 @@ bool NodeSet::apply(const topology::ChangeSet& changes) {
     while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
         members_.pop_back();
     for (const topology::NodeRecord& record : changes.nodes_added) {
-        if (record.num_sources == 0 || contains(record.id)) continue;
+        // One that comes back is a member if it is still listed, whatever its sources.
+        if (record.id.index() < changes.node_capacity_before) continue;
         bool all = true;
         for (int s = 0; s < record.num_sources && all; ++s)
             all = contains(record.sources[static_cast<std::size_t>(s)].node);

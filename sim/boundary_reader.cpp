@@ -119,10 +119,7 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
         spec.fixed = read_axes(constraint);
         read_motion(constraint, end_time, spec);
         const bool moves = constraint.has("move") || constraint.has("rotate");
-        if (constraint.has("fix") && moves)
-            constraint.error("fix",
-                             "cannot go with move or rotate, which prescribe all three "
-                             "axes: leave one out");
+        if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
         if (!constraint.has("fix") && !moves)
             constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
         specs.push_back(std::move(spec));

@@ -21,7 +21,8 @@ struct ElasticConstants {
 };
 
 /// All given moduli are those at rest, lame_lambda of Mooney-Rivlin too.
-/// For mass-spring the constants are those of a solid of central springs: Poisson's ratio 1/4.
+/// For mass-spring the constants are those of springs in all directions alike: Poisson's ratio is
+/// 1/4, lambda = mu = 2/5 young; a given mesh deviates from them.
 /// Throws InputError if the parameters are not exactly one of the sets that the model takes, or
 /// the constants are not admissible.
 ElasticConstants resolve(Method method, Law law, const ElasticParameters& given);

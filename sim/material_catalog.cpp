@@ -75,7 +75,7 @@ const MaterialModel& mass_spring_model() {
     static const MaterialModel table = {
         "mass-spring",
         "Springs along the edges: the classical baseline",
-        "W = sum over edges k/2 (l - L)^2, stiffness k from young and the rest shape",
+        "W = sum over edges of k/2 (l - L)^2, k the sum of young V / L^2 over the elements there",
         {{young}},
         "young > 0",
         "Comparison with the classical method, not for predictions.",

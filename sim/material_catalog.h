@@ -58,7 +58,7 @@ using ParameterSet = std::vector<Parameter>;
 struct MaterialModel {
     std::string_view key;
     std::string_view title;
-    std::string_view energy;  ///< per unit rest volume
+    std::string_view energy;  ///< w: per unit rest volume; W: in all
     std::vector<ParameterSet> parameter_sets;
     std::string_view admissible;
     std::string_view use;

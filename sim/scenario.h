@@ -88,12 +88,12 @@ struct TimeKey {
     Value value;
 };
 
-/// Nodes that are held or led. Either `fixed` has an axis, or `move` or `rotate` has keys, and
-/// these prescribe all three axes: x = about + R(angle) (X - about) + by.
+/// Nodes that are held or led: their positions along the fixed axes are those of
+/// x = about + R(angle) (X - about) + by, which without keys is the rest position X.
 struct ConstraintSpec {
     std::string name;
     Selection where;
-    std::array<bool, 3> fixed{};
+    std::array<bool, 3> fixed{};  ///< at least one; of a led node all, unless some are named
     std::vector<TimeKey<Vec3>> move;
     std::vector<TimeKey<double>> rotate;  ///< radians
     Vec3 about_point = Vec3::Zero();

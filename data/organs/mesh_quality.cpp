@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "mesh_quality.h"
+#include "data/organs/mesh_quality.h"
 
 #include <algorithm>
 #include <cmath>

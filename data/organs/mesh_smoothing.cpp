@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "mesh_smoothing.h"
+#include "data/organs/mesh_smoothing.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

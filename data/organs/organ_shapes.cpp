@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "organ_shapes.h"
+#include "data/organs/organ_shapes.h"
 
-#include "implicit_shapes.h"
+#include "data/organs/implicit_shapes.h"
 
 namespace incise::organs {
 

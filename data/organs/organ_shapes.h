@@ -18,9 +18,9 @@ struct Organ {
     Shape body;              ///< region 1, where it is not region 2
     Shape inner;             ///< region 2, as far as it lies in the body
     double bounding_radius;  ///< of a ball round the origin that holds the body; metres
-    double surface_size;     ///< size of the elements at the surface; metres
-    double core_size;        ///< size deep inside; metres
-    double size_growth;      ///< growth of the size per depth
+    double surface_size;     ///< largest circumradius of elements at the surface; metres
+    double core_size;        ///< the same deep inside; metres
+    double size_growth;      ///< growth of that radius per depth
 };
 
 /// A liver of some 20 cm with a tumour of 2.5 cm (region 2) in its right lobe.

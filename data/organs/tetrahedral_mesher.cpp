@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tetrahedral_mesher.h"
+#include "data/organs/tetrahedral_mesher.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
@@ -15,7 +15,6 @@
 #include <unordered_map>
 
 #include "topology/error.h"
-#include "topology/geometry.h"
 
 namespace incise::organs {
 

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "organ_shapes.h"
+#include "data/organs/organ_shapes.h"
 #include "topology/mesh_data.h"
 
 namespace incise::organs {

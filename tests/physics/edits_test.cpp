@@ -34,9 +34,8 @@ Surroundings surroundings(const Mesh& mesh, const std::vector<FaceId>& loaded_fa
     double low = std::numeric_limits<double>::infinity();
     for (const Vec3& x : mesh.rest_positions()) low = std::min(low, x.x());
     const auto near = [&](double from, double to) {
-        return NodeSet(nodes_where(mesh, [&](const Vec3& x) {
-            return x.x() >= low + from && x.x() < low + to;
-        }));
+        return NodeSet(nodes_where(
+            mesh, [&](const Vec3& x) { return x.x() >= low + from && x.x() < low + to; }));
     };
     Surroundings s;
     s.gravity = {0.3, 0.2, -9.81};
@@ -103,8 +102,7 @@ struct Carried {
 
 Carried carried_by(const Model& model, const MaterialTable& table, ElementId e) {
     const ElementResult result = model.element_result(e);
-    const double density =
-        table.materials[table.of_region.at(model.mesh().region(e))].density;
+    const double density = table.materials[table.of_region.at(model.mesh().region(e))].density;
     Carried c{density * result.volume, result.volume, result.energy, Vec3::Zero()};
     for (const NodeId n : model.mesh().corners(e))
         c.momentum += 0.25 * c.mass * model.velocities()[n.index()];
@@ -224,7 +222,15 @@ class EditedBody {
     int num_irreversible_ = 0;
 };
 
-class RandomEdits : public testing::TestWithParam<std::pair<const char*, int>> {};
+struct EditProgram {
+    std::string family;
+    int num_edits;
+};
+void PrintTo(const EditProgram& program, std::ostream* out) {
+    *out << program.num_edits << " edits of " << program.family;
+}
+
+class RandomEdits : public testing::TestWithParam<EditProgram> {};
 
 TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
     const auto [name, num_edits] = GetParam();
@@ -243,24 +249,24 @@ TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
             body->edit_and_check();
             if (HasFailure()) return;
         }
-        RecordProperty("irreversible", num_irreversible);
-        EXPECT_LT(num_irreversible, num_edits / 2);
+        EXPECT_LT(num_irreversible, num_edits / 2);  // or undoing is hardly tested
         return;
     }
     FAIL() << "no family " << name;
 }
 
 // 10,000 edits and more in all.
-INSTANTIATE_TEST_SUITE_P(
-    OfTetrahedra, RandomEdits,
-    testing::Values(std::pair{"one tetrahedron", 200}, std::pair{"two by a face", 1200},
-                    std::pair{"two by an edge", 600}, std::pair{"cube", 2700},
-                    std::pair{"ring", 2700}, std::pair{"ball", 2700}, std::pair{"organ", 300}),
-    [](const auto& row) {
-        std::string name = row.param.first;
-        std::replace(name.begin(), name.end(), ' ', '_');
-        return name;
-    });
+INSTANTIATE_TEST_SUITE_P(OfTetrahedra, RandomEdits,
+                         testing::Values(EditProgram{"one tetrahedron", 200},
+                                         EditProgram{"two by a face", 1200},
+                                         EditProgram{"two by an edge", 600},
+                                         EditProgram{"cube", 2700}, EditProgram{"ring", 2700},
+                                         EditProgram{"ball", 2700}, EditProgram{"organ", 300}),
+                         [](const auto& program) {
+                             std::string name = program.param.family;
+                             std::replace(name.begin(), name.end(), ' ', '_');
+                             return name;
+                         });
 
 TEST(RandomEdits, OnEveryFamilyOfTetrahedraAreTested) {
     EXPECT_EQ(test::tetrahedral_families().size(), 7u) << "add the new one above";
@@ -334,6 +340,7 @@ TEST(RandomEdits, OfOtherCellsLeaveAValidMeshAndCanBeUndone) {
 TEST(ModelApply, RefusesAnEditOutOfTurn) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1e3, 1e3}));
+    const ModelSnapshot before(model, 0.0);
     const auto remove = [&](std::size_t e) {
         topology::MeshEdit edit(mesh);
         edit.remove(ElementId(e));
@@ -343,9 +350,8 @@ TEST(ModelApply, RefusesAnEditOutOfTurn) {
     EXPECT_THROW(model.apply(second), InputError);  // the first is missing
     EXPECT_THROW(model.apply(first), InputError);   // the mesh is further on
     replay(mesh, inverse(second));
-    const ModelSnapshot before(model, 0.0);
     model.apply(first);
-    EXPECT_THROW(model.apply(first), InputError);  // a second time
+    EXPECT_THROW(model.apply(first), InputError);           // a second time
     EXPECT_THROW(model.apply(inverse(first)), InputError);  // the mesh has not gone back
     replay(mesh, inverse(first));
     model.apply(inverse(first));

@@ -11,18 +11,18 @@ namespace {
 
 using topology::Mesh;
 
-// Long runs that stay well within the range where each law is a material; speeds give as much
-// kinetic as elastic energy.
-BodyState swinging_state(const Mesh& mesh) {
+/// Stretched and sheared by about `amplitude`, with about as much kinetic as elastic energy, and
+/// no momentum to speak of.
+BodyState swinging_state(const Mesh& mesh, double amplitude) {
     test::Random random(12);
     BodyState state = rest_state(mesh);
-    Mat3 F = Mat3::Identity(), G = Mat3::Zero();
+    Mat3 F = Mat3::Identity(), G;
     for (int c = 0; c < 3; ++c) {
-        F.col(c) += random.vector(0.15);
-        G.col(c) += random.vector(0.3);
+        F.col(c) += random.vector(amplitude);
+        G.col(c) = random.vector(2.0 * amplitude);
     }
     for (std::size_t n = 0; n < state.positions.size(); ++n) {
-        state.velocities[n] = G * state.positions[n] + Vec3(0.3, -0.2, 0.1);
+        state.velocities[n] = G * (state.positions[n] - Vec3::Constant(0.5));
         state.positions[n] = F * state.positions[n];
     }
     return state;
@@ -77,13 +77,13 @@ struct FreeRun {
 
 TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    for (const FreeRun& free : {FreeRun{"neo-Hookean", NeoHookean{1923.0, 5769.0}, 100'000},
-                                FreeRun{"Mooney-Rivlin", MooneyRivlin{1346.0, 577.0, 3462.0}, 20'000},
-                                FreeRun{"Saint Venant-Kirchhoff", SaintVenantKirchhoff{5769.0, 3846.0},
-                                        20'000}}) {
+    for (const FreeRun& free :
+         {FreeRun{"neo-Hookean", NeoHookean{1923.0, 5769.0}, 100'000},
+          FreeRun{"Mooney-Rivlin", MooneyRivlin{1346.0, 577.0, 3462.0}, 20'000},
+          FreeRun{"Saint Venant-Kirchhoff", SaintVenantKirchhoff{5769.0, 3846.0}, 20'000}}) {
         SCOPED_TRACE(free.name);
         Model model(mesh, table_of_one_law(free.law));
-        set_state(model, swinging_state(mesh));
+        set_state(model, swinging_state(mesh, 0.01));
         const Totals start = model.totals();
         double momentum_scale = 0.0, angular_scale = 0.0;
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
@@ -97,16 +97,35 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
         const double round_off = 1e-15 * std::sqrt(free.num_steps);
         EXPECT_LE((end.momentum - start.momentum).norm(), round_off * momentum_scale);
         EXPECT_LE((end.angular_momentum - start.angular_momentum).norm(),
-                  20 * round_off * angular_scale);
+                  round_off * angular_scale);
 
         const std::span<const double> energies = record.staggered;
-        const auto first = energies.first(energies.size() / 2), second = energies.last(first.size());
-        const double energy = average(energies);
-        EXPECT_LE(swing(energies), 3e-3 * energy);
-        EXPECT_LE(std::abs(average(second) - average(first)), 0.1 * swing(energies));
-        EXPECT_LE(swing(second), 1.5 * swing(first));
-        RecordProperty(std::string(free.name).substr(0, 4), std::to_string(swing(energies) / energy));
+        const std::size_t tenth = energies.size() / 10;
+        const double early_swing = swing(energies.first(tenth));
+        // Of second order in the step: 3 to 5 parts in a thousand here, against a tenth for
+        // energies that take the velocities as they stand.
+        EXPECT_LE(swing(energies), 1e-2 * average(energies));
+        EXPECT_LE(swing(energies), 0.1 * swing(record.raw));
+        EXPECT_LE(swing(energies.last(tenth)), 2.0 * early_swing);
+        const std::size_t half = energies.size() / 2;
+        EXPECT_LE(std::abs(average(energies.last(half)) - average(energies.first(half))),
+                  early_swing);
     }
+}
+
+// For linear forces the staggered energy is constant: what is left of its swing is due to the
+// curvature of the law and so, relative to the energy, in proportion to the amplitude.
+TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
+    const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
+    Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
+    const auto relative_swing = [&](double amplitude) {
+        set_state(model, swinging_state(mesh, amplitude));
+        const EnergyRecord record = run(model, 0.5 * model.stable_step(), 2000);
+        return swing(record.staggered) / average(record.staggered);
+    };
+    const double moderate = relative_swing(1e-3), small = relative_swing(1e-4);
+    EXPECT_NEAR(moderate / small, 10.0, 1.0);
+    EXPECT_LE(small, 1e-4);
 }
 
 TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
@@ -114,7 +133,7 @@ TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
     const double dt = 0.25 * model.stable_step();
     const auto swings = [&](double step_size, int num_steps) {
-        set_state(model, swinging_state(mesh));
+        set_state(model, swinging_state(mesh, 0.05));
         const EnergyRecord record = run(model, step_size, num_steps);
         return std::array{swing(record.raw), swing(record.mean), swing(record.staggered)};
     };
@@ -127,15 +146,15 @@ TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
 TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     Surroundings s;
-    s.gravity = {1.0, -2.0, -9.81};
+    s.gravity = {0.1, -0.2, -0.981};
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
-    set_state(model, swinging_state(mesh));
+    set_state(model, swinging_state(mesh, 0.05));
     const double start = model.totals().gravity_energy;
     const Vec3 momentum = model.totals().momentum;
     double time = 0.0;
     const double dt = 0.5 * model.stable_step();
     double path = 0.0;  // of work, up and down
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 500; ++i) {
         const double before = model.external_work();
         step(model, time, dt);
         path += std::abs(model.external_work() - before);
@@ -150,13 +169,14 @@ TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
 // Everything at once: gravity, a moving support, loads, damping. Energy gained is work done less
 // what damping took, up to an error of first order in the step.
 TEST(DrivenMotion, KeepsTheEnergyLedger) {
+    constexpr double end_time = 2.0;
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    const auto ledger_error = [&](double share_of_stable_step) {
+    const auto ledger_error = [&](int num_steps) {
         Surroundings s;
         s.gravity = {0.0, 0.5, -2.0};
         s.damping = 1.5;
-        Support support = holding(
-            "hand", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0; })));
+        Support support =
+            holding("hand", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0; })));
         // Smooth from rest: the kinks of linear keys have an error of their own.
         std::vector<std::pair<double, Vec3>> keys;
         for (int i = 0; i <= 2000; ++i) {
@@ -167,20 +187,23 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
         s.supports.push_back(support);
         s.loads.push_back({"gas", PressureLoad{topology::boundary_faces(mesh), 200.0}, {}});
         Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
-        double time = 0.0;
-        const double dt = share_of_stable_step * model.stable_step();
-        const int num_steps = static_cast<int>(std::round(2.0 / dt));
-        for (int i = 0; i < num_steps; ++i) step(model, time, dt);
-        const Totals end = model.totals();
+        double time = 0.0, largest = 0.0;
+        const double dt = end_time / num_steps;
+        EXPECT_LT(dt, 0.25 * model.stable_step());
+        for (int i = 0; i < num_steps; ++i) {
+            step(model, time, dt);
+            const Totals now = model.totals();
+            largest =
+                std::max(largest, std::abs(now.kinetic_energy + now.elastic_energy +
+                                           model.dissipated_energy() - model.external_work()));
+        }
         EXPECT_GT(model.dissipated_energy(), 0.0);
-        return (end.kinetic_energy + end.elastic_energy - model.external_work() +
-                model.dissipated_energy()) /
-               (std::abs(model.external_work()) + model.dissipated_energy());
+        return largest / (std::abs(model.external_work()) + model.dissipated_energy());
     };
-    const double coarse = ledger_error(0.2), middle = ledger_error(0.1), fine = ledger_error(0.05);
-    EXPECT_LE(std::abs(coarse), 0.05);
-    EXPECT_NEAR(coarse / middle, 2.0, 0.4);
-    EXPECT_NEAR(middle / fine, 2.0, 0.2);
+    const double coarse = ledger_error(250), middle = ledger_error(500), fine = ledger_error(1000);
+    EXPECT_LE(coarse, 0.01);
+    EXPECT_NEAR(coarse / middle, 2.0, 0.1);
+    EXPECT_NEAR(middle / fine, 2.0, 0.1);
 }
 
 TEST(DampedMotion, LosesMomentumAtItsRate) {
@@ -188,7 +211,9 @@ TEST(DampedMotion, LosesMomentumAtItsRate) {
     Surroundings s;
     s.damping = 3.0;
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
-    set_state(model, swinging_state(mesh));
+    BodyState state = swinging_state(mesh, 0.05);
+    for (Vec3& v : state.velocities) v += Vec3(0.3, -0.2, 0.1);
+    set_state(model, state);
     const Vec3 start = model.totals().momentum;
     double time = 0.0;
     const double dt = 0.5 * model.stable_step();

@@ -43,7 +43,8 @@ TEST(Laws, GiveByLinksTheEnergyOfTheDeformationGradient) {
         for (int i = 0; i < 100; ++i) {
             const Tetrahedron X = random_tetrahedron(random);
             const Mat3 F = random_deformation(
-                random, {random.uniform(0.8, 2.0), random.uniform(0.8, 2.0), random.uniform(0.8, 2.0)});
+                random,
+                {random.uniform(0.8, 2.0), random.uniform(0.8, 2.0), random.uniform(0.8, 2.0)});
             const auto element = kernel.precompute(X);
             const double w = energy_density(kernel.law, F);
             const double modulus = kernel.law.rest_lambda() + kernel.law.rest_mu();

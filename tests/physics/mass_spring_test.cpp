@@ -28,8 +28,7 @@ TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
             energy += 0.25 * stiffness * (length - rest) * (length - rest);  // each edge twice
         }
     const Tetrahedron f = springs.forces(element, x);
-    for (std::size_t i = 0; i < 4; ++i)
-        EXPECT_LE((f[i] - expected[i]).norm(), 1e-14 * young);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_LE((f[i] - expected[i]).norm(), 1e-14 * young);
     EXPECT_NEAR(springs.energy(element, x), energy, 1e-14 * young);
 }
 
@@ -54,8 +53,8 @@ TEST(MassSprings, OfNoLengthPushNowhere) {
 // The shares of the elements round an edge add up: an edge of a body of two materials has a
 // stiffness between the two.
 TEST(MassSprings, ShareAnEdgeBetweenElements) {
-    topology::MeshData data = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
-                                                 Vec3::Ones(), {1, 1, 1});
+    topology::MeshData data =
+        topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
     const auto pull = [&](std::vector<double> youngs) {
         for (std::size_t c = 0; c < data.num_cells(); ++c)
             data.regions[c] = static_cast<int>(c % youngs.size());

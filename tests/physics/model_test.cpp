@@ -98,9 +98,9 @@ TEST(Model, SumsTheForcesOfItsElements) {
 }
 
 TEST(Model, ReportsTotalsOfARigidMotion) {
-    const Mesh mesh = Mesh::build(topology::box_mesh(CellKind::tetrahedron, {1, 2, 3}, {2, 2, 2},
-                                                     {2, 2, 2}))
-                          .mesh;
+    const Mesh mesh =
+        Mesh::build(topology::box_mesh(CellKind::tetrahedron, {1, 2, 3}, {2, 2, 2}, {2, 2, 2}))
+            .mesh;
     Surroundings s;
     s.gravity = {0.0, 0.0, -10.0};
     Model model(mesh, table_of_one_law(NeoHookean{1e3, 1e3}, 500.0), s);

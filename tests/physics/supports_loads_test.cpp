@@ -58,14 +58,14 @@ TEST(Supports, BearTheWeightInEquilibrium) {
     s.supports.push_back(holding("clamp", left_end(mesh)));
     Model model(mesh, table_of_one_law(law, density), s);
     const double dt = 0.8 * model.stable_step(), weight = density * bar_volume * 0.5;
+    const double height_energy = model.totals().gravity_energy;
     double time = 0.0;
     while (time < 10.0) step(model, time, dt);
     EXPECT_NEAR(model.reaction(0).z(), weight, 1e-9 * weight);
     EXPECT_NEAR(model.reaction(0).x(), 0.0, 1e-9 * weight);
     EXPECT_NEAR(model.reaction(0).y(), 0.0, 1e-9 * weight);
-    // It hangs down, and all work that came in and stayed is elastic.
-    EXPECT_LT(model.totals().gravity_energy, 0.0);
-    EXPECT_LT(model.totals().kinetic_energy, 1e-15);
+    EXPECT_LT(model.totals().gravity_energy, height_energy);
+    EXPECT_LT(model.totals().kinetic_energy, 1e-15 * model.totals().elastic_energy);
 }
 
 TEST(Supports, PrescribeDisplacementAndRotation) {
@@ -89,8 +89,9 @@ TEST(Supports, PrescribeDisplacementAndRotation) {
         for (const NodeId n : nodes_where(mesh, [](const Vec3& x) { return x.x() == 0.0; })) {
             const Vec3 r = mesh.rest_position(n) - support.point;
             const Vec3 expected =
-                support.point + Vec3(0.0, std::cos(angle) * r.y() - std::sin(angle) * r.z(),
-                                     std::sin(angle) * r.y() + std::cos(angle) * r.z() + 0.04 * time);
+                support.point +
+                Vec3(0.0, std::cos(angle) * r.y() - std::sin(angle) * r.z(),
+                     std::sin(angle) * r.y() + std::cos(angle) * r.z() + 0.04 * time);
             EXPECT_LE((model.positions()[n.index()] - expected).norm(), 1e-15);
         }
     }
@@ -101,8 +102,9 @@ TEST(Supports, LeaveOtherComponentsFree) {
     const Mesh mesh = bar();
     Surroundings s;
     s.gravity = {1.0, 2.0, 3.0};
-    s.supports.push_back(holding("plane", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
-                {false, true, false}));
+    s.supports.push_back(holding("plane",
+                                 NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
+                                 {false, true, false}));
     Model model(mesh, table_of_one_law(law), s);
     double time = 0.0;
     for (int i = 0; i < 10; ++i) step(model, time, 1e-3);
@@ -143,8 +145,10 @@ TEST(Supports, TakeInNodesBornBetweenTheirs) {
     model.apply(changes);
     for (int i = 0; i < 100; ++i) step(model, time, dt);
     for (const auto& record : changes.nodes_added)
-        EXPECT_LE((model.positions()[record.id.index()] - record.rest_position -
-                   Vec3(0.0, 0.01, 0.0)).norm(), 1e-15);
+        EXPECT_LE(
+            (model.positions()[record.id.index()] - record.rest_position - Vec3(0.0, 0.01, 0.0))
+                .norm(),
+            1e-15);
 }
 
 // A node that an edit merged away and its undoing brought back is held only if it was before.
@@ -177,9 +181,9 @@ TEST(Supports, RefuseToHoldANodeTwice) {
     const auto table = table_of_one_law(law);
     Surroundings s;
     s.supports.push_back(holding("clamp", left_end(mesh)));
-    s.supports.push_back(holding(
-        "rail", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
-        {false, false, true}));
+    s.supports.push_back(
+        holding("rail", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
+                {false, false, true}));
     try {
         Model model(mesh, table, s);
         FAIL() << "not refused";
@@ -227,11 +231,10 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
         // Shared by mass, the force gives all copies the acceleration of the undivided node.
         for (const auto& record : changes.nodes_added) {
             const NodeId origin = record.sources[0].node;
-            const bool is_loaded =
-                std::find(loaded.begin(), loaded.end(), origin) != loaded.end();
+            const bool is_loaded = std::find(loaded.begin(), loaded.end(), origin) != loaded.end();
             for (const NodeId n : {record.id, origin}) {
-                const Vec3 expected =
-                    is_loaded ? (force / masses_before[origin.index()]).eval() : Vec3::Zero().eval();
+                const Vec3 expected = is_loaded ? (force / masses_before[origin.index()]).eval()
+                                                : Vec3::Zero().eval();
                 EXPECT_LE((model.velocities()[n.index()] / dt - expected).norm(),
                           1e-12 * force.norm() / model.masses()[n.index()]);
             }
@@ -262,8 +265,7 @@ TEST(Loads, OfTractionIsForcePerRestArea) {
     const Load load{"wind", TractionLoad{top, traction},
                     TimeCurve<double>({{0.0, 0.0}, {1.0, 2.0}})};
     test::Random random(1);
-    for (const BodyState& state :
-         {rest_state(mesh), random_state(mesh, random, 0.005, 0.0)}) {
+    for (const BodyState& state : {rest_state(mesh), random_state(mesh, random, 0.005, 0.0)}) {
         EXPECT_LE((resultant(mesh, load, state, 0.25) - 0.5 * area * traction).norm(), 1e-10);
         EXPECT_LE(resultant(mesh, load, state, 0.0).norm(), 1e-10);
         EXPECT_LE((resultant(mesh, load, state, 7.0) - 2.0 * area * traction).norm(), 1e-10);

@@ -8,8 +8,8 @@
 namespace incise::physics {
 namespace {
 
-constexpr double side = 0.1;          // m
-constexpr double tolerance = 1e-9;    // relative; the tables are good to 1e-13
+constexpr double side = 0.1;        // m
+constexpr double tolerance = 1e-9;  // relative; the tables are good to 1e-13
 
 class UniaxialCube {
   public:

@@ -44,12 +44,12 @@ struct StaticSolution {
 /// and after some of its inner faces are opened. Labels of nodes and elements are the numbers here.
 struct CutReference {
     std::string name;
-    topology::MeshData mesh;                              ///< uncut
-    std::vector<std::array<std::int64_t, 3>> cut_faces;   ///< by points
-    std::vector<std::array<std::int64_t, 4>> cut_tets;    ///< corners after the cut
-    std::vector<std::int64_t> origin;                     ///< of each point after the cut
-    std::vector<std::int64_t> fixed, moved;               ///< points of the uncut body
-    Vec3 displacement;                                    ///< of the moved points, m
+    topology::MeshData mesh;                             ///< uncut
+    std::vector<std::array<std::int64_t, 3>> cut_faces;  ///< by points
+    std::vector<std::array<std::int64_t, 4>> cut_tets;   ///< corners after the cut
+    std::vector<std::int64_t> origin;                    ///< of each point after the cut
+    std::vector<std::int64_t> fixed, moved;              ///< points of the uncut body
+    Vec3 displacement;                                   ///< of the moved points, m
     std::vector<StaticSolution> solutions;
 };
 CutReference organ_reference();

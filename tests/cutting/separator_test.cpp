@@ -1,0 +1,361 @@
+// What a blade opens in tissue that is still, against plain geometry.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/separator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "support/mesh_families.h"
+#include "swept_body.h"
+#include "topology/box_mesh.h"
+
+namespace incise::cutting {
+namespace {
+
+using test::Random;
+
+/// What becomes of a body whose elements are parted by side, by flood fill: the number of pieces,
+/// and that of elements that are in none of the two largest. There are such crumbs: an element at
+/// the rim whose centre is on one side while its only neighbours' are on the other.
+struct Pieces {
+    int count;
+    std::size_t num_in_crumbs;
+};
+Pieces pieces_of(const Body& body, const std::function<bool(ElementId)>& side) {
+    std::vector<std::size_t> root(body.mesh.element_capacity());
+    for (std::size_t i = 0; i < root.size(); ++i) root[i] = i;
+    const auto find = [&](std::size_t i) {
+        while (root[i] != i) i = root[i];
+        return i;
+    };
+    for (const auto& pair : body.inner_faces())
+        if (side(pair.a.element) == side(pair.b.element))
+            root[find(pair.a.element.index())] = find(pair.b.element.index());
+    std::map<std::size_t, std::size_t> sizes;
+    for (std::size_t i = 0; i < root.size(); ++i) ++sizes[find(i)];
+    std::vector<std::size_t> sorted;
+    for (const auto& [piece, size] : sizes) sorted.push_back(size);
+    std::sort(sorted.rbegin(), sorted.rend());
+    std::size_t num_in_crumbs = 0;
+    for (std::size_t i = 2; i < sorted.size(); ++i) num_in_crumbs += sorted[i];
+    return {static_cast<int>(sorted.size()), num_in_crumbs};
+}
+
+TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            SCOPED_TRACE(seed);
+            Random random(seed);
+            Body body(family.data);
+            const auto box = body.box();
+            const double size = box.diagonal().norm();
+            const Plane plane(box.center() + random.vector(0.1 * size), random.vector(1));
+            std::vector<bool> above;
+            for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e)
+                above.push_back(plane.height(body.centre(ElementId(e))) > 0.0);
+            const auto side = [&](ElementId e) -> bool { return above[e.index()]; };
+            const auto faces = body.inner_faces();
+            const std::size_t num_elements = body.mesh.num_elements();
+            const auto [num_pieces, num_in_crumbs] = pieces_of(body, side);
+
+            body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, 2 * size));
+
+            for (const auto& pair : faces)
+                EXPECT_EQ(body.opened.contains(pair), side(pair.a.element) != side(pair.b.element));
+            EXPECT_EQ(topology::components(body.mesh).count, num_pieces);
+            if (is_convex(family.name)) {
+                EXPECT_GE(num_pieces, 2);
+                EXPECT_LE(num_in_crumbs, num_elements / 100);
+            }
+            expect_parted_cleanly(body);
+            const auto once = body.opened;
+            body.step(plane.edge(2 * size, 2 * size), plane.edge(2 * size, -2 * size));
+            EXPECT_EQ(body.opened, once);  // the way back opens nothing
+        }
+    }
+}
+
+TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {
+    // On the grid of a regular mesh, where everything touches everything: what lies on the plane
+    // counts as shifted by a hair along x, then y, then z.
+    constexpr int n = 4;
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron})
+        for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(1, 1, 0),
+                                   Vec3(1, -1, 0), Vec3(0, 1, -1), Vec3(1, 1, 1), Vec3(2, 1, -1)})
+            for (const double offset : {0.0, 0.25, 0.5, 1.0})
+                for (const int num_steps : {1, 8}) {
+                    SCOPED_TRACE(testing::Message() << normal.transpose() << ", " << offset << ", "
+                                                    << num_steps << " steps");
+                    Body body(topology::box_mesh(kind, {0, 0, 0}, {n, n, n}, {n, n, n}));
+                    // All numbers are small fractions of two: nothing is rounded.
+                    const Vec3 u = normal.cross(normal.x() != 0 ? Vec3(0, 0, 1) : Vec3(1, 0, 0));
+                    const Vec3 v = normal.cross(u);
+                    const Vec3 point = Vec3::Constant(n / 2) + Vec3(offset, 0, 0) +
+                                       (normal.x() == 0.0 ? offset : 0.0) * Vec3(0, 1, -1);
+                    const auto edge = [&](double along) -> Edge {
+                        return {point - 32 * u + along * v, point + 32 * u + along * v};
+                    };
+                    std::vector<bool> above;
+                    for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
+                        double height = (body.centre(ElementId(e)) - point).dot(normal);
+                        for (const double shifted : {normal.x(), normal.y(), normal.z()})
+                            if (height == 0.0) height = shifted;
+                        above.push_back(height > 0.0);
+                    }
+                    body.sweep(edge(-32), edge(32), num_steps);
+
+                    const auto pieces = topology::components(body.mesh);
+                    std::array<std::set<int>, 2> of_side;
+                    for (std::size_t e = 0; e < above.size(); ++e)
+                        of_side[above[e]].insert(pieces.of_element[e]);
+                    EXPECT_EQ(of_side[0].size(), 1u);
+                    EXPECT_EQ(of_side[1].size(), 1u);
+                    EXPECT_NE(of_side[0], of_side[1]);
+                }
+}
+
+/// How often the path of a face, from centre to centre by way of its own, passes through the
+/// rectangle of `plane` over |along u| < reach, from < along v < to; by rounded arithmetic.
+int crossings(const Body& body, const topology::FacePair& pair, const Plane& plane, double reach,
+              double from, double to) {
+    const Vec3 middle = body.centre(pair.a);
+    int count = 0;
+    for (const Vec3& end : {body.centre(pair.a.element), body.centre(pair.b.element)}) {
+        const double h0 = plane.height(end), h1 = plane.height(middle);
+        if ((h0 > 0.0) == (h1 > 0.0)) continue;
+        const Vec3 x = end + h0 / (h0 - h1) * (middle - end) - plane.point;
+        count += std::abs(x.dot(plane.u)) < reach && x.dot(plane.v) > from && x.dot(plane.v) < to;
+    }
+    return count;
+}
+
+/// The piece with the most elements.
+int largest_piece(const topology::Components& pieces) {
+    std::vector<int> sizes(static_cast<std::size_t>(pieces.count), 0);
+    for (const int piece : pieces.of_element) ++sizes[static_cast<std::size_t>(piece)];
+    return static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+}
+
+/// Elements that are not in the largest piece.
+long num_apart(const Body& body) {
+    const auto pieces = topology::components(body.mesh);
+    return static_cast<long>(pieces.of_element.size()) -
+           std::count(pieces.of_element.begin(), pieces.of_element.end(), largest_piece(pieces));
+}
+
+TEST(Separator, APartialSweepOpensWhatItPassedAndPartsNothing) {
+    for (const auto& family : test::mesh_families()) {
+        if (!is_convex(family.name)) continue;
+        SCOPED_TRACE(family.name);
+        for (std::uint64_t seed = 0; seed < 10; ++seed) {
+            SCOPED_TRACE(seed);
+            Random random(seed);
+            Body body(family.data);
+            const auto box = body.box();
+            const double size = box.diagonal().norm();
+            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            // Half through, over the whole width; or a stab that is narrower than the body.
+            const double reach = seed % 2 == 0 ? 2 * size : 0.2 * size;
+            std::set<topology::FacePair> expected;
+            for (const auto& pair : body.inner_faces())
+                if (crossings(body, pair, plane, reach, -size, 0.0) == 1) expected.insert(pair);
+            body.step(plane.edge(reach, -size), plane.edge(reach, 0.0));
+            EXPECT_EQ(body.opened, expected);
+            EXPECT_GT(expected.size(), 3u);
+            EXPECT_LE(num_apart(body), 1);  // all but, perhaps, a crumb
+            for (const auto& pair : body.opened) {
+                const Vec3 x = body.centre(pair.a);
+                const double element = body.largest_element();
+                EXPECT_LT(std::abs(plane.height(x)), element);
+                EXPECT_LT((x - plane.point).dot(plane.v), element);
+                EXPECT_LT(std::abs((x - plane.point).dot(plane.u)), reach + element);
+            }
+        }
+    }
+}
+
+/// Edges of a face as pairs of nodes.
+std::vector<std::pair<NodeId, NodeId>> edges_of(const Mesh& mesh, FaceId f) {
+    std::vector<std::pair<NodeId, NodeId>> edges;
+    for (int p = 0; p < mesh.face_size(f); ++p)
+        edges.push_back(
+            std::minmax(mesh.face_corner(f, p), mesh.face_corner(f, (p + 1) % mesh.face_size(f))));
+    return edges;
+}
+
+TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
+    int num_sheets = 0;
+    for (const auto& family : test::mesh_families()) {
+        if (!is_convex(family.name)) continue;
+        SCOPED_TRACE(family.name);
+        for (std::uint64_t seed = 0; seed < 10; ++seed) {
+            SCOPED_TRACE(seed);
+            Random random(seed);
+            Body body(family.data);
+            const Mesh uncut = Mesh::build(family.data).mesh;
+            std::set<std::pair<NodeId, NodeId>> on_surface;
+            for (const FaceId f : topology::boundary_faces(uncut))
+                for (const auto& edge : edges_of(uncut, f)) on_surface.insert(edge);
+            const auto box = body.box();
+            const double size = box.diagonal().norm();
+            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            const Edge last = plane.edge(2 * size, 0.0);
+            body.step(plane.edge(2 * size, -size), last);
+
+            std::map<std::pair<NodeId, NodeId>, std::vector<topology::FacePair>> at_edge;
+            for (const auto& pair : body.opened)
+                for (const auto& edge : edges_of(uncut, pair.a)) at_edge[edge].push_back(pair);
+            int num_ends = 0;
+            for (const auto& [edge, faces] : at_edge) {
+                if (on_surface.contains(edge) || faces.size() % 2 == 0) continue;
+                ++num_ends;
+                const Vec3 x =
+                    0.5 * (uncut.rest_position(edge.first) + uncut.rest_position(edge.second)) -
+                    plane.point;
+                EXPECT_LT(std::hypot(plane.normal.dot(x), plane.v.dot(x)), body.largest_element());
+            }
+            EXPECT_GT(num_ends, 0);
+            // All in one, over edges from face to face, but for what is within an element of the
+            // blade, where the sheet frays, and for crumbs.
+            const auto pieces = topology::components(body.mesh);
+            const int main_piece = largest_piece(pieces);
+            std::set<topology::FacePair> behind, reached;
+            for (const auto& pair : body.opened) {
+                const Vec3 x = body.centre(pair.a) - plane.point;
+                if (pieces.of_element[pair.a.element.index()] == main_piece &&
+                    pieces.of_element[pair.b.element.index()] == main_piece &&
+                    std::hypot(plane.normal.dot(x), plane.v.dot(x)) > body.largest_element())
+                    behind.insert(pair);
+            }
+            if (behind.empty()) continue;
+            ++num_sheets;
+            std::vector<topology::FacePair> pending{*behind.begin()};
+            while (!pending.empty()) {
+                const auto pair = pending.back();
+                pending.pop_back();
+                if (!reached.insert(pair).second) continue;
+                for (const auto& edge : edges_of(uncut, pair.a))
+                    for (const auto& next : at_edge[edge]) pending.push_back(next);
+            }
+            EXPECT_TRUE(
+                std::includes(reached.begin(), reached.end(), behind.begin(), behind.end()));
+        }
+    }
+    EXPECT_GT(num_sheets, 20);
+}
+
+TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
+    // And at most, besides, faces whose centre alone lies beyond the plane: the blade passes
+    // their path twice, which a large step cancels and small steps do not.
+    std::size_t num_opened = 0, num_more = 0;
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        for (std::uint64_t seed = 0; seed < 5; ++seed) {
+            SCOPED_TRACE(seed);
+            Random random(seed);
+            Body large(family.data), small(family.data);
+            const auto box = large.box();
+            const double size = box.diagonal().norm();
+            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            const double end = seed % 2 == 0 ? size : 0.1 * size;
+            large.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 1);
+            small.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 97);
+            EXPECT_TRUE(std::includes(small.opened.begin(), small.opened.end(),
+                                      large.opened.begin(), large.opened.end()));
+            for (const auto& pair : small.opened) {
+                if (large.opened.contains(pair)) continue;
+                EXPECT_EQ(crossings(large, pair, plane, 2 * size, -size, end), 2);
+            }
+            // Such a face more can break off a crumb more.
+            const int more =
+                topology::components(small.mesh).count - topology::components(large.mesh).count;
+            EXPECT_GE(more, 0);
+            EXPECT_LE(more, static_cast<int>(small.opened.size() - large.opened.size()));
+            num_opened += large.opened.size();
+            num_more += small.opened.size() - large.opened.size();
+        }
+    }
+    EXPECT_LT(20 * num_more, num_opened);  // they are few
+}
+
+TEST(Separator, ABentEdgePartsAlongItsShape) {
+    // A roof: the edge rises along x to a ridge and falls again; swept along y.
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
+        Body body(topology::box_mesh(kind, {0, 0, 0}, {1, 1, 1}, {8, 3, 8}));
+        const auto roof = [](double x) { return 0.61 - 0.73 * std::abs(x - 0.47); };
+        const auto edge = [&](double y) -> Edge {
+            Edge points;
+            for (const double x : {-2.0, 0.47, 3.0}) points.push_back({x, y, roof(x)});
+            return points;
+        };
+        std::vector<bool> above;
+        for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
+            const Vec3 c = body.centre(ElementId(e));
+            above.push_back(c.z() > roof(c.x()));
+        }
+        body.step(edge(-1), edge(2));
+        for (const auto& pair : body.opened)
+            EXPECT_NE(above[pair.a.element.index()], above[pair.b.element.index()]);
+        for (const auto& pair : body.inner_faces())
+            EXPECT_EQ(above[pair.a.element.index()], above[pair.b.element.index()]);
+        EXPECT_EQ(topology::components(body.mesh).count, 2);
+        expect_parted_cleanly(body);
+    }
+}
+
+TEST(Separator, ABladeOutsideOpensNothing) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        Body body(family.data);
+        const auto box = body.box();
+        const double size = box.diagonal().norm();
+        // All round it, just off its box; and the same in tissue that does not stay for it.
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                Vec3 normal = Vec3::Zero();
+                normal[axis] = side;
+                Vec3 point = box.center();
+                point[axis] += side * (0.5 * box.sizes()[axis] + 1e-9 * size);
+                const Plane plane(point, normal);
+                body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, 2 * size));
+                // Into the body's box, but short of it.
+                body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, -size));
+            }
+        EXPECT_TRUE(body.opened.empty());
+        EXPECT_EQ(body.mesh.epoch(), 0u);
+    }
+    // The hole of the ring is outside.
+    for (const auto& family : test::mesh_families())
+        if (family.name == "ring") {
+            Body body(family.data);
+            const double z = body.box().center().z();
+            body.step({{-0.4, 0, z + 9}, {0.4, 0, z + 9}}, {{-0.4, 0, z - 9}, {0.4, 0, z - 9}});
+            EXPECT_TRUE(body.opened.empty());
+        }
+}
+
+TEST(Separator, AHalfCutRingIsOpenedAndStaysOnePiece) {
+    for (const auto& family : test::mesh_families())
+        if (family.name == "ring") {
+            Body body(family.data);
+            // Through one side of the ring: a radial blade.
+            body.step({{0.2, 0.01, 9}, {9, 0.02, 9}}, {{0.2, 0.01, -9}, {9, 0.02, -9}});
+            EXPECT_GT(body.opened.size(), 3u);
+            EXPECT_EQ(topology::components(body.mesh).count, 1);
+            body.step({{-0.2, 0.01, 9}, {-9, 0.02, 9}}, {{-0.2, 0.01, -9}, {-9, 0.02, -9}});
+            EXPECT_EQ(topology::components(body.mesh).count, 2);
+            expect_parted_cleanly(body);
+        }
+}
+
+}  // namespace
+}  // namespace incise::cutting
