@@ -106,14 +106,14 @@ int run(const RunOptions& options) {
         std::ostringstream text;
         text << scenario.name << ": step " << simulation.num_steps() + 1
              << ", t = " << simulation.time() << " s: " << error.what()
-             << ". The frames up to then are in " << writer.pvd_path().string();
+             << ". What was written up to then is in " << writer.main_result().string();
         finish({"failed", text.str()});
         throw PhysicsError(text.str());
     }
     if (stop_signal != 0) {
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
-                    " s; the frames so far are in " + writer.pvd_path().string());
+                    " s; what was written so far is in " + writer.main_result().string());
         return 128 + stop_signal;
     }
     finish({});
@@ -122,7 +122,7 @@ int run(const RunOptions& options) {
         std::cerr << scenario.name << ": " << simulation.num_steps() << " steps in "
                   << duration_text(watch.seconds()) << ", " << simulation.ledger().edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
-    std::cout << writer.pvd_path().string() << '\n';
+    std::cout << writer.main_result().string() << '\n';
     const auto failures = sim::failed_expectations(simulation);
     for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
     return failures.empty() ? done : missed_expectation;

@@ -150,6 +150,11 @@ void RunWriter::append_history(const Simulation& simulation) {
     history_.append(line);
 }
 
+// A run without frames still tells how it began and ended.
+void RunWriter::on_start(const Simulation& simulation) {
+    if (simulation.scenario().output.interval == 0.0) append_history(simulation);
+}
+
 void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
     edits_.append(to_json(edit).dump());
     append_history(simulation);
@@ -162,6 +167,7 @@ void RunWriter::on_frame(const Simulation& simulation) {
 }
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
+    if (simulation.scenario().output.interval == 0.0) append_history(simulation);
     history_.sync();
     edits_.sync();
     Json summary;

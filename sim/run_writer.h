@@ -39,11 +39,14 @@ class RunWriter : public Observer {
     /// Makes the folder; a former run there is replaced.
     RunWriter(const Simulation& simulation, std::filesystem::path folder);
 
+    void on_start(const Simulation& simulation) override;
     void on_edit(const Simulation& simulation, const EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
     void finish(const Simulation& simulation, const Outcome& outcome);
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
+    /// The run's index, or its folder if it has no frames.
+    std::filesystem::path main_result() const { return num_frames() > 0 ? pvd_path() : folder_; }
     std::size_t num_frames() const { return series_.times().size(); }
 
   private:

@@ -31,12 +31,18 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
             for (int p = 0; p < mesh.face_size(f); ++p)
                 on_surface[mesh.face_corner(f, p).index()] = 1;
 
+    // A pinched point has several nodes, which answer to its number all alike.
+    std::vector<char> is_named(mesh.node_capacity(), !where.nodes);
+    if (where.nodes)
+        for (const std::int64_t label : *where.nodes)
+            for (const NodeId n : mesh.nodes_with_label(label)) is_named[n.index()] = 1;
+
     std::vector<char> result(mesh.node_capacity(), 0);
     for (std::size_t i = 0; i < result.size(); ++i) {
         const NodeId n(i);
         if (!mesh.is_alive(n)) continue;
         const Vec3& x = mesh.rest_position(n);
-        bool is_in = in_regions[i] && on_surface[i];
+        bool is_in = in_regions[i] && on_surface[i] && is_named[i];
         if (where.box)
             is_in = is_in && (x.array() >= where.box->min.array()).all() &&
                     (x.array() <= where.box->max.array()).all();
@@ -44,17 +50,8 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
             is_in = is_in && (x - where.sphere->center).norm() <= where.sphere->radius;
         if (where.half_space)
             is_in = is_in && (x - where.half_space->point).dot(where.half_space->normal) >= 0.0;
-        if (where.nodes)
-            is_in = is_in &&
-                    std::binary_search(where.nodes->begin(), where.nodes->end(), mesh.label(n));
         result[i] = is_in;
     }
-    // A pinched point has several nodes; those but the first have labels of their own.
-    if (where.nodes)
-        for (const std::int64_t label : *where.nodes)
-            for (const NodeId n : mesh.nodes_with_label(label))
-                if (mesh.is_alive(n) && result[mesh.nodes_with_label(label).front().index()])
-                    result[n.index()] = 1;
     return result;
 }
 

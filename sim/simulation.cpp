@@ -31,7 +31,10 @@ Simulation::Simulation(const Scenario& scenario)
     step_limit();  // a fixed step that is too large is refused before anything is written
 }
 
-void Simulation::start() { tell_frame(); }
+void Simulation::start() {
+    for (Observer* observer : observers_) observer->on_start(*this);
+    tell_frame();
+}
 
 bool Simulation::is_finished() const { return time_ >= scenario_.dynamics.end_time; }
 
@@ -76,12 +79,16 @@ double Simulation::time_step() const {
 // Frames fall on exact multiples of their interval, and the run ends exactly at its end: the way
 // to the next of these moments is divided evenly in steps below the limit.
 Simulation::Interval Simulation::next_step() const {
-    double stop = scenario_.dynamics.end_time;
-    if (scenario_.output.interval > 0.0)
-        stop = std::min(stop, static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) *
-                                  scenario_.output.interval);
-    // A hair's breadth over a whole number of steps is rounding, not another step.
+    // A hair's breadth over a whole number of steps is rounding, not another step; so is one
+    // between the last frame and the end, as after 3 * 0.3 < 0.9.
     constexpr double rounding = 1e-9;
+    const double interval = scenario_.output.interval;
+    double stop = scenario_.dynamics.end_time;
+    if (interval > 0.0) {
+        const double frame =
+            static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) * interval;
+        if (frame < stop - rounding * interval) stop = frame;
+    }
     const double steps = std::ceil((stop - time_) / step_limit() * (1.0 - rounding));
     if (steps <= 1.0) return {time_, stop};
     return {time_, time_ + (stop - time_) / steps};

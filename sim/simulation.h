@@ -20,6 +20,7 @@ class Simulation;
 class Observer {
   public:
     virtual ~Observer() = default;
+    virtual void on_start(const Simulation&) {}  ///< at time 0, before the first frame
     virtual void on_edit(const Simulation&, const EditRecord&) {}
     virtual void on_frame(const Simulation&) {}  ///< when a frame is due, the first at time 0
     virtual void on_step(const Simulation&) {}

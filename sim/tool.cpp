@@ -36,6 +36,12 @@ cutting::Pose Tool::pose(double time) const {
     return {a.rotation.slerp(s, b.rotation), a.position + s * (b.position - a.position)};
 }
 
+bool Tool::is_present(double from, double to) const {
+    const double first = spec_.path.front().time, last = spec_.path.back().time;
+    if (first == last) return first <= to && (from < first || (from == 0.0 && first == 0.0));
+    return to > first && from < last;
+}
+
 cutting::CutPlan Tool::plan(const cutting::TissueMotion& tissue, double from, double to) const {
     cutting::CutPlan plan;
     if (!is_present(from, to)) return plan;

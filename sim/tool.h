@@ -18,10 +18,9 @@ class Tool {
 
     const std::string& name() const { return spec_.name; }
     cutting::Pose pose(double time) const;
-    /// Whether it is there at some moment of the interval: from its first to its last key.
-    bool is_present(double from, double to) const {
-        return to > spec_.path.front().time && from < spec_.path.back().time;
-    }
+    /// Whether it acts in the step (from, to], s: it is there from its first to its last key, a
+    /// tool with one key in the step that contains it. The first step contains its start too.
+    bool is_present(double from, double to) const;
     /// What it cuts while it and the tissue move in [from, to]. Touches nothing.
     cutting::CutPlan plan(const cutting::TissueMotion& tissue, double from, double to) const;
 

@@ -149,7 +149,13 @@ void expect_solution(const Model& model, const CutReference& reference,
         points_of_nodes(mesh, solution.is_cut ? reference.cut_tets : uncut_tets(reference));
     ASSERT_EQ(points.size(), solution.displacements.size());
     double largest = 0.0, largest_error = 0.0;
+    std::set<std::int64_t> seen;
     for (const auto& [node, point] : points) {
+        EXPECT_TRUE(seen.insert(point).second) << "point " << point << " is two nodes";
+        const std::int64_t origin =
+            solution.is_cut ? reference.origin[static_cast<std::size_t>(point)] : point;
+        EXPECT_EQ(mesh.rest_position(node),
+                  reference.mesh.points[static_cast<std::size_t>(origin)]);
         const Vec3& u = solution.displacements[static_cast<std::size_t>(point)];
         const Vec3 ours = model.positions()[node.index()] - mesh.rest_position(node);
         largest = std::max(largest, u.norm());

@@ -1,0 +1,47 @@
+// Time of a force evaluation and of a whole step, by law and size.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <benchmark/benchmark.h>
+
+#include "bodies.h"
+
+namespace incise::bench {
+namespace {
+
+const physics::Law laws[] = {physics::SaintVenantKirchhoff{6000, 4000},
+                             physics::NeoHookean{2000, 6000},
+                             physics::MooneyRivlin{1200, 800, 2800}};
+const char* const law_names[] = {"Saint Venant-Kirchhoff", "Neo-Hookean", "Mooney-Rivlin"};
+
+void report(benchmark::State& state, std::size_t num_elements) {
+    state.SetLabel(law_names[state.range(0)]);
+    state.counters["ns/element"] = benchmark::Counter(
+        static_cast<double>(num_elements) * 1e-9,
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void forces(benchmark::State& state) {
+    const topology::Mesh mesh = make_cube(state.range(1));
+    physics::Model model(mesh, make_material(laws[state.range(0)]));
+    for (auto _ : state) {
+        model.compute_forces(0.0);
+        benchmark::DoNotOptimize(model.elastic_forces().data());
+    }
+    report(state, mesh.num_elements());
+}
+BENCHMARK(forces)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000}});
+
+void step(benchmark::State& state) {
+    const topology::Mesh mesh = make_cube(state.range(1));
+    physics::Model model(mesh, make_material(laws[state.range(0)]),
+                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
+    const double dt = 0.5 * model.stable_step();
+    for (auto _ : state) {
+        model.integrate(0.0, dt);
+        model.compute_forces(0.0);
+    }
+    report(state, mesh.num_elements());
+}
+BENCHMARK(step)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000}});
+
+}  // namespace
+}  // namespace incise::bench

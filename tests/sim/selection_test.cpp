@@ -1,0 +1,176 @@
+// What a `where` selects.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/selection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "topology/box_mesh.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+namespace {
+
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+
+/// A cube of side 4 in 4 x 4 x 4 bricks, region 1 where x < 2, else 2.
+const Mesh& cube(topology::CellKind kind) {
+    const auto build = [](topology::CellKind k) {
+        auto data = topology::box_mesh(k, {0, 0, 0}, {4, 4, 4}, {4, 4, 4});
+        for (std::size_t c = 0; c < data.num_cells(); ++c) {
+            double x = 0.0;
+            for (const auto p : data.cell(c)) x += data.points[static_cast<std::size_t>(p)].x();
+            data.regions[c] = x < 2.0 * static_cast<double>(data.cell(c).size()) ? 1 : 2;
+        }
+        return Mesh::build(data).mesh;
+    };
+    static const Mesh tets = build(topology::CellKind::tetrahedron),
+                      hexes = build(topology::CellKind::hexahedron);
+    return kind == topology::CellKind::tetrahedron ? tets : hexes;
+}
+
+using Rule = std::function<bool(const Vec3&)>;
+
+/// That nodes, faces and elements are exactly those that the rule on positions gives.
+void expect_selects(const Selection& where, const Rule& rule) {
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
+        const Mesh& mesh = cube(kind);
+        const auto holds = [&](NodeId n) { return rule(mesh.rest_position(n)); };
+        std::vector<NodeId> nodes;
+        for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
+            if (holds(NodeId(n))) nodes.emplace_back(n);
+        EXPECT_EQ(select_nodes(mesh, where), nodes);
+        std::vector<FaceId> faces;
+        for (const FaceId f : topology::boundary_faces(mesh)) {
+            int count = 0;
+            for (int p = 0; p < mesh.face_size(f); ++p) count += holds(mesh.face_corner(f, p));
+            if (count == mesh.face_size(f)) faces.push_back(f);
+        }
+        EXPECT_EQ(select_faces(mesh, where), faces);
+        std::vector<ElementId> elements;
+        for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
+            const auto corners = mesh.corners(ElementId(e));
+            if (std::all_of(corners.begin(), corners.end(), holds)) elements.emplace_back(e);
+        }
+        EXPECT_EQ(select_elements(mesh, where), elements);
+    }
+}
+
+bool is_on_surface(const Vec3& x) { return x.minCoeff() == 0.0 || x.maxCoeff() == 4.0; }
+
+TEST(Selection, OfNothingInParticularIsAll) {
+    const Selection where;
+    EXPECT_TRUE(where.selects_all());
+    expect_selects(where, [](const Vec3&) { return true; });
+}
+
+TEST(Selection, BoxesSpheresAndHalfSpacesAreClosed) {
+    Selection box, sphere, half_space;
+    box.box = {{1, 0, -5}, {3, 2, 0}};
+    expect_selects(
+        box, [](const Vec3& x) { return x.x() >= 1 && x.x() <= 3 && x.y() <= 2 && x.z() == 0; });
+    EXPECT_EQ(select_nodes(cube(topology::CellKind::hexahedron), box).size(), 9u);
+    sphere.sphere = {{2, 2, 2}, 1.0};
+    EXPECT_EQ(select_nodes(cube(topology::CellKind::hexahedron), sphere).size(), 7u);
+    expect_selects(sphere, [](const Vec3& x) { return (x - Vec3(2, 2, 2)).norm() <= 1.0; });
+    half_space.half_space = {{0, 0, 3}, {0, 0, 1}};
+    EXPECT_EQ(select_nodes(cube(topology::CellKind::hexahedron), half_space).size(), 50u);
+    expect_selects(half_space, [](const Vec3& x) { return x.z() >= 3.0; });
+}
+
+TEST(Selection, RegionsHaveTheNodesOfTheirElementsThoseBetweenThemTwice) {
+    Selection where;
+    where.regions = {1};
+    expect_selects(where, [](const Vec3& x) { return x.x() <= 2.0; });
+    where.regions = {2, 7};
+    expect_selects(where, [](const Vec3& x) { return x.x() >= 2.0; });
+}
+
+TEST(Selection, SurfaceLeavesOutWhatIsInside) {
+    Selection where;
+    where.surface = true;
+    expect_selects(where, is_on_surface);
+}
+
+TEST(Selection, EverythingGivenMustHold) {
+    Selection where;
+    where.box = {{0, 0, 0}, {4, 4, 2}};
+    where.sphere = {{2, 2, 2}, 3.0};
+    where.half_space = {{0, 1, 0}, {0, 1, 0}};
+    where.regions = {2};
+    where.surface = true;
+    expect_selects(where, [](const Vec3& x) {
+        return x.z() <= 2 && (x - Vec3(2, 2, 2)).norm() <= 3 && x.y() >= 1 && x.x() >= 2 &&
+               is_on_surface(x);
+    });
+    where.nodes = {0, 1, 2, 3, 9, 14};  // along x, then y: (4, 1, 0) and (4, 2, 0) are the last
+    expect_selects(where, [](const Vec3& x) { return x == Vec3(4, 1, 0) || x == Vec3(4, 2, 0); });
+}
+
+TEST(Selection, NodesAreNumbersOfTheSource) {
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
+        const Mesh& mesh = cube(kind);
+        Selection where;
+        where.nodes = {1, 30, 124};
+        std::set<std::vector<double>> positions;
+        for (const NodeId n : select_nodes(mesh, where)) {
+            const Vec3& x = mesh.rest_position(n);
+            positions.insert({x.x(), x.y(), x.z()});
+        }
+        EXPECT_EQ(positions, (std::set<std::vector<double>>{{1, 0, 0}, {0, 1, 1}, {4, 4, 4}}));
+        where.nodes = {-1, 125, 1000000};
+        EXPECT_TRUE(select_nodes(mesh, where).empty());
+    }
+}
+
+/// Two tetrahedra that touch in point 1 only, of regions 1 and 2; point 7 is used by none.
+Mesh pinched() {
+    topology::MeshData data;
+    data.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+                   {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {9, 9, 9}};
+    data.add_cell(topology::CellKind::tetrahedron, std::vector<std::int64_t>{0, 1, 2, 3}, 1);
+    data.add_cell(topology::CellKind::tetrahedron, std::vector<std::int64_t>{4, 5, 1, 6}, 2);
+    return Mesh::build(data).mesh;
+}
+
+TEST(Selection, APinchedPointIsAllOfItsNodes) {
+    const Mesh mesh = pinched();
+    ASSERT_EQ(mesh.num_nodes(), 8u);
+    Selection where;
+    where.nodes = {1};
+    EXPECT_EQ(select_nodes(mesh, where).size(), 2u);
+    // Of which each is in one region only.
+    for (const int region : {1, 2}) {
+        where.regions = {region};
+        const auto nodes = select_nodes(mesh, where);
+        ASSERT_EQ(nodes.size(), 1u) << region;
+        EXPECT_EQ(mesh.region(mesh.anchor(nodes[0])), region);
+    }
+    where.regions = {3};
+    EXPECT_TRUE(select_nodes(mesh, where).empty());
+    where.regions.reset();
+    where.nodes = {7};
+    EXPECT_TRUE(select_nodes(mesh, where).empty());
+}
+
+TEST(Selection, AnEmptyOneTellsWhereTheMeshIs) {
+    const Mesh mesh = pinched();
+    EXPECT_NO_THROW(require_selected(1, mesh, "load 'pull'", "node"));
+    try {
+        require_selected(0, mesh, "load 'pull'", "face of the surface");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "load 'pull' selects no face of the surface; the mesh lies between "
+                     "[0, 0, 0] and [2, 1, 1]");
+    }
+}
+
+}  // namespace
+}  // namespace incise::sim

@@ -1,0 +1,321 @@
+// The loop: when it steps, when it tells, what it keeps account of.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "run_folder.h"
+#include "topology/box_mesh.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+namespace {
+
+struct Recorder : Observer {
+    std::vector<double> frame_times, step_ends;
+    std::vector<EditRecord> edits;
+
+    void on_frame(const Simulation& simulation) override {
+        frame_times.push_back(simulation.time());
+    }
+    void on_step(const Simulation& simulation) override { step_ends.push_back(simulation.time()); }
+    void on_edit(const Simulation&, const EditRecord& edit) override { edits.push_back(edit); }
+};
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const PhysicsError& error) {
+        return error.what();
+    }
+    return "no PhysicsError";
+}
+
+std::string text_of(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+TEST(Simulation, FramesFallOnMultiplesAndTheRunEndsAtItsEnd) {
+    struct Case {
+        double interval, end_time;
+        std::size_t num_frames;
+    };
+    // 3 * 0.3 is less than 0.9, and 3 * 0.1 more than 0.3: rounding makes no frame and no step.
+    for (const auto& [interval, end_time, num_frames] :
+         {Case{0.01, 0.05, 6}, Case{0.3, 0.9, 4}, Case{0.1, 0.3, 4}, Case{0.1, 0.7, 8},
+          Case{0.07, 0.5, 9}, Case{0.5, 0.2, 2}, Case{0.3, 0.3, 2}, Case{0.0, 0.1, 0}})
+        for (const std::string step : {"\"auto\"", "0.003"}) {
+            SCOPED_TRACE(testing::Message() << interval << " of " << end_time << ", " << step);
+            Scenario scenario = scenario_of(soft_cube + dynamics(1, "time_step = " + step));
+            scenario.dynamics.end_time = end_time;
+            scenario.output.interval = interval;
+            Simulation simulation(scenario);
+            Recorder recorder;
+            simulation.add_observer(recorder);
+            run(simulation);
+
+            EXPECT_EQ(simulation.time(), end_time);
+            ASSERT_EQ(recorder.frame_times.size(), num_frames);
+            for (std::size_t i = 0; i + 1 < num_frames; ++i)
+                EXPECT_EQ(recorder.frame_times[i], static_cast<double>(i) * interval);
+            if (num_frames > 0) {
+                EXPECT_EQ(recorder.frame_times.back(), end_time);
+            }
+            EXPECT_EQ(recorder.step_ends.size(), simulation.num_steps());
+            double last = 0.0;
+            for (const double end : recorder.step_ends) {
+                EXPECT_GT(end - last, 1e-4);  // no slivers of steps
+                last = end;
+            }
+        }
+}
+
+TEST(Simulation, AutomaticStepsStayBelowTheBoundAndFollowTheEdits) {
+    Scenario scenario = scenario_of(soft_cube + two_tools + dynamics(0.2));
+    for (const double safety : {0.8, 0.3}) {
+        scenario.dynamics.safety = safety;
+        Simulation simulation(scenario);
+        EXPECT_LE(simulation.time_step(), safety * simulation.model().stable_step());
+        Recorder recorder;
+        simulation.add_observer(recorder);
+        simulation.start();
+        double lowest = 1.0, highest = 0.0;
+        while (!simulation.is_finished()) {
+            const double stable = simulation.model().stable_step();
+            lowest = std::min(lowest, stable);
+            highest = std::max(highest, stable);
+            const double next_frame = static_cast<double>(recorder.frame_times.size()) * 0.01;
+            const double left = std::min(next_frame, 0.2) - simulation.time();
+            simulation.step();
+            EXPECT_LE(simulation.time_step(), safety * stable * (1 + 2e-9));
+            // And no shorter than it takes to get to the next frame in equal steps.
+            EXPECT_NEAR(simulation.time_step(),
+                        left / std::ceil(left / (safety * stable) * (1 - 1e-9)), 1e-12);
+        }
+        EXPECT_GT(recorder.edits.size(), 2u);
+        EXPECT_LT(lowest, highest);  // the edits did move the bound
+    }
+}
+
+TEST(Simulation, RefusesAFixedStepAboveTheBound) {
+    const Scenario automatic = scenario_of(soft_cube + dynamics(0.1, "safety = 1"));
+    const double stable = Simulation(automatic).model().stable_step();
+    Scenario scenario = automatic;
+    scenario.dynamics.time_step = stable;
+    EXPECT_NO_THROW(Simulation{scenario});
+    scenario.dynamics.time_step = 1.5 * stable;
+    const std::string message = message_of([&] { Simulation{scenario}; });
+    EXPECT_NE(message.find("dynamics.time_step of " + text_of(1.5 * stable) + " s"),
+              std::string::npos)
+        << message;
+    EXPECT_NE(message.find("stable step of " + text_of(stable) + " s"), std::string::npos)
+        << message;
+    EXPECT_NE(message.find("\"auto\""), std::string::npos);
+}
+
+/// A stiff, light layer (region 1) between two heavy soft ones (region 2), which slow it down until
+/// a tool takes the upper one away.
+std::string layered_body(const RunFolder& folder) {
+    topology::MeshData mesh =
+        topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {0.1, 0.1, 0.15}, {2, 2, 3});
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        double z = 0.0;
+        for (const auto p : mesh.cell(c)) z += mesh.points[static_cast<std::size_t>(p)].z() / 4;
+        mesh.regions[c] = z > 0.05 && z < 0.1 ? 1 : 2;
+    }
+    io::write_mesh(folder / "layers.vtu", mesh);
+    return R"([mesh]
+file = "layers.vtu"
+[[material]]
+regions = [1]
+density = 100
+young = 1000
+poisson = 0.3
+[[material]]
+density = 10000
+young = 10
+poisson = 0.3
+[[constraint]]
+where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
+fix = "xyz"
+[[tool]]
+kind = "carver"
+shape = { box = { size = [1, 1, 0.06] } }
+path = [{ time = 0.05, at = [0, 0, 0.2] }, { time = 0.1, at = [0, 0, 0.13] }]
+)";
+}
+
+TEST(Simulation, RefusesAFixedStepThatAnEditMakesTooLarge) {
+    const RunFolder folder;
+    Scenario scenario = folder.scenario(layered_body(folder) + dynamics(0.2, "time_step = 1e-6"));
+    double before = 0.0, after = 0.0;
+    {
+        Scenario automatic = scenario;
+        automatic.dynamics.time_step.reset();
+        Simulation simulation(automatic);
+        before = simulation.model().stable_step();
+        run(simulation);
+        after = simulation.model().stable_step();
+    }
+    ASSERT_LT(after, 0.8 * before);
+    scenario.dynamics.time_step = 0.5 * (before + after);
+    Simulation simulation(scenario);
+    const std::string message = message_of([&] { run(simulation); });
+    EXPECT_NE(message.find("dynamics.time_step of " + text_of(0.5 * (before + after)) + " s"),
+              std::string::npos)
+        << message;
+    EXPECT_NE(message.find("that the edits have left"), std::string::npos) << message;
+    EXPECT_GT(simulation.time(), 0.05);
+    EXPECT_LT(simulation.time(), 0.11);
+}
+
+TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
+    const RunFolder folder;
+    const Scenario scenario =
+        folder.scenario(soft_cube + two_tools + dynamics(0.2, "gravity = [0, 0, -9.81]"));
+    run(scenario, folder / "one");
+    run(scenario, folder / "two");
+    std::size_t num_files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "one")) {
+        if (!entry.is_regular_file()) continue;
+        const auto name = std::filesystem::relative(entry.path(), folder / "one");
+        if (name == "summary.json") continue;  // it tells the wall time
+        EXPECT_EQ(support::read_text(entry.path()), support::read_text(folder / "two" / name))
+            << name;
+        ++num_files;
+    }
+    EXPECT_EQ(num_files, 21u + 4u);  // frames; two indexes, history and edits
+}
+
+TEST(Ledger, AccountsForEveryEdit) {
+    const Scenario scenario =
+        scenario_of(soft_cube + two_tools + dynamics(0.2, "gravity = [0, 0, -9.81]"));
+    Simulation simulation(scenario);
+    Recorder recorder;
+    simulation.add_observer(recorder);
+    run(simulation);
+    const auto& edits = simulation.ledger().edits();
+    ASSERT_EQ(recorder.edits.size(), edits.size());
+    EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
+
+    std::size_t removed = 0, opened = 0;
+    double mass_removed = 0.0;
+    const Account* last = &simulation.ledger().initial();
+    for (const EditRecord& edit : edits) {
+        SCOPED_TRACE(testing::Message() << edit.tool << " at " << edit.time);
+        EXPECT_TRUE(edit.tool == "burr" || edit.tool == "knife");
+        // Nothing comes or goes between edits.
+        EXPECT_EQ(edit.before.nodes, last->nodes);
+        EXPECT_EQ(edit.before.elements, last->elements);
+        EXPECT_EQ(edit.before.components, last->components);
+        EXPECT_EQ(edit.before.totals.mass, last->totals.mass);
+        EXPECT_EQ(edit.before.totals.rest_volume, last->totals.rest_volume);
+        EXPECT_EQ(edit.before.stable_step, last->stable_step);
+        last = &edit.after;
+
+        EXPECT_EQ(edit.after.elements + edit.elements_removed, edit.before.elements);
+        EXPECT_EQ(edit.after.nodes + edit.nodes_removed, edit.before.nodes + edit.nodes_added);
+        EXPECT_NEAR(edit.before.totals.mass - edit.after.totals.mass, edit.mass_removed, 1e-15);
+        EXPECT_NEAR(edit.mass_removed,
+                    1000 * (edit.before.totals.rest_volume - edit.after.totals.rest_volume), 1e-15);
+        if (edit.tool == "burr") {
+            EXPECT_GT(edit.elements_removed, 0u);
+            EXPECT_EQ(edit.faces_opened, 0u);
+        } else {
+            // Parting takes nothing away.
+            EXPECT_EQ(edit.elements_removed, 0u);
+            EXPECT_GT(edit.faces_opened, 0u);
+            EXPECT_EQ(edit.after.totals.elastic_energy, edit.before.totals.elastic_energy);
+            EXPECT_NEAR(edit.after.totals.kinetic_energy / edit.before.totals.kinetic_energy, 1.0,
+                        1e-12);
+            const double p = edit.before.totals.momentum.norm(),
+                         l = edit.before.totals.angular_momentum.norm();
+            EXPECT_LE((edit.after.totals.momentum - edit.before.totals.momentum).norm(), 1e-12 * p);
+            EXPECT_LE(
+                (edit.after.totals.angular_momentum - edit.before.totals.angular_momentum).norm(),
+                1e-12 * l);
+        }
+        removed += edit.elements_removed;
+        opened += edit.faces_opened;
+        mass_removed += edit.mass_removed;
+    }
+    EXPECT_EQ(removed + simulation.mesh().num_elements(), 162u);
+    EXPECT_GT(removed, 5u);
+    EXPECT_GT(opened, 5u);
+    EXPECT_NEAR(mass_removed + simulation.model().totals().mass, 1.0, 1e-12);
+    EXPECT_GE(edits.back().after.components, 2);
+}
+
+TEST(Ledger, EnergyIsMissingToTheOrderOfTheStepOnly) {
+    // From rest to rest without jumps of the velocity: the support's work at a jump is that of a
+    // blow, of which half goes into the node's motion.
+    std::string moved = R"(
+[[constraint]]
+name = "grip"
+where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
+move = [)";
+    for (int i = 0; i <= 40; ++i) {
+        const double s = i / 40.0, way = s * s * (3.0 - 2.0 * s);
+        moved += "{ time = " + std::to_string(0.2 * s) + ", by = [" + std::to_string(0.01 * way) +
+                 ", 0, " + std::to_string(0.02 * way) + "] }, ";
+    }
+    moved += "]\n";
+    const std::string gravity = "gravity = [0, 0, -2]\n";
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"undamped", soft_cube + dynamics(0.5, gravity)},
+             {"damped", soft_cube + dynamics(0.5, gravity + "damping = 5")},
+             {"moved", soft_cube + moved + dynamics(0.5, gravity)},
+             {"moved and damped", soft_cube + moved + dynamics(0.5, gravity + "damping = 5")},
+             {"cut", soft_cube + two_tools + dynamics(0.5, gravity + "damping = 5")}}) {
+        Scenario scenario = scenario_of(text);
+        std::vector<double> errors;
+        for (const double safety : {0.8, 0.1}) {
+            scenario.dynamics.safety = safety;
+            Simulation simulation(scenario);
+            run(simulation);
+            errors.push_back(simulation.ledger().energy_error());
+        }
+        EXPECT_LT(errors[0], 0.01) << name;
+        EXPECT_LT(errors[1], 0.005) << name;
+    }
+}
+
+TEST(Simulation, GoesOnWhenNothingIsLeft) {
+    Simulation simulation(scenario_of(soft_cube + R"(
+[[tool]]
+kind = "carver"
+shape = { sphere = { radius = 1 } }
+path = [{ time = 0.05, at = [0, 0, 0] }, { time = 0.06, at = [0, 0, 0] }]
+)" + dynamics(0.1, "gravity = [0, 0, -9.81]")));
+    Recorder recorder;
+    simulation.add_observer(recorder);
+    run(simulation);
+    EXPECT_EQ(simulation.mesh().num_elements(), 0u);
+    EXPECT_EQ(simulation.mesh().num_nodes(), 0u);
+    EXPECT_EQ(recorder.edits.size(), 1u);
+    EXPECT_EQ(recorder.frame_times.size(), 11u);
+    EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
+    EXPECT_EQ(simulation.model().totals().mass, 0.0);
+}
+
+TEST(Simulation, StopsWhenTheMotionBlowsUp) {
+    Simulation simulation(scenario_of(soft_cube + R"(
+[[constraint]]
+where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
+move = [{ time = 0.02, by = [0, 0, 0] }, { time = 0.021, by = [0, 0, 50] }]
+)" + dynamics(0.1)));
+    const std::string message = message_of([&] { run(simulation); });
+    EXPECT_NE(message.find("the motion has blown up at element "), std::string::npos) << message;
+    EXPECT_NE(message.find("node "), std::string::npos);
+    EXPECT_NE(message.find("safety"), std::string::npos);
+    EXPECT_GE(simulation.time(), 0.01);
+    EXPECT_LT(simulation.time(), 0.03);
+}
+
+}  // namespace
+}  // namespace incise::sim
