@@ -26,7 +26,7 @@ void CellCollector::finish(const topology::MeshData& mesh,
                          (list.empty()
                               ? "no cells at all; "
                               : list + " but no tetrahedra, hexahedra, wedges or pyramids; ") +
-                         "make a volume mesh first (incise mesh makes one of a closed surface)");
+                         "make a volume mesh of it first");
     if (!list.empty()) warnings.push_back("ignored " + list + ": only volume cells are used");
 }
 

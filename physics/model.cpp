@@ -61,10 +61,8 @@ void Model::gather(NodeId n) {
     mesh_.star(n, star_);
     for (const ElementId e : star_) {
         const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
-        const auto corners = mesh_.corners(e);
-        const auto corner = std::find(corners.begin(), corners.end(), n) - corners.begin();
         mass += shares.mass;
-        stiffness += shares.stiffness[static_cast<std::size_t>(corner)];
+        stiffness += shares.stiffness[static_cast<std::size_t>(mesh_.corner_of(e, n))];
     }
     masses_[n.index()] = mass;
     stable_step_.set(n.index(), stiffness, mass);

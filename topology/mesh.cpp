@@ -43,6 +43,12 @@ void Mesh::star(NodeId n, std::vector<ElementId>& elements) const {
     if (is_alive(n)) collect_star(*this, n, anchor(n), elements);
 }
 
+int Mesh::corner_of(ElementId e, NodeId n) const {
+    const auto nodes = corners(e);
+    const auto place = std::find(nodes.begin(), nodes.end(), n);
+    return place == nodes.end() ? -1 : static_cast<int>(place - nodes.begin());
+}
+
 std::int64_t Mesh::label(NodeId n) const {
     return n.index() < node_labels_.size() ? node_labels_[n.index()] : n.value;
 }

@@ -54,6 +54,8 @@ class Mesh {
         return {corners_.data() + corner_begin_[e.index()],
                 corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
     }
+    /// Which corner of `e` the node is; -1 if none.
+    int corner_of(ElementId e, NodeId n) const;
     int num_faces(ElementId e) const { return traits(kind(e)).num_faces; }
     NodeId face_corner(FaceId f, int position) const {
         return corners(f.element)[static_cast<std::size_t>(

@@ -8,17 +8,6 @@
 
 namespace incise::topology {
 
-namespace {
-
-int corner_of(const Mesh& mesh, ElementId e, NodeId n) {
-    const auto corners = mesh.corners(e);
-    for (std::size_t k = 0; k < corners.size(); ++k)
-        if (corners[k] == n) return static_cast<int>(k);
-    return -1;
-}
-
-}  // namespace
-
 MeshEdit::MeshEdit(Mesh& mesh) : mesh_(mesh), is_saved_(mesh.element_capacity(), 0) {}
 
 MeshEdit::~MeshEdit() {
@@ -132,11 +121,11 @@ void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
         if (touched.node == absorbed) starts.push_back(touched.element);
     for (const ElementId start : starts) {
         if (!start.is_valid() || !mesh_.is_alive(start)) continue;
-        if (corner_of(mesh_, start, absorbed) < 0) continue;
+        if (mesh_.corner_of(start, absorbed) < 0) continue;
         std::vector<ElementId> holders;
         collect_star(mesh_, absorbed, start, holders);
         for (const ElementId e : holders) {
-            rewire(e, corner_of(mesh_, e, absorbed), survivor);
+            rewire(e, mesh_.corner_of(e, absorbed), survivor);
             touched_.push_back({survivor, e});
         }
     }
@@ -154,7 +143,7 @@ NodeId MeshEdit::survivor_of(NodeId n) const {
 void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, ChangeSet& changes) {
     std::vector<std::vector<ElementId>> parts;
     for (const ElementId e : candidates) {
-        if (!e.is_valid() || !mesh_.is_alive(e) || corner_of(mesh_, e, n) < 0) continue;
+        if (!e.is_valid() || !mesh_.is_alive(e) || mesh_.corner_of(e, n) < 0) continue;
         const bool is_known = std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
             return std::binary_search(part.begin(), part.end(), e);
         });
@@ -185,11 +174,11 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, C
             mesh_.rest_positions_.push_back(record.rest_position);
             mesh_.anchors_.emplace_back();
             ++mesh_.num_nodes_;
-            for (const ElementId e : parts[p]) rewire(e, corner_of(mesh_, e, n), keeper);
+            for (const ElementId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
         }
         const ElementId anchor = parts[p].front();
         mesh_.anchors_[keeper.index()] = anchor;
-        mesh_.map_.set_anchor(keeper, anchor, corner_of(mesh_, anchor, keeper));
+        mesh_.map_.set_anchor(keeper, anchor, mesh_.corner_of(anchor, keeper));
     }
 }
 
@@ -254,98 +243,6 @@ ChangeSet MeshEdit::commit() {
     changes.epoch_after = changes.epoch_before + (changes.is_empty() ? 0 : 1);
     mesh_.epoch_ = changes.epoch_after;
     return changes;
-}
-
-/// Carries a record out as it stands, deciding nothing.
-class MeshReplay {
-  public:
-    MeshReplay(Mesh& mesh, const ChangeSet& changes) : mesh_(mesh), changes_(changes) {}
-
-    void run() {
-        for (const FacePair& pair : changes_.faces_opened) mesh_.unglue(pair.a);
-        for (const ElementRecord& record : changes_.elements_removed) {
-            mesh_.map_.remove_element(record.id);
-            mesh_.alive_[record.id.index()] = 0;
-            --mesh_.num_elements_;
-        }
-        for (const NodeRecord& record : changes_.nodes_added) {
-            if (record.id.index() == mesh_.node_capacity()) {
-                mesh_.rest_positions_.push_back(record.rest_position);
-                mesh_.anchors_.emplace_back();
-            }
-            mesh_.rest_positions_[record.id.index()] = record.rest_position;
-            ++mesh_.num_nodes_;
-        }
-        for (const ElementRecord& record : changes_.elements_added) add(record);
-        for (const Rewiring& rewiring : changes_.rewired) {
-            mesh_.map_.set_corner(rewiring.element, rewiring.corner, rewiring.to,
-                                  mesh_.rest_position(rewiring.to));
-            corner(rewiring.element, rewiring.corner) = rewiring.to;
-        }
-        for (const FacePair& pair : changes_.faces_closed)
-            mesh_.glue(pair.a, pair.b, matching_shift(mesh_, pair.a, pair.b));
-        for (const NodeRecord& record : changes_.nodes_removed) {
-            mesh_.anchors_[record.id.index()] = {};
-            --mesh_.num_nodes_;
-        }
-        anchor_touched_nodes();
-        mesh_.truncate(changes_.node_capacity_after, changes_.element_capacity_after);
-        mesh_.epoch_ = changes_.epoch_after;
-    }
-
-  private:
-    NodeId& corner(ElementId e, int k) {
-        return mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(k)];
-    }
-
-    void add(const ElementRecord& record) {
-        const ElementId e = record.id;
-        if (e.index() == mesh_.element_capacity()) {
-            mesh_.append_element_row(record.kind, record.region, record.corners);
-        } else {
-            mesh_.alive_[e.index()] = 1;
-            ++mesh_.num_elements_;
-            for (std::size_t k = 0; k < record.corners.size(); ++k)
-                corner(e, static_cast<int>(k)) = record.corners[k];
-        }
-        mesh_.map_.add_element(e, record.kind, record.corners, mesh_.rest_positions());
-    }
-
-    void anchor_touched_nodes() {
-        std::vector<std::pair<NodeId, ElementId>> touched;
-        const auto touch = [&](ElementId e) {
-            if (mesh_.is_alive(e))
-                for (const NodeId n : mesh_.corners(e)) touched.emplace_back(n, e);
-        };
-        for (const ElementRecord& record : changes_.elements_added) touch(record.id);
-        for (const Rewiring& rewiring : changes_.rewired) touch(rewiring.element);
-        for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
-            for (const FacePair& pair : *pairs) {
-                touch(pair.a.element);
-                touch(pair.b.element);
-            }
-        std::sort(touched.begin(), touched.end());
-        std::vector<ElementId> star;
-        for (std::size_t i = 0; i < touched.size(); ++i) {
-            const auto [n, e] = touched[i];
-            if (i > 0 && touched[i - 1].first == n) continue;
-            star.clear();
-            collect_star(mesh_, n, e, star);
-            mesh_.anchors_[n.index()] = star.front();
-            mesh_.map_.set_anchor(n, star.front(), corner_of(mesh_, star.front(), n));
-        }
-    }
-
-    Mesh& mesh_;
-    const ChangeSet& changes_;
-};
-
-void replay(Mesh& mesh, const ChangeSet& changes) {
-    if (changes.epoch_before != mesh.epoch())
-        throw InputError("edit out of turn: it belongs to epoch " +
-                         std::to_string(changes.epoch_before) + ", the mesh is at epoch " +
-                         std::to_string(mesh.epoch()));
-    MeshReplay(mesh, changes).run();
 }
 
 }  // namespace incise::topology

@@ -1,0 +1,102 @@
+// Replays a recorded edit: forwards, or backwards with its inverse.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
+#include "topology/error.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::topology {
+
+/// Carries a record out as it stands, deciding nothing.
+class MeshReplay {
+  public:
+    MeshReplay(Mesh& mesh, const ChangeSet& changes) : mesh_(mesh), changes_(changes) {}
+
+    void run() {
+        for (const FacePair& pair : changes_.faces_opened) mesh_.unglue(pair.a);
+        for (const ElementRecord& record : changes_.elements_removed) {
+            mesh_.map_.remove_element(record.id);
+            mesh_.alive_[record.id.index()] = 0;
+            --mesh_.num_elements_;
+        }
+        for (const NodeRecord& record : changes_.nodes_added) {
+            if (record.id.index() == mesh_.node_capacity()) {
+                mesh_.rest_positions_.push_back(record.rest_position);
+                mesh_.anchors_.emplace_back();
+            }
+            mesh_.rest_positions_[record.id.index()] = record.rest_position;
+            ++mesh_.num_nodes_;
+        }
+        for (const ElementRecord& record : changes_.elements_added) add(record);
+        for (const Rewiring& rewiring : changes_.rewired) {
+            mesh_.map_.set_corner(rewiring.element, rewiring.corner, rewiring.to,
+                                  mesh_.rest_position(rewiring.to));
+            corner(rewiring.element, rewiring.corner) = rewiring.to;
+        }
+        for (const FacePair& pair : changes_.faces_closed)
+            mesh_.glue(pair.a, pair.b, matching_shift(mesh_, pair.a, pair.b));
+        for (const NodeRecord& record : changes_.nodes_removed) {
+            mesh_.anchors_[record.id.index()] = {};
+            --mesh_.num_nodes_;
+        }
+        anchor_touched_nodes();
+        mesh_.truncate(changes_.node_capacity_after, changes_.element_capacity_after);
+        mesh_.epoch_ = changes_.epoch_after;
+    }
+
+  private:
+    NodeId& corner(ElementId e, int k) {
+        return mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(k)];
+    }
+
+    void add(const ElementRecord& record) {
+        const ElementId e = record.id;
+        if (e.index() == mesh_.element_capacity()) {
+            mesh_.append_element_row(record.kind, record.region, record.corners);
+        } else {
+            mesh_.alive_[e.index()] = 1;
+            ++mesh_.num_elements_;
+            for (std::size_t k = 0; k < record.corners.size(); ++k)
+                corner(e, static_cast<int>(k)) = record.corners[k];
+        }
+        mesh_.map_.add_element(e, record.kind, record.corners, mesh_.rest_positions());
+    }
+
+    void anchor_touched_nodes() {
+        std::vector<std::pair<NodeId, ElementId>> touched;
+        const auto touch = [&](ElementId e) {
+            if (mesh_.is_alive(e))
+                for (const NodeId n : mesh_.corners(e)) touched.emplace_back(n, e);
+        };
+        for (const ElementRecord& record : changes_.elements_added) touch(record.id);
+        for (const Rewiring& rewiring : changes_.rewired) touch(rewiring.element);
+        for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
+            for (const FacePair& pair : *pairs) {
+                touch(pair.a.element);
+                touch(pair.b.element);
+            }
+        std::sort(touched.begin(), touched.end());
+        std::vector<ElementId> star;
+        for (std::size_t i = 0; i < touched.size(); ++i) {
+            const auto [n, e] = touched[i];
+            if (i > 0 && touched[i - 1].first == n) continue;
+            star.clear();
+            collect_star(mesh_, n, e, star);
+            mesh_.anchors_[n.index()] = star.front();
+            mesh_.map_.set_anchor(n, star.front(), mesh_.corner_of(star.front(), n));
+        }
+    }
+
+    Mesh& mesh_;
+    const ChangeSet& changes_;
+};
+
+void replay(Mesh& mesh, const ChangeSet& changes) {
+    if (changes.epoch_before != mesh.epoch())
+        throw InputError("edit out of turn: it belongs to epoch " +
+                         std::to_string(changes.epoch_before) + ", the mesh is at epoch " +
+                         std::to_string(mesh.epoch()));
+    MeshReplay(mesh, changes).run();
+}
+
+}  // namespace incise::topology
