@@ -152,28 +152,52 @@ void Model::explain_failure(double dt, const std::vector<Vec3>& velocities) cons
     throw PhysicsError(text.str());
 }
 
+// Keeps momentum and centre of mass; equal states stay what they are to the bit.
+void Model::merge(NodeId absorbed, NodeId survivor) {
+    const std::size_t from = absorbed.index(), into = survivor.index();
+    Merge merge{survivor, positions_[into], velocities_[into], {}, {}};
+    const double mass = masses_[from] + masses_[into];
+    const double weight = masses_[from] / mass;
+    positions_[into] += weight * (positions_[from] - positions_[into]);
+    velocities_[into] += weight * (velocities_[from] - velocities_[into]);
+    masses_[into] = mass;
+    merge.position_after = positions_[into];
+    merge.velocity_after = velocities_[into];
+    merges_[absorbed] = merge;
+}
+
+// The slot of the absorbed node still has its state; the survivor's is given back unless it has
+// moved on.
+bool Model::take_back_merge(NodeId absorbed) {
+    const auto place = merges_.find(absorbed);
+    if (place == merges_.end()) return false;
+    const Merge merge = place->second;
+    merges_.erase(place);
+    const std::size_t n = merge.survivor.index();
+    if (positions_[n] != merge.position_after || velocities_[n] != merge.velocity_after)
+        return false;
+    positions_[n] = merge.position_before;
+    velocities_[n] = merge.velocity_before;
+    return true;
+}
+
 void Model::carry_state(const ChangeSet& changes) {
-    for (const NodeRecord& record : changes.nodes_removed) {
-        if (record.num_sources != 1) continue;
-        // Merging keeps momentum and centre of mass; equal states stay what they are to the bit.
-        const std::size_t from = record.id.index(), into = record.sources[0].node.index();
-        const double mass = masses_[from] + masses_[into];
-        const double weight = masses_[from] / mass;
-        positions_[into] += weight * (positions_[from] - positions_[into]);
-        velocities_[into] += weight * (velocities_[from] - velocities_[into]);
-        masses_[into] = mass;
-    }
-    for (const NodeRecord& record : changes.nodes_added) {
-        if (record.num_sources == 0) continue;
+    for (const NodeRecord& record : changes.nodes_removed)
+        if (record.num_sources == 1) merge(record.id, record.sources[0].node);
+    // In reverse: the last of several nodes to join a survivor leaves it first.
+    for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend();
+         ++record) {
+        if (record->num_sources == 0 || take_back_merge(record->id)) continue;
         Vec3 x = Vec3::Zero(), v = Vec3::Zero();
-        for (int s = 0; s < record.num_sources; ++s) {
-            const auto& source = record.sources[static_cast<std::size_t>(s)];
+        for (int s = 0; s < record->num_sources; ++s) {
+            const auto& source = record->sources[static_cast<std::size_t>(s)];
             x += source.weight * positions_[source.node.index()];
             v += source.weight * velocities_[source.node.index()];
         }
-        positions_[record.id.index()] = x;
-        velocities_[record.id.index()] = v;
+        positions_[record->id.index()] = x;
+        velocities_[record->id.index()] = v;
     }
+    merges_.erase(merges_.lower_bound(NodeId(changes.node_capacity_after)), merges_.end());
 }
 
 void Model::apply(const ChangeSet& changes) {

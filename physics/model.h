@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,7 +64,8 @@ class Model {
 
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
     /// the edited mesh with the same state. Copied nodes copy their state; merged ones keep
-    /// momentum. Recomputes the forces of nodes around the edit only when next asked to.
+    /// momentum. The inverse of an edit, applied before anything moved, gives the former state
+    /// back to the bit. Forces are those of before until compute_forces is called.
     /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
     void apply(const topology::ChangeSet& changes);
 
@@ -91,10 +93,19 @@ class Model {
     const topology::Mesh& mesh() const { return mesh_; }
 
   private:
+    /// What a merge did to the node that went on: undone before anything moves, it gives both
+    /// nodes back what they had, to the bit.
+    struct Merge {
+        NodeId survivor;
+        Vec3 position_before, velocity_before, position_after, velocity_after;
+    };
+
     LoadedBody loaded_body() const { return {mesh_, elements_, positions_, masses_}; }
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
     void carry_state(const topology::ChangeSet& changes);
+    void merge(NodeId absorbed, NodeId survivor);
+    bool take_back_merge(NodeId absorbed);
     [[noreturn]] void explain_failure(double dt, const std::vector<Vec3>& velocities) const;
 
     const topology::Mesh& mesh_;
@@ -111,7 +122,8 @@ class Model {
     Loads loads_;
     std::vector<Vec3> reactions_;
     double external_work_ = 0.0, dissipated_energy_ = 0.0;
-    std::vector<ElementId> star_;  // scratch
+    std::map<NodeId, Merge> merges_;  // by the node that was absorbed
+    std::vector<ElementId> star_;     // scratch
 };
 
 }  // namespace incise::physics
