@@ -312,6 +312,24 @@ TEST(Separator, ABentEdgePartsAlongItsShape) {
     }
 }
 
+TEST(Separator, AnEdgeFoldedOntoItselfOpensNothing) {
+    // It passes everything twice at once: an even number of times.
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        Body body(family.data);
+        const auto box = body.box();
+        const double size = box.diagonal().norm();
+        const Plane plane(box.center(), {3, 1, 2});
+        const auto folded = [&](double along) {
+            Edge edge = plane.edge(2 * size, along);
+            edge.push_back(edge.front());
+            return edge;
+        };
+        body.step(folded(-2 * size), folded(2 * size));
+        EXPECT_TRUE(body.opened.empty());
+    }
+}
+
 TEST(Separator, ABladeOutsideOpensNothing) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);

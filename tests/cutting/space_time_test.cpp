@@ -103,20 +103,27 @@ TEST(Crossing, TouchingIsDecidedAsIfTheTissueWereShiftedByAHair) {
 }
 
 TEST(Crossing, IsExactNextToASlantedSweep) {
-    // Whole numbers of up to 53 bits, whose products are rounded: the blade sweeps the plane
-    // x - y = a.x - a.y, and the tissue starts a few units, the last bits, beside it.
-    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    // Whole numbers of some 50 bits, whose products are rounded: the tissue starts on the plane
+    // that the blade sweeps, or a few units, the last bits, beside it.
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
         Random random(seed);
-        const auto whole = [&](double size) { return std::floor(random.uniform(-size, size)); };
-        const Vec3 a(whole(0x1p50), whole(0x1p50), whole(0x1p50));
-        const double d = 0x1p49 + std::abs(whole(0x1p40)), e = whole(0x1p45);
-        const auto blade = shifted(a, a + Vec3(d, d, 0), {e, e, 0x1p48});
+        const auto whole = [&](double low, double high) {
+            return std::floor(random.uniform(low, high));
+        };
+        const auto direction = [&] {
+            const double x = whole(0x1p22, 0x1p23), y = whole(0x1p22, 0x1p23);
+            return Vec3(x, y, whole(0x1p22, 0x1p23));
+        };
+        const Vec3 a(whole(-0x1p48, 0x1p48), whole(-0x1p48, 0x1p48), whole(-0x1p48, 0x1p48));
+        const Vec3 along = direction(), by = direction();
+        if (along.cross(by).x() == 0.0) continue;
+        const auto blade = shifted(a, a + 0x1.8p26 * along, whole(0x1p26, 0x1p27) * by);
         for (const int offset : {-2, -1, 0, 1, 2}) {
-            const double s = 0x1p48 + whole(0x1p40);
-            const Vec3 start = a + Vec3(s + offset, s, 0x1p47 + whole(0x1p40));
-            const Vec3 end = start + Vec3(0x1p30 + 1, 0, 0);  // towards larger x - y
+            const Vec3 start =
+                a + whole(0x1p24, 0x1p26) * along + whole(0x1p24, 0x1p25) * by + Vec3(offset, 0, 0);
             // On the plane is a hair along x beyond it.
-            EXPECT_EQ(cross(still(start, end), blade), offset < 0) << seed << ", " << offset;
+            EXPECT_EQ(cross(still(start, start + Vec3(0x1p20, 0, 0)), blade), offset < 0)
+                << seed << ", " << offset;
         }
     }
 }

@@ -56,7 +56,7 @@ class RunFiles : public testing::Test {
         RunWriter writer(simulation_, folder_ / "out");
         simulation_.add_observer(writer);
         run(simulation_);
-        writer.finish(simulation_, {.wall_time = 2.0});
+        writer.finish(simulation_, {"finished", "", 2.0});
     }
     const topology::Mesh& mesh() const { return simulation_.mesh(); }
 
