@@ -14,10 +14,11 @@ namespace incise::cutting {
 /// while the tissue moved too. In ascending order.
 ///
 /// A face is opened when the edge passed, an odd number of times, through the path that joins the
-/// centres of its two elements by way of the face's centre. These paths run inside the body, and
+/// centres of its two elements by way of a point of the face. These paths run inside the body, and
 /// crossings are counted exactly (space_time.h): once the blade has passed right through, no chain
 /// of elements leads past it, so the body is parted; until then the opened faces are a sheet that
-/// ends at the blade, within one element of where it went.
+/// ends at the blade, within one element of where it went. No single element is cut off from a
+/// larger piece: that is finer than the mesh can tell.
 /// Cost: O(#elements) comparisons of boxes, more only where the blade passes.
 std::vector<topology::FaceId> faces_to_open(const TissueMotion& tissue,
                                             std::span<const Vec3> before,

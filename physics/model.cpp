@@ -104,7 +104,10 @@ void Model::integrate(double time, double dt) {
                 const double reaction =
                     mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
                 reactions_[static_cast<std::size_t>(s)][c] += reaction;
-                work += reaction * (x_new[c] - x[c]);
+                // At the mean velocity: a support that sets off at once gives the node just the
+                // kinetic energy that it then has.
+                work += reaction * (x_new[c] - x[c]) -
+                        0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
             }
         }
         const double square = v_new.squaredNorm();

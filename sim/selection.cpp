@@ -34,8 +34,16 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
     // A pinched point has several nodes, which answer to its number all alike.
     std::vector<char> is_named(mesh.node_capacity(), !where.nodes);
     if (where.nodes)
-        for (const std::int64_t label : *where.nodes)
-            for (const NodeId n : mesh.nodes_with_label(label)) is_named[n.index()] = 1;
+        for (const std::int64_t label : *where.nodes) {
+            const auto named = mesh.nodes_with_label(label);
+            if (std::none_of(named.begin(), named.end(),
+                             [&](NodeId n) { return mesh.is_alive(n); }))
+                throw InputError(
+                    "where.nodes names node " + std::to_string(label) +
+                    ", which no element has; the nodes of the mesh are numbered from 0 to " +
+                    std::to_string(mesh.num_source_points() - 1));
+            for (const NodeId n : named) is_named[n.index()] = 1;
+        }
 
     std::vector<char> result(mesh.node_capacity(), 0);
     for (std::size_t i = 0; i < result.size(); ++i) {

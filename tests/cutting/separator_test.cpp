@@ -22,33 +22,6 @@ namespace {
 
 using test::Random;
 
-/// What becomes of a body whose elements are parted by side, by flood fill: the number of pieces,
-/// and that of elements that are in none of the two largest. There are such crumbs: an element at
-/// the rim whose centre is on one side while its only neighbours' are on the other.
-struct Pieces {
-    int count;
-    std::size_t num_in_crumbs;
-};
-Pieces pieces_of(const Body& body, const std::function<bool(ElementId)>& side) {
-    std::vector<std::size_t> root(body.mesh.element_capacity());
-    for (std::size_t i = 0; i < root.size(); ++i) root[i] = i;
-    const auto find = [&](std::size_t i) {
-        while (root[i] != i) i = root[i];
-        return i;
-    };
-    for (const auto& pair : body.inner_faces())
-        if (side(pair.a.element) == side(pair.b.element))
-            root[find(pair.a.element.index())] = find(pair.b.element.index());
-    std::map<std::size_t, std::size_t> sizes;
-    for (std::size_t i = 0; i < root.size(); ++i) ++sizes[find(i)];
-    std::vector<std::size_t> sorted;
-    for (const auto& [piece, size] : sizes) sorted.push_back(size);
-    std::sort(sorted.rbegin(), sorted.rend());
-    std::size_t num_in_crumbs = 0;
-    for (std::size_t i = 2; i < sorted.size(); ++i) num_in_crumbs += sorted[i];
-    return {static_cast<int>(sorted.size()), num_in_crumbs};
-}
-
 TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
@@ -64,17 +37,20 @@ TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
                 above.push_back(plane.height(body.centre(ElementId(e))) > 0.0);
             const auto side = [&](ElementId e) -> bool { return above[e.index()]; };
             const auto faces = body.inner_faces();
-            const std::size_t num_elements = body.mesh.num_elements();
-            const auto [num_pieces, num_in_crumbs] = pieces_of(body, side);
-
             body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, 2 * size));
 
-            for (const auto& pair : faces)
-                EXPECT_EQ(body.opened.contains(pair), side(pair.a.element) != side(pair.b.element));
-            EXPECT_EQ(topology::components(body.mesh).count, num_pieces);
+            // Only faces between the sides, and all of them, but for those that single elements of
+            // the one side hang on the other by.
+            for (const auto& pair : faces) {
+                const bool is_between = side(pair.a.element) != side(pair.b.element);
+                if (body.opened.contains(pair)) {
+                    EXPECT_TRUE(is_between);
+                } else if (is_between) {
+                    EXPECT_TRUE(has_leaf(body.mesh, pair));
+                }
+            }
             if (is_convex(family.name)) {
-                EXPECT_GE(num_pieces, 2);
-                EXPECT_LE(num_in_crumbs, num_elements / 100);
+                EXPECT_EQ(num_pieces_above(body.mesh, 2), 2);
             }
             expect_parted_cleanly(body);
             const auto once = body.opened;
@@ -123,11 +99,26 @@ TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {
                 }
 }
 
-/// How often the path of a face, from centre to centre by way of its own, passes through the
-/// rectangle of `plane` over |along u| < reach, from < along v < to; by rounded arithmetic.
+/// Where the path of a face passes it: on the straight line between the centres if that pierces
+/// the triangle, else at its centre.
+Vec3 passage(const Body& body, const topology::FacePair& pair) {
+    const Mesh& mesh = body.mesh;
+    if (mesh.face_size(pair.a) != 3) return body.centre(pair.a);
+    const auto at = [&](int p) -> Vec3 { return mesh.rest_position(mesh.face_corner(pair.a, p)); };
+    const Vec3 from = body.centre(pair.a.element), to = body.centre(pair.b.element);
+    Eigen::Matrix3d system;
+    system << at(1) - at(0), at(2) - at(0), from - to;
+    const Vec3 solution = system.fullPivLu().solve(from - at(0));
+    const double s = solution[0], t = solution[1];
+    if (s <= 0.0 || t <= 0.0 || s + t >= 1.0) return body.centre(pair.a);
+    return at(0) + s * (at(1) - at(0)) + t * (at(2) - at(0));
+}
+
+/// How often the path of a face, from centre to centre, passes through the rectangle of `plane`
+/// over |along u| < reach, from < along v < to; by rounded arithmetic, in tissue at rest.
 int crossings(const Body& body, const topology::FacePair& pair, const Plane& plane, double reach,
               double from, double to) {
-    const Vec3 middle = body.centre(pair.a);
+    const Vec3 middle = passage(body, pair);
     int count = 0;
     for (const Vec3& end : {body.centre(pair.a.element), body.centre(pair.b.element)}) {
         const double h0 = plane.height(end), h1 = plane.height(middle);
@@ -169,9 +160,12 @@ TEST(Separator, APartialSweepOpensWhatItPassedAndPartsNothing) {
             for (const auto& pair : body.inner_faces())
                 if (crossings(body, pair, plane, reach, -size, 0.0) == 1) expected.insert(pair);
             body.step(plane.edge(reach, -size), plane.edge(reach, 0.0));
-            EXPECT_EQ(body.opened, expected);
-            EXPECT_GT(expected.size(), 3u);
-            EXPECT_LE(num_apart(body), 1);  // all but, perhaps, a crumb
+            EXPECT_TRUE(std::includes(expected.begin(), expected.end(), body.opened.begin(),
+                                      body.opened.end()));
+            for (const auto& pair : expected)
+                EXPECT_TRUE(body.opened.contains(pair) || has_leaf(body.mesh, pair));
+            EXPECT_GT(body.opened.size(), 3u);
+            EXPECT_EQ(num_apart(body), 0);
             for (const auto& pair : body.opened) {
                 const Vec3 x = body.centre(pair.a);
                 const double element = body.largest_element();
@@ -254,9 +248,10 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
 }
 
 TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
-    // And at most, besides, faces whose centre alone lies beyond the plane: the blade passes
-    // their path twice, which a large step cancels and small steps do not.
-    std::size_t num_opened = 0, num_more = 0;
+    // But for which of its faces an element at the rim is left hanging by, and for faces beside
+    // the line between their elements' centres: the blade may pass their path twice, which a large
+    // step cancels and small steps do not.
+    std::size_t num_opened = 0, num_other = 0;
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         for (std::uint64_t seed = 0; seed < 5; ++seed) {
@@ -269,22 +264,22 @@ TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
             const double end = seed % 2 == 0 ? size : 0.1 * size;
             large.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 1);
             small.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 97);
-            EXPECT_TRUE(std::includes(small.opened.begin(), small.opened.end(),
-                                      large.opened.begin(), large.opened.end()));
-            for (const auto& pair : small.opened) {
-                if (large.opened.contains(pair)) continue;
-                EXPECT_EQ(crossings(large, pair, plane, 2 * size, -size, end), 2);
+            std::vector<topology::FacePair> other;
+            std::set_symmetric_difference(large.opened.begin(), large.opened.end(),
+                                          small.opened.begin(), small.opened.end(),
+                                          std::back_inserter(other));
+            for (const auto& pair : other)
+                EXPECT_TRUE(crossings(large, pair, plane, 2 * size, -size, end) == 2 ||
+                            has_leaf(large.mesh, pair) || has_leaf(small.mesh, pair));
+            if (is_convex(family.name) && end == size) {
+                EXPECT_EQ(topology::components(large.mesh).count, 2);
+                EXPECT_EQ(topology::components(small.mesh).count, 2);
             }
-            // Such a face more can break off a crumb more.
-            const int more =
-                topology::components(small.mesh).count - topology::components(large.mesh).count;
-            EXPECT_GE(more, 0);
-            EXPECT_LE(more, static_cast<int>(small.opened.size() - large.opened.size()));
             num_opened += large.opened.size();
-            num_more += small.opened.size() - large.opened.size();
+            num_other += other.size();
         }
     }
-    EXPECT_LT(20 * num_more, num_opened);  // they are few
+    EXPECT_LT(50 * num_other, num_opened);  // they are few
 }
 
 TEST(Separator, ABentEdgePartsAlongItsShape) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "support/mesh_families.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 
@@ -124,8 +125,10 @@ TEST(Selection, NodesAreNumbersOfTheSource) {
             positions.insert({x.x(), x.y(), x.z()});
         }
         EXPECT_EQ(positions, (std::set<std::vector<double>>{{1, 0, 0}, {0, 1, 1}, {4, 4, 4}}));
-        where.nodes = {-1, 125, 1000000};
-        EXPECT_TRUE(select_nodes(mesh, where).empty());
+        for (const std::int64_t absent : {-1, 125, 1000000}) {
+            where.nodes = {1, absent};
+            EXPECT_THROW(select_nodes(mesh, where), InputError);
+        }
     }
 }
 
@@ -156,7 +159,7 @@ TEST(Selection, APinchedPointIsAllOfItsNodes) {
     EXPECT_TRUE(select_nodes(mesh, where).empty());
     where.regions.reset();
     where.nodes = {7};
-    EXPECT_TRUE(select_nodes(mesh, where).empty());
+    EXPECT_THROW(select_nodes(mesh, where), InputError);
 }
 
 TEST(Selection, AnEmptyOneTellsWhereTheMeshIs) {
@@ -169,6 +172,20 @@ TEST(Selection, AnEmptyOneTellsWhereTheMeshIs) {
         EXPECT_STREQ(error.what(),
                      "load 'pull' selects no face of the surface; the mesh lies between "
                      "[0, 0, 0] and [2, 1, 1]");
+    }
+}
+
+TEST(Selection, RefusesANodeThatIsNotThere) {
+    const auto built = topology::Mesh::build(test::jittered_cube(2, 0.0, 0));
+    Selection where;
+    where.nodes = {{0, 27}};
+    try {
+        select_nodes(built.mesh, where);
+        FAIL() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "where.nodes names node 27, which no element has; the nodes of the mesh "
+                     "are numbered from 0 to 26");
     }
 }
 

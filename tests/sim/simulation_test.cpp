@@ -252,19 +252,13 @@ TEST(Ledger, AccountsForEveryEdit) {
 }
 
 TEST(Ledger, EnergyIsMissingToTheOrderOfTheStepOnly) {
-    // From rest to rest without jumps of the velocity: the support's work at a jump is that of a
-    // blow, of which half goes into the node's motion.
-    std::string moved = R"(
+    // The grip sets off and stops with a jump of its velocity.
+    const std::string moved = R"(
 [[constraint]]
 name = "grip"
 where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
-move = [)";
-    for (int i = 0; i <= 40; ++i) {
-        const double s = i / 40.0, way = s * s * (3.0 - 2.0 * s);
-        moved += "{ time = " + std::to_string(0.2 * s) + ", by = [" + std::to_string(0.01 * way) +
-                 ", 0, " + std::to_string(0.02 * way) + "] }, ";
-    }
-    moved += "]\n";
+move = [{ time = 0, by = [0, 0, 0] }, { time = 0.2, by = [0.01, 0, 0.02] }]
+)";
     const std::string gravity = "gravity = [0, 0, -2]\n";
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
              {"undamped", soft_cube + dynamics(0.5, gravity)},
@@ -280,8 +274,8 @@ move = [)";
             run(simulation);
             errors.push_back(simulation.ledger().energy_error());
         }
-        EXPECT_LT(errors[0], 0.01) << name;
-        EXPECT_LT(errors[1], 0.005) << name;
+        EXPECT_LT(errors[0], 0.02) << name;
+        EXPECT_LT(errors[1], 0.25 * errors[0]) << name;  // an eighth of the step
     }
 }
 
