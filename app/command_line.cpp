@@ -2,6 +2,7 @@
 #include "app/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string_view>
@@ -43,6 +44,17 @@ std::string written_formats() {
     return text;
 }
 
+/// An option of the program to come: refused with what to do instead, and not among the help.
+void declare_planned(CLI::App& verb, const std::string& name, const std::string& remedy) {
+    verb.add_option_function<std::vector<std::string>>(
+            name,
+            [name, remedy](const std::vector<std::string>&) {
+                throw InputError(name + " is not supported by this version yet: " + remedy);
+            })
+        ->expected(0, 1)
+        ->group("");
+}
+
 void declare_run(CLI::App& app, Action& action) {
     auto options = std::make_shared<RunOptions>();
     auto* verb = app.add_subcommand("run", "Simulate a scenario and write its frames and figures");
@@ -58,6 +70,8 @@ void declare_run(CLI::App& app, Action& action) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     verb->add_flag("--dry-run", options->dry_run, "Do everything but simulate and write");
     verb->add_flag("--quiet", options->quiet, "No progress, only problems");
+    declare_planned(*verb, "--threads", "it runs on one thread; leave it out");
+    declare_planned(*verb, "--resume", "start the run anew");
     verb->footer(
         "Examples:\n"
         "  incise run liver.toml --out results --end-time 0.5\n"
@@ -130,7 +144,10 @@ void check_verb(int argc, const char* const* argv) {
                          "; incise --help tells more");
     const std::string_view word = argv[1];
     if (word.starts_with('-')) return;
-    if (const auto complaint = sim::complaint(word, {verbs, planned_verbs}))
+    if (std::ranges::find(planned_verbs, word) != std::end(planned_verbs))
+        throw InputError("this version has no verb " + sim::in_quotes(word) +
+                         " yet; there are: " + sim::list_of(verbs));
+    if (const auto complaint = sim::complaint(word, {verbs}))
         throw InputError("verb " + sim::in_quotes(word) + ": " + *complaint);
 }
 

@@ -11,6 +11,7 @@
 #include "sim/scenario_reader.h"
 #include "sim/simulation.h"
 #include "topology/error.h"
+#include "topology/mesh.h"
 #include "topology/mesh_check.h"
 
 namespace incise::app {
@@ -32,7 +33,9 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
     try {
         const auto file = io::read_mesh(path, {region_array});
         for (const auto& warning : file.warnings) findings.warnings.push_back(prefix + warning);
-        const auto found = topology::check(file.mesh);
+        auto found = topology::check(file.mesh);
+        // What is odd about the connections is known only once they are made.
+        if (found.errors.empty()) found.warnings = topology::Mesh::build(file.mesh).warnings;
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
         const std::set<int> regions(file.mesh.regions.begin(), file.mesh.regions.end());
@@ -59,10 +62,17 @@ Findings check_scenario(const std::filesystem::path& path) {
     }
     if (findings.errors.empty()) {
         // What only the body can tell: empty selections, regions without material, kinds of cells
-        // without a force law, too large a step, expectations of quantities that no run has.
+        // without a force law, too large a step.
         try {
             const sim::Simulation simulation(scenario);
-            sim::failed_expectations(simulation);
+            const std::set<std::string> known(findings.warnings.begin(), findings.warnings.end());
+            for (const auto& warning : simulation.warnings()) {
+                // Those of the mesh's file are told already, with its name.
+                const bool is_of_file =
+                    mesh != nullptr && known.contains(mesh->string() + ": " + warning);
+                if (!is_of_file && !known.contains(warning))
+                    findings.warnings.push_back(path.string() + ": " + warning);
+            }
         } catch (const std::runtime_error& error) {
             findings.errors.push_back(path.string() + ": " + error.what());
         }

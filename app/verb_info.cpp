@@ -73,7 +73,7 @@ void print_text(const MeshInfo& info) {
         if (m.num_of_kind[kind] > 0)
             std::printf("%-16s %zu\n", topology::cell_traits[kind].plural, m.num_of_kind[kind]);
     for (const auto& [region, cells] : m.cells_of_region)
-        std::printf("region %-9d %zu cells\n", region, cells);
+        std::printf("region %-9d %zu %s\n", region, cells, cells == 1 ? "cell" : "cells");
     std::printf("components       %d\n", info.num_components);
     std::printf("bounding box     %.6g %.6g %.6g to %.6g %.6g %.6g\n", m.box_min.x(), m.box_min.y(),
                 m.box_min.z(), m.box_max.x(), m.box_max.y(), m.box_max.z());

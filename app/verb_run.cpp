@@ -1,9 +1,11 @@
 // incise run: simulates a scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <sstream>
 
 #include "app/messages.h"
@@ -60,15 +62,42 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
+/// Errors of the body name the scenario.
+std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
+                                       const std::filesystem::path& file) {
+    const auto named = [&](const std::exception& error) {
+        return prefixed(file.string() + ": ", error.what());
+    };
+    try {
+        return std::make_unique<sim::Simulation>(scenario);
+    } catch (const InputError& error) {
+        throw InputError(named(error));
+    } catch (const PhysicsError& error) {
+        throw PhysicsError(named(error));
+    }
+}
+
+/// Tools that had time to cut and did not, which is seldom what was meant.
+void warn_of_idle_tools(const sim::Simulation& simulation) {
+    for (const sim::ToolSpec& tool : simulation.scenario().tools) {
+        const auto& edits = simulation.ledger().edits();
+        const bool has_cut = std::any_of(edits.begin(), edits.end(),
+                                         [&](const auto& edit) { return edit.tool == tool.name; });
+        if (!has_cut && tool.path.front().time < simulation.time())
+            print_warning("tool '" + tool.name + "' has cut nothing; look at a picture of where " +
+                          "the tissue is when it passes");
+    }
+}
+
 std::string describe(const sim::Simulation& simulation) {
     const sim::Account& body = simulation.ledger().initial();
     std::ostringstream text;
     text.precision(4);
-    text << body.elements << " elements, " << body.nodes << " nodes, " << body.components
-         << (body.components == 1 ? " piece, " : " pieces, ") << body.totals.mass << " kg, "
-         << body.totals.rest_volume << " m3; steps of " << simulation.time_step() << " s to "
-         << simulation.scenario().dynamics.end_time << " s (stable up to " << body.stable_step
-         << " s)";
+    text << body.elements << (body.elements == 1 ? " element, " : " elements, ") << body.nodes
+         << " nodes, " << body.components << (body.components == 1 ? " piece, " : " pieces, ")
+         << body.totals.mass << " kg, " << body.totals.rest_volume << " m3; steps of "
+         << simulation.time_step() << " s to " << simulation.scenario().dynamics.end_time
+         << " s (stable up to " << body.stable_step << " s)";
     return text.str();
 }
 
@@ -80,9 +109,9 @@ int run(const RunOptions& options) {
         overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
     const sim::Scenario scenario = load_scenario(options.scenario, overrides);
 
-    sim::Simulation simulation(scenario);
+    const auto built = build(scenario, options.scenario);
+    sim::Simulation& simulation = *built;
     for (const std::string& warning : simulation.warnings()) print_warning(warning);
-    sim::failed_expectations(simulation);  // names that no run has are told now, not at the end
     if (!options.quiet) std::cerr << scenario.name << ": " << describe(simulation) << '\n';
     if (options.dry_run) return done;
 
@@ -117,6 +146,7 @@ int run(const RunOptions& options) {
         return 128 + stop_signal;
     }
     finish({});
+    warn_of_idle_tools(simulation);
 
     if (!options.quiet)
         std::cerr << scenario.name << ": " << simulation.num_steps() << " steps in "

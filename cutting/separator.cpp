@@ -66,10 +66,10 @@ bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3
     return is_odd;
 }
 
-/// Takes out the faces that would leave a single element without any neighbour. Such an element
+/// Takes out the faces that would cut a single element off from several others. Such an element
 /// at the rim of the cut, its centre on one side and its neighbours' on the other, would fall off
-/// as a crumb; hanging by one face it is a leaf, over which nothing passes from side to side. Two
-/// elements that have only each other are a body to be parted like any other.
+/// as a crumb; hanging by one face it is a leaf, over which nothing passes from side to side. An
+/// element that the source joins to one other only is no crumb but an end, and may be cut off.
 void leave_no_crumbs(const Mesh& mesh, std::vector<FaceId>& faces) {
     std::map<ElementId, int> num_joined;
     const auto joined = [&](ElementId e) -> int& {
@@ -79,13 +79,20 @@ void leave_no_crumbs(const Mesh& mesh, std::vector<FaceId>& faces) {
                 place->second += mesh.neighbor({e, f}).is_valid();
         return place->second;
     };
-    std::erase_if(faces, [&](FaceId f) {
-        int &here = joined(f.element), &there = joined(mesh.neighbor(f).element);
-        if ((here == 1) != (there == 1)) return true;
-        --here;
-        --there;
-        return false;
-    });
+    const auto is_crumb = [&](ElementId e) {
+        int num_inside = 0;
+        for (int f = 0; f < mesh.num_faces(e); ++f) num_inside += mesh.was_inside({e, f});
+        return joined(e) == 1 && num_inside > 1;
+    };
+    std::vector<FaceId> kept;
+    for (const FaceId f : faces) {
+        const ElementId here = f.element, there = mesh.neighbor(f).element;
+        if (is_crumb(here) != is_crumb(there)) continue;
+        --joined(here);
+        --joined(there);
+        kept.push_back(f);
+    }
+    faces = std::move(kept);
 }
 
 }  // namespace

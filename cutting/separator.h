@@ -17,8 +17,8 @@ namespace incise::cutting {
 /// centres of its two elements by way of a point of the face. These paths run inside the body, and
 /// crossings are counted exactly (space_time.h): once the blade has passed right through, no chain
 /// of elements leads past it, so the body is parted; until then the opened faces are a sheet that
-/// ends at the blade, within one element of where it went. No single element is cut off from a
-/// larger piece: that is finer than the mesh can tell.
+/// ends at the blade, within one element of where it went. An element that had several neighbours
+/// is not cut off alone: it would be a crumb, its centre beyond the blade and the rest of it not.
 /// Cost: O(#elements) comparisons of boxes, more only where the blade passes.
 std::vector<topology::FaceId> faces_to_open(const TissueMotion& tissue,
                                             std::span<const Vec3> before,

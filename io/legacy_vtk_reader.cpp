@@ -94,6 +94,8 @@ class LegacyVtkReader {
             throw InputError(file_.name() + ": the last cell ends at offset " +
                              std::to_string(piece_.offsets.back()) + ", but the connectivity has " +
                              std::to_string(piece_.connectivity.size()) + " entries");
+        if (!has_regions_ && options_.must_have_regions() && !piece_.types.empty())
+            refuse_missing_regions(file_.name(), options_.region_array, other_cell_arrays_);
         MeshFile result;
         auto collector = make_vtk_collector(file_.name());
         append_piece(piece_, file_.name(), result.mesh, collector);
@@ -295,11 +297,15 @@ class LegacyVtkReader {
                               std::to_string(num_components));
             require_tuples(name, num_tuples, piece_.types.size(), "cells");
             piece_.regions = read_values<double>(type, count, "the regions");
+            has_regions_ = true;
         } else if (association_ == Association::points && name == "rest_position" &&
                    num_components == 3) {
             require_tuples(name, num_tuples, piece_.coordinates.size() / 3, "points");
             piece_.coordinates = read_values<double>(type, count, "the rest positions");
         } else {
+            if (association_ == Association::cells && num_components == 1 &&
+                type.layout == ValueType::Layout::number && is_integer(type.scalar))
+                other_cell_arrays_.push_back(name);
             skip_values(type, count, "array " + in_quotes(name));
         }
     }
@@ -392,12 +398,14 @@ class LegacyVtkReader {
     const ReadOptions& options_;
     Scanner scanner_;
     VtkPiece piece_;
+    std::vector<std::string> other_cell_arrays_;  ///< of whole numbers, one a cell
     Association association_ = Association::none;
     std::size_t num_tuples_ = 0;
     bool has_offsets_ = false;  ///< the file is of version 5
     bool has_points_ = false;
     bool has_cells_ = false;
     bool has_types_ = false;
+    bool has_regions_ = false;
     bool is_at_data_ = false;  ///< the line before the data is already read
 };
 

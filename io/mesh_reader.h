@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "topology/mesh_data.h"
@@ -11,9 +12,14 @@
 namespace incise::io {
 
 struct ReadOptions {
+    static constexpr std::string_view usual_region_array = "region";
+
     /// VTU and legacy VTK: the cell array of whole numbers that becomes MeshData::regions.
-    /// Where a file has no array of that name, all regions are 0.
-    std::string region_array = "region";
+    /// Where a file has no array of the usual name, all regions are 0; one of another name must be
+    /// there. Gmsh: without meaning, regions are the physical groups.
+    std::string region_array{usual_region_array};
+
+    bool must_have_regions() const { return region_array != usual_region_array; }
 };
 
 struct MeshFile {

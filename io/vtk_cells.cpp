@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "io/input_file.h"
 #include "io/number_text.h"
 #include "topology/error.h"
 
@@ -94,6 +95,16 @@ std::optional<int> region_of(double value) {
 }
 
 }  // namespace
+
+void refuse_missing_regions(const std::string& place, const std::string& name,
+                            const std::vector<std::string>& others) {
+    std::string list;
+    for (const auto& other : others) list += (list.empty() ? "" : ", ") + in_quotes(other);
+    throw InputError(
+        place + ": has no cell array " + in_quotes(name) + " to take the regions from" +
+        (others.empty() ? ", nor another of whole numbers; without a name all regions are 0"
+                        : "; its cell arrays of whole numbers: " + list));
+}
 
 CellCollector make_vtk_collector(const std::string& file) { return {file, "VTK cell type"}; }
 

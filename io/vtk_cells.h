@@ -32,6 +32,11 @@ void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& 
 void append_piece(const VtkPiece& piece, const std::string& place, topology::MeshData& mesh,
                   CellCollector& collector);
 
+/// Throws InputError: the file has no cell array `name`, which was asked for. `others` are those
+/// from which regions could be taken: of whole numbers, one a cell.
+[[noreturn]] void refuse_missing_regions(const std::string& place, const std::string& name,
+                                         const std::vector<std::string>& others);
+
 /// A collector with VTK's words.
 CellCollector make_vtk_collector(const std::string& file);
 

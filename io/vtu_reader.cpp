@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/number_text.h"
 #include "io/vtk_cells.h"
@@ -148,6 +149,9 @@ class VtuReader {
                     arrays.fail(regions, "regions need 1 component, this array has " +
                                              std::to_string(arrays.num_components(regions)));
                 piece.regions = arrays.reals(regions, num_cells);
+            } else if (options_.must_have_regions()) {
+                refuse_missing_regions(place, options_.region_array,
+                                       whole_number_arrays(arrays, node.child("CellData")));
             }
         }
         append_piece(piece, place, result_.mesh, collector_);
@@ -167,6 +171,19 @@ class VtuReader {
 
     static pugi::xml_node named(pugi::xml_node parent, const std::string& name) {
         return parent.find_child_by_attribute("DataArray", "Name", name.c_str());
+    }
+
+    /// The names of the arrays with one whole number a cell.
+    static std::vector<std::string> whole_number_arrays(const VtkXmlArrays& arrays,
+                                                        pugi::xml_node cell_data) {
+        std::vector<std::string> names;
+        for (const auto array : cell_data.children("DataArray")) {
+            const std::string_view type = array.attribute("type").value();
+            if ((type.starts_with("Int") || type.starts_with("UInt")) &&
+                arrays.num_components(array) == 1)
+                names.emplace_back(array.attribute("Name").value());
+        }
+        return names;
     }
 
     static pugi::xml_node required(const VtkXmlArrays& arrays, pugi::xml_node cells,

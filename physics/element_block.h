@@ -44,6 +44,8 @@ class ElementBlock {
     /// Appends the elastic energy of each element, J.
     virtual void append_energies(std::span<const Vec3> positions,
                                  std::vector<double>& energies) const = 0;
+    /// Sum over the elements of modulus times rest volume, J.
+    virtual double stiffness_energy() const = 0;
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions) const = 0;
     virtual ElementShares shares(ElementId e) const = 0;
@@ -84,6 +86,12 @@ class KernelBlock final : public ElementBlock {
                          std::vector<double>& energies) const override {
         for (std::size_t s = 0; s < rows_.size(); ++s)
             energies.push_back(kernel_.energy(rows_[s].rest, gather(s, positions)));
+    }
+
+    double stiffness_energy() const override {
+        double sum = 0.0;
+        for (const Row& row : rows_) sum += kernel_.stiffness_energy(row.rest);
+        return sum;
     }
 
     double min_volume_ratio(std::span<const Vec3> positions) const override {

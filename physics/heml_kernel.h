@@ -90,6 +90,11 @@ struct HemlKernel {
         return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]) / e.volume;
     }
 
+    /// P-wave modulus at rest times rest volume, joules.
+    double stiffness_energy(const Element& e) const {
+        return (law.rest_lambda() + 2.0 * law.rest_mu()) * e.volume;
+    }
+
     /// Elastic energy, joules.
     double energy(const Element& e, const Corners& x) const {
         const Vec6 dl = squared_links(x) - e.rest_links;

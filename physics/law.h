@@ -1,5 +1,5 @@
-// Hyperelastic laws as functions of link lengths. A new law is one struct here, one alternative
-// of Law and one row in docs/theory.md.
+// Hyperelastic laws as functions of link lengths. A new law is one struct here and one alternative
+// of Law; docs/architecture.md lists what gives it its name and parameters in a scenario.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -39,6 +39,8 @@ struct MassSpringKernel {
         return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]) / e.volume;
     }
 
+    double stiffness_energy(const Element& e) const { return young * e.volume; }
+
     double energy(const Element& e, const Corners& x) const {
         double sum = 0.0;
         for (std::size_t k = 0; k < edges.size(); ++k) {

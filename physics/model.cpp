@@ -15,14 +15,11 @@ using topology::NodeRecord;
 
 namespace {
 
-double diagonal(std::span<const Vec3> points) {
-    if (points.empty()) return 0.0;
-    Vec3 low = points[0], high = points[0];
-    for (const Vec3& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    return (high - low).norm();
+double diagonal(const topology::Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
+        if (mesh.is_alive(NodeId(i))) box.extend(mesh.rest_position(NodeId(i)));
+    return box.diagonal().norm();
 }
 
 }  // namespace
@@ -33,7 +30,7 @@ Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surrounding
       elements_(mesh, table),
       gravity_(surroundings.gravity),
       damping_(surroundings.damping),
-      body_size_(diagonal(mesh.rest_positions())),
+      body_size_(diagonal(mesh)),
       positions_(mesh.rest_positions().begin(), mesh.rest_positions().end()),
       masses_(mesh.node_capacity(), 0.0),
       supports_(mesh, std::move(surroundings.supports)),
@@ -120,38 +117,42 @@ void Model::integrate(double time, double dt) {
     }
     external_work_ += work;
     dissipated_energy_ += dissipated_power * dt;
-    if (!is_finite || std::sqrt(largest_square) * dt > body_size_) explain_failure(dt, velocities_);
+    if (!is_finite || std::sqrt(largest_square) * dt > body_size_) explain_failure(dt);
 }
 
-void Model::explain_failure(double dt, const std::vector<Vec3>& velocities) const {
+void Model::explain_failure(double dt) const {
+    // The first node that is not finite, or else the fastest.
     std::size_t worst = 0;
     double largest = -1.0;
-    for (std::size_t n = 0; n < masses_.size(); ++n) {
+    for (std::size_t n = 0; n < masses_.size() && std::isfinite(largest); ++n) {
         if (masses_[n] == 0.0) continue;
-        const double square = velocities[n].squaredNorm();
-        if (!std::isfinite(square)) {
-            worst = n;
-            largest = square;
-            break;
-        }
-        if (square > largest) {
-            largest = square;
-            worst = n;
-        }
+        const double speed = velocities_[n].norm();
+        if (speed <= largest) continue;
+        worst = n;
+        largest = speed;
     }
-    const NodeId n(worst);
-    const ElementId e = mesh_.anchor(n);
+    const ElementId e = mesh_.anchor(NodeId(worst));
     std::ostringstream text;
-    text << (std::isfinite(largest) ? "the motion has blown up" : "the state is no longer finite")
-         << " at element " << mesh_.label(e) << " (node " << mesh_.label(n) << ", rest position "
-         << mesh_.rest_position(n).transpose() << "). ";
-    if (dt > stable_step())
-        text << "The step of " << dt << " s is above the stable step of " << stable_step()
-             << " s: use time_step = \"auto\"";
+    text << "element " << mesh_.label(e) << ", node " << mesh_.label(NodeId(worst))
+         << " (at rest at " << mesh_.rest_positions()[worst].transpose() << ") ";
+    if (std::isfinite(largest))
+        text << "moved by " << largest * dt << " m in one step, farther than the body is wide";
     else
-        text << "The step of " << dt << " s is " << dt / stable_step()
-             << " of the stable step at rest; large strain stiffens the tissue: use a smaller "
-                "safety (dynamics.safety), more damping, gentler motion, or a finer mesh there";
+        text << "is no longer at a finite place";
+    text << "; likely cause: ";
+    if (dt > stable_step())
+        text << "the step of " << dt << " s is above the stable step of " << stable_step()
+             << " s; use time_step = \"auto\"";
+    else if (supports_.of_node(worst))
+        text << "its support is moved too fast; move it more slowly";
+    else if (outer_forces_[worst].norm() > elastic_forces_[worst].norm())
+        text << "the load on it of " << outer_forces_[worst].norm() << " N, with a mass of "
+             << masses_[worst] << " kg; make it smaller or bring it up slowly";
+    else
+        text << "strain so large that it has stiffened the tissue (the step of " << dt << " s is "
+             << dt / stable_step()
+             << " of what is stable at rest); use a smaller dynamics.safety, more damping, gentler "
+                "motion, or a finer mesh there";
     throw PhysicsError(text.str());
 }
 
@@ -278,6 +279,12 @@ Totals Model::totals() const {
         t.angular_momentum[c] = angular[static_cast<std::size_t>(c)].value();
     }
     return t;
+}
+
+double Model::stiffness_energy() const {
+    double sum = 0.0;
+    elements_.for_each_block([&](const ElementBlock& block) { sum += block.stiffness_energy(); });
+    return sum;
 }
 
 double Model::min_volume_ratio() const {

@@ -72,6 +72,14 @@ class Model {
     /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
     double stable_step() const { return stable_step_.value(); }
 
+    /// The element with the lowest id at the node that sets the stable step.
+    ElementId limiting_element() const {
+        return mesh_.anchor(NodeId(stable_step_.limiting_node()));
+    }
+    /// Energy that a strain of the order of one would take, J: what rounding errors of the elastic
+    /// energy are small against.
+    double stiffness_energy() const;
+
     Totals totals() const;
     double min_volume_ratio() const;
     ElementResult element_result(ElementId e) const {
@@ -106,7 +114,7 @@ class Model {
     void carry_state(const topology::ChangeSet& changes);
     void merge(NodeId absorbed, NodeId survivor);
     bool take_back_merge(NodeId absorbed);
-    [[noreturn]] void explain_failure(double dt, const std::vector<Vec3>& velocities) const;
+    [[noreturn]] void explain_failure(double dt) const;
 
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;

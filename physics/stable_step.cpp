@@ -35,4 +35,9 @@ double StableStep::value() const {
     return highest > 0.0 ? 2.0 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 
+std::size_t StableStep::limiting_node() const {
+    const auto highest = std::max_element(quotients_.begin(), quotients_.end());
+    return static_cast<std::size_t>(highest - quotients_.begin());
+}
+
 }  // namespace incise::physics

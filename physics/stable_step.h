@@ -22,6 +22,9 @@ class StableStep {
     /// last call. The maximum is exact, so no history shows in it.
     double value() const;
 
+    /// The node that sets it; 0 without a node.
+    std::size_t limiting_node() const;
+
   private:
     static constexpr std::size_t block_size = 256;
     std::vector<double> quotients_;

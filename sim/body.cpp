@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "sim/body.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <new>
 #include <set>
 
 #include "io/mesh_reader.h"
@@ -20,12 +23,24 @@ topology::BuiltMesh build_from_file(const std::filesystem::path& path, const Mes
     const auto named = [&](const std::string& text) { return path.string() + ": " + text; };
     try {
         topology::BuiltMesh built = topology::Mesh::build(file.mesh);
-        for (std::string& warning : built.warnings) file.warnings.push_back(named(warning));
-        built.warnings = std::move(file.warnings);
+        file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
+        built.warnings.clear();
+        for (const std::string& warning : file.warnings) built.warnings.push_back(named(warning));
         return built;
     } catch (const InputError& error) {
         throw InputError(named(error.what()));
     }
+}
+
+/// Throws bad_alloc for a box that this machine cannot hold, before it tries and is killed.
+void require_memory_for(const BoxMeshSpec& box) {
+    const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
+    const double bytes_per_brick = is_tetrahedra ? 6 * 1200.0 : 2500.0;  // map, arrays, elements
+    const double bytes =
+        bytes_per_brick * box.cells[0] * static_cast<double>(box.cells[1]) * box.cells[2];
+    const double memory =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+    if (bytes > memory) throw std::bad_alloc();
 }
 
 physics::Law build_law(const MaterialSpec& spec, const ElasticConstants& constants) {
@@ -59,12 +74,26 @@ physics::TimeCurve<Value> curve(const std::vector<TimeKey<Value>>& keys) {
     return physics::TimeCurve<Value>(std::move(pairs));
 }
 
+/// What `select` finds, at least one of `things`. Errors begin with `what`, the owner of `where`.
+template <class Id>
+std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const Selection&),
+                       const topology::Mesh& mesh, const Selection& where, const std::string& what,
+                       const std::string& things) {
+    std::vector<Id> found;
+    try {
+        found = select(mesh, where);
+    } catch (const InputError& error) {
+        throw InputError(what + ": " + error.what());
+    }
+    require_selected(found.size(), mesh, what, things);
+    return found;
+}
+
 physics::Support build_support(const ConstraintSpec& spec, const topology::Mesh& mesh) {
     physics::Support support;
     support.name = spec.name;
-    auto nodes = select_nodes(mesh, spec.where);
-    require_selected(nodes.size(), mesh, "constraint '" + spec.name + "'", "node");
-    support.nodes = physics::NodeSet(std::move(nodes));
+    support.nodes = physics::NodeSet(
+        choose(select_nodes, mesh, spec.where, "constraint '" + spec.name + "'", "node"));
     support.components = spec.fixed;
     support.displacement = curve(spec.move);
     support.angle = curve(spec.rotate);
@@ -76,24 +105,20 @@ physics::Support build_support(const ConstraintSpec& spec, const topology::Mesh&
 physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
     const std::string what = "load '" + spec.name + "'";
     const auto faces = [&] {
-        auto selected = select_faces(mesh, spec.where);
-        require_selected(selected.size(), mesh, what, "face of the surface");
-        return selected;
+        return choose(select_faces, mesh, spec.where, what, "face of the surface");
     };
     physics::Load load;
     load.name = spec.name;
     load.factor = curve(spec.factor);
     if (const auto* nodal = std::get_if<NodalForce>(&spec.load)) {
-        auto nodes = select_nodes(mesh, spec.where);
-        require_selected(nodes.size(), mesh, what, "node");
+        auto nodes = choose(select_nodes, mesh, spec.where, what, "node");
         load.kind = physics::NodalLoad{physics::NodeSet(std::move(nodes)), nodal->force, {}};
     } else if (const auto* traction = std::get_if<Traction>(&spec.load)) {
         load.kind = physics::TractionLoad{faces(), traction->stress};
     } else if (const auto* pressure = std::get_if<Pressure>(&spec.load)) {
         load.kind = physics::PressureLoad{faces(), pressure->pressure};
     } else {
-        auto elements = select_elements(mesh, spec.where);
-        require_selected(elements.size(), mesh, what, "element");
+        auto elements = choose(select_elements, mesh, spec.where, what, "element");
         load.kind = physics::BodyLoad{std::move(elements), std::get<BodyForce>(spec.load).density};
     }
     return load;
@@ -111,6 +136,7 @@ topology::BuiltMesh build_mesh(const MeshSpec& spec) {
     if (const auto* path = std::get_if<std::filesystem::path>(&spec.source))
         return build_from_file(*path, spec);
     const auto& box = std::get<BoxMeshSpec>(spec.source);
+    require_memory_for(box);
     return topology::Mesh::build(
         topology::box_mesh(box.element, spec.scale * box.origin, spec.scale * box.size, box.cells));
 }

@@ -50,7 +50,8 @@ class Ledger {
     double mass_error() const;
     /// What is missing between the energy at the start, what came in (work) and what went out
     /// (dissipated, removed with elements) on one side and the present energy on the other, over
-    /// the sum of their sizes. Of the order of the step: the integrator's energy swings with it.
+    /// the sum of their sizes, or over 1e-8 of the body's stiffness energy if that is more. Of the
+    /// order of the step: the integrator's energy swings with it.
     double energy_error() const;
 
   private:

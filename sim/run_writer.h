@@ -28,8 +28,8 @@ struct Outcome {
 /// the run.
 std::vector<std::pair<std::string, double>> summary_quantities(const Simulation& simulation);
 
-/// What is not as the scenario's [expect] says; each a sentence. Throws InputError for a quantity
-/// that does not exist, naming those that do.
+/// What is not as the scenario's [expect] says; each a sentence. Its quantities must exist, which
+/// the scenario reader sees to.
 std::vector<std::string> failed_expectations(const Simulation& simulation);
 
 /// Everything is on disk, readable, when a function returns; a kill at any moment leaves whole
@@ -55,6 +55,7 @@ class RunWriter : public Observer {
     std::filesystem::path folder_;
     io::Series series_;
     io::LineFile history_, edits_;
+    std::vector<std::pair<std::string, double>> last_row_;  // of the history
 };
 
 }  // namespace incise::sim

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "io/number_format.h"
+#include "sim/quantities.h"
 #include "sim/scenario_sections.h"
 #include "topology/error.h"
 
@@ -87,7 +88,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.loads = read_loads(root, end_time);
     scenario.tools = read_tools(root, end_time);
     scenario.output = read_output(root, end_time);
-    scenario.expect = read_expectations(root);
+    scenario.expect = read_expectations(root, scenario.constraints);
     return scenario;
 }
 
@@ -167,17 +168,20 @@ OutputSpec read_output(const TableReader& root, double end_time) {
     return spec;
 }
 
-std::vector<Expectation> read_expectations(const TableReader& root) {
+std::vector<Expectation> read_expectations(const TableReader& root,
+                                           std::span<const ConstraintSpec> constraints) {
     std::vector<Expectation> expectations;
-    std::vector<std::string_view> any_key;
-    if (const Value* value = find(root.entries(), "expect"))
-        if (const auto* table = value->get<Table>())
-            for (const auto& entry : *table) any_key.push_back(entry.key);
-    const auto expect = root.table("expect", {any_key});
-    for (const auto quantity : any_key) {
+    std::vector<std::string> held;
+    for (const ConstraintSpec& constraint : constraints) held.push_back(constraint.name);
+    const std::vector<std::string> quantities = all_quantities(held);
+    const std::vector<std::string_view> names(quantities.begin(), quantities.end());
+    const auto expect = root.table("expect", {names});
+    if (!expect) return expectations;
+    for (const auto& [quantity, value, place] : expect->entries()) {
+        if (complaint(quantity, {names})) continue;  // reported above
         const auto range = expect->table(quantity, {expectation_keys});
         if (!range) continue;
-        Expectation expectation{std::string(quantity), range->number_if_given("min"),
+        Expectation expectation{quantity, range->number_if_given("min"),
                                 range->number_if_given("max")};
         if (!range->has("min") && !range->has("max"))
             range->error({}, "must have min, max or both, as in { max = 1e-9 }");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,9 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
 std::vector<ToolSpec> read_tools(const TableReader& root, double end_time);
 OutputSpec read_output(const TableReader& root, double end_time);
-std::vector<Expectation> read_expectations(const TableReader& root);
+/// @param constraints  whose reactions are among the quantities
+std::vector<Expectation> read_expectations(const TableReader& root,
+                                           std::span<const ConstraintSpec> constraints);
 
 /// The name that a constraint, load or tool gives itself, or `fallback`. Reports one that is used
 /// already or has other characters than letters, digits, _ and -: it becomes part of the names of

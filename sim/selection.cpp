@@ -15,14 +15,25 @@ using topology::NodeId;
 
 namespace {
 
+bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
+    return !where.regions ||
+           std::binary_search(where.regions->begin(), where.regions->end(), mesh.region(e));
+}
+
+/// All that `where` asks for but the region: elements and faces are of one region, nodes of
+/// several.
+Selection without_regions(Selection where) {
+    where.regions.reset();
+    return where;
+}
+
 /// By node id: whether it is alive and selected.
 std::vector<char> selected(const Mesh& mesh, const Selection& where) {
     std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
     if (where.regions)
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
             const ElementId e(i);
-            if (mesh.is_alive(e) &&
-                std::binary_search(where.regions->begin(), where.regions->end(), mesh.region(e)))
+            if (mesh.is_alive(e) && is_in_regions(mesh, where, e))
                 for (const NodeId n : mesh.corners(e)) in_regions[n.index()] = 1;
         }
     std::vector<char> on_surface(mesh.node_capacity(), !where.surface);
@@ -74,9 +85,10 @@ std::vector<NodeId> select_nodes(const Mesh& mesh, const Selection& where) {
 }
 
 std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
-    const auto is_in = selected(mesh, where);
+    const auto is_in = selected(mesh, without_regions(where));
     std::vector<FaceId> faces = topology::boundary_faces(mesh);
     std::erase_if(faces, [&](FaceId f) {
+        if (!is_in_regions(mesh, where, f.element)) return true;
         for (int p = 0; p < mesh.face_size(f); ++p)
             if (!is_in[mesh.face_corner(f, p).index()]) return true;
         return false;
@@ -85,11 +97,11 @@ std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
 }
 
 std::vector<ElementId> select_elements(const Mesh& mesh, const Selection& where) {
-    const auto is_in = selected(mesh, where);
+    const auto is_in = selected(mesh, without_regions(where));
     std::vector<ElementId> elements;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+        if (!mesh.is_alive(e) || !is_in_regions(mesh, where, e)) continue;
         const auto corners = mesh.corners(e);
         if (std::all_of(corners.begin(), corners.end(), [&](NodeId n) { return is_in[n.index()]; }))
             elements.push_back(e);

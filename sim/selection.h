@@ -10,13 +10,15 @@
 
 namespace incise::sim {
 
-/// Nodes for which everything given holds, at rest; ascending.
+/// Nodes for which everything given holds, at rest; in a region are all nodes of its elements, also
+/// those that it shares with another. Ascending.
 std::vector<topology::NodeId> select_nodes(const topology::Mesh& mesh, const Selection& where);
 
-/// Faces of the boundary all of whose nodes are selected; ascending.
+/// Faces of the boundary whose element is in `where.regions` and for all of whose nodes the rest
+/// holds; ascending.
 std::vector<topology::FaceId> select_faces(const topology::Mesh& mesh, const Selection& where);
 
-/// Elements all of whose nodes are selected; ascending.
+/// Elements that are in `where.regions` and for all of whose nodes the rest holds; ascending.
 std::vector<topology::ElementId> select_elements(const topology::Mesh& mesh,
                                                  const Selection& where);
 

@@ -97,16 +97,26 @@ Simulation::Interval Simulation::next_step() const {
 double Simulation::step_limit() const {
     const DynamicsSpec& dynamics = scenario_.dynamics;
     const double stable = model_.stable_step();
-    if (!dynamics.time_step) return dynamics.safety * stable;
-    if (*dynamics.time_step > stable) {
-        std::ostringstream text;
-        text << "dynamics.time_step of " << *dynamics.time_step << " s is above the stable step of "
-             << stable << " s";
+    const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
+    std::ostringstream text;
+    if (dynamics.time_step && !(limit <= stable)) {
+        text << "dynamics.time_step of " << limit << " s is above the stable step of " << stable
+             << " s";
         if (num_steps_ > 0) text << " that the edits have left";
         text << ": use a smaller one, or time_step = \"auto\"";
         throw PhysicsError(text.str());
     }
-    return *dynamics.time_step;
+    // So many steps would take years, and at last would not move the time on at all.
+    constexpr double max_steps = 1e10;
+    if (!(limit * max_steps >= dynamics.end_time)) {
+        text << "steps of " << limit << " s would take more than 1e10 of them to the end at "
+             << dynamics.end_time << " s";
+        if (!dynamics.time_step)
+            text << "; element " << mesh_.label(model_.limiting_element())
+                 << " is the smallest or stiffest for its mass: check its shape and material";
+        throw PhysicsError(text.str());
+    }
+    return limit;
 }
 
 void Simulation::tell_frame() {

@@ -79,6 +79,7 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const NodeId>
     corner_begin_.push_back(corners_.size());
     neighbors_.resize(neighbors_.size() + static_cast<std::size_t>(traits(kind).num_faces));
     face_begin_.push_back(neighbors_.size());
+    was_inside_.resize(neighbors_.size(), 0);
     ++num_elements_;
 }
 
@@ -92,6 +93,7 @@ void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
     face_begin_.resize(element_capacity + 1);
     corners_.resize(corner_begin_.back());
     neighbors_.resize(face_begin_.back());
+    was_inside_.resize(face_begin_.back());
     map_.truncate(node_capacity, element_capacity);
 }
 

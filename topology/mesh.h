@@ -69,6 +69,11 @@ class Mesh {
         return neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)];
     }
 
+    /// Whether the face was joined to another in the source: inside the body, before any cut.
+    bool was_inside(FaceId f) const {
+        return was_inside_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)] != 0;
+    }
+
     /// Elements round a node in ascending order of id. Cost: O(star), about a microsecond.
     void star(NodeId n, std::vector<ElementId>& elements) const;
     /// The lowest element of the node's star; invalid for a dead node.
@@ -113,6 +118,7 @@ class Mesh {
     std::vector<std::size_t> corner_begin_{0}, face_begin_{0};
     std::vector<NodeId> corners_;
     std::vector<FaceId> neighbors_;
+    std::vector<std::uint8_t> was_inside_;  // by face
 
     std::vector<std::int64_t> node_labels_, element_labels_;
     std::vector<NodeId> label_nodes_;                       ///< label -> node, the first if pinched

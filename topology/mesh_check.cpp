@@ -73,6 +73,11 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
         x[k] = data.points[static_cast<std::size_t>(corners[k])];
     const CellKind kind = data.kinds[c];
     const double volume = signed_volume(kind, {x.data(), corners.size()});
+    if (!std::isfinite(volume)) {
+        complaints.add("cells of no finite volume", cell_name(data, c),
+                       " has no finite volume; its coordinates are too large: scale the mesh");
+        return;
+    }
     if (!(volume > 0.0)) {
         complaints.add("cells without positive volume", cell_name(data, c), " has ",
                        volume == 0.0 ? "zero volume" : "negative volume ",
@@ -171,7 +176,7 @@ bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
 void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& result,
                 Complaints& complaints) {
     if (same_points(data, a.cell, b.cell)) {
-        if (a.face == 0 || b.face == 0)  // once a pair of cells, not once a face
+        if (a.face == 0)  // once a pair of cells, not once a face
             complaints.add("duplicate cells", cell_name(data, a.cell), " and ",
                            cell_name(data, b.cell), " have the same nodes; remove one of them");
         return;

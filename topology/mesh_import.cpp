@@ -161,9 +161,14 @@ class MeshImport {
             const ElementId e(i);
             mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions());
         }
-        for (const SharedFace& shared : check_.shared_faces)
-            mesh_.glue({element_of_cell_[shared.a.cell], shared.a.face},
-                       {element_of_cell_[shared.b.cell], shared.b.face}, shared.shift);
+        for (const SharedFace& shared : check_.shared_faces) {
+            const FaceId a{element_of_cell_[shared.a.cell], shared.a.face};
+            const FaceId b{element_of_cell_[shared.b.cell], shared.b.face};
+            mesh_.glue(a, b, shared.shift);
+            for (const FaceId f : {a, b})
+                mesh_.was_inside_[mesh_.face_begin_[f.element.index()] +
+                                  static_cast<std::size_t>(f.face)] = 1;
+        }
     }
 
     static constexpr std::size_t max_pinches_listed = 5;

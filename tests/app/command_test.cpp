@@ -35,6 +35,10 @@ std::string mesh(const std::string& apex = "1 1 1") {
            "$EndElements\n";
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
 class Command : public testing::Test {
   protected:
     void write(const std::string& name, const std::string& text) {
@@ -80,11 +84,52 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
     EXPECT_EQ(refused("").find("incise: a verb is missing:"), 0u);
     EXPECT_EQ(refused("inof a.vtu").find("incise: verb 'inof': is not known; did you mean 'info'?"),
               0u);
-    EXPECT_EQ(
-        refused("cut a.vtu").find("incise: verb 'cut': this version does not support it yet;"), 0u);
+    EXPECT_EQ(refused("cut a.vtu"),
+              "incise: this version has no verb 'cut' yet; there are: run, check, info, convert, "
+              "materials, render\n");
     EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
     EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
+}
+
+TEST_F(Command, TellsOfOptionsThatAreToCome) {
+    write("scene.toml", scenario);
+    for (const auto* arguments :
+         {"--threads 2 scene.toml", "scene.toml --threads=2", "--threads"}) {
+        const auto outcome = run(std::string("run ") + arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(outcome.err,
+                  "incise: --threads is not supported by this version yet: it runs on one thread; "
+                  "leave it out\n");
+    }
+    for (const auto* arguments : {"scene.toml --resume", "scene.toml --resume scene.out"}) {
+        const auto outcome = run(std::string("run ") + arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.err,
+                  "incise: --resume is not supported by this version yet: start the run anew\n");
+    }
+    const auto help = run("run --help").out;
+    EXPECT_EQ(help.find("--threads"), std::string::npos);
+    EXPECT_EQ(help.find("--resume"), std::string::npos);
+}
+
+TEST_F(Command, RefusesARegionArrayThatTheMeshLacks) {
+    write("two.msh", mesh());
+    ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
+    write("scene.toml", "[mesh]\nfile = \"two.vtu\"\nregion_array = \"nope\"\n" +
+                            scenario.substr(scenario.find("[[")));
+    for (const auto* arguments :
+         {"info two.vtu --region-array nope", "convert two.vtu new.vtu --region-array nope",
+          "check scene.toml", "run scene.toml --dry-run"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_NE(
+            outcome.err.find("two.vtu: has no cell array 'nope' to take the regions from; its "
+                             "cell arrays of whole numbers: 'region'\n"),
+            std::string::npos)
+            << outcome.err;
+    }
 }
 
 TEST_F(Command, DescribesAMeshAsJson) {
@@ -113,8 +158,7 @@ TEST_F(Command, DescribesAMeshInWords) {
     write("two.msh", mesh());
     const auto outcome = run("info two.msh");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.out.find("tetrahedra       2\nregion 3         1 cells\n"),
-              std::string::npos);
+    EXPECT_NE(outcome.out.find("tetrahedra       2\nregion 3         1 cell\n"), std::string::npos);
 }
 
 TEST_F(Command, NamesTheFileOfABrokenMesh) {
@@ -175,6 +219,40 @@ TEST_F(Command, ChecksTheMeshOfAScenario) {
     const auto outcome = run("check scene.toml");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err.substr(0, 18), "incise: flat.msh: ");
+}
+
+TEST_F(Command, ChecksWithAllWarningsOfARunEachOnce) {
+    // Two tetrahedra that meet in point 0 alone; point 7 is of none.
+    write("pinched.msh",
+          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+          "5 -1 0 0\n6 0 -1 0\n7 0 0 -1\n8 2 2 2\n$EndNodes\n$Elements\n3\n1 4 2 3 1 1 2 3 4\n"
+          "2 4 2 3 1 1 6 5 7\n3 15 2 1 1 1\n$EndElements\n");
+    const auto text = "[mesh]\nfile = \"pinched.msh\"\n" + scenario.substr(scenario.find("[["));
+    write("scene.toml", replaced(text, "density = 1060", "density = 1060\nregions = [3, 9]"));
+
+    const auto count = [](const std::string& haystack, const std::string& needle) {
+        int found = 0;
+        for (auto at = haystack.find(needle); at != std::string::npos;
+             at = haystack.find(needle, at + 1))
+            ++found;
+        return found;
+    };
+    const std::string warning = "incise: warning: ";
+    const auto of_mesh = run("check pinched.msh");
+    const auto of_scenario = run("check scene.toml");
+    const auto of_run = run("run scene.toml --dry-run --quiet");
+    for (const auto* outcome : {&of_mesh, &of_scenario, &of_run}) {
+        EXPECT_EQ(outcome->status, 0) << outcome->err;
+        for (const auto* told :
+             {"joins cells that share no face there", "ignored 1 point element", "point 7"})
+            EXPECT_EQ(count(outcome->err, told), 1) << told << " in\n" << outcome->err;
+    }
+    EXPECT_EQ(count(of_mesh.err, warning + "pinched.msh: "), 3) << of_mesh.err;
+    EXPECT_EQ(count(of_mesh.err, warning), 3) << of_mesh.err;
+    EXPECT_EQ(count(of_scenario.err, warning + "pinched.msh: "), 3) << of_scenario.err;
+    EXPECT_EQ(count(of_scenario.err, warning + "scene.toml: material 1 names region 9"), 1);
+    EXPECT_EQ(count(of_scenario.err, warning), 4) << of_scenario.err;
+    EXPECT_EQ(count(of_run.err, warning), 4) << of_run.err;
 }
 
 TEST_F(Command, RefusesToRunABadScenario) {

@@ -282,6 +282,18 @@ TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
     EXPECT_LT(50 * num_other, num_opened);  // they are few
 }
 
+TEST(Separator, PartsAChainOfElementsAtEveryJoint) {
+    // The end of a chain is no crumb: it has one neighbour from the start.
+    for (int joint = 1; joint < 5; ++joint) {
+        Body body(
+            topology::box_mesh(topology::CellKind::hexahedron, {0, 0, 0}, {5, 1, 1}, {5, 1, 1}));
+        const double x = joint;
+        body.step({{x, -1, 9}, {x, 2, 9}}, {{x, -1, -9}, {x, 2, -9}});
+        EXPECT_EQ(body.opened.size(), 1u);
+        EXPECT_EQ(topology::components(body.mesh).count, 2);
+    }
+}
+
 TEST(Separator, ABentEdgePartsAlongItsShape) {
     // A roof: the edge rises along x to a ridge and falls again; swept along y.
     for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {

@@ -91,6 +91,19 @@ TEST(LegacyVtkReader, TakesTheNamedArrayAsRegions) {
                 HasSubstr("cell 1: region 38.5 is not a whole number"));
 }
 
+TEST(LegacyVtkReader, RefusesAFileWithoutTheRegionsAskedFor) {
+    EXPECT_EQ(refusal("liver.vtk", old_layout, {.region_array = "organ"}),
+              "liver.vtk: has no cell array 'organ' to take the regions from; its cell arrays of "
+              "whole numbers: 'region'");
+    EXPECT_EQ(refusal("liver.vtk", replaced(old_layout, "1 2 double", "1 2 long"),
+                      {.region_array = "n"}),  // that of the points
+              "liver.vtk: has no cell array 'n' to take the regions from; its cell arrays of whole "
+              "numbers: 'region', 'my region'");
+    EXPECT_EQ(refusal("liver.vtk", new_layout, {.region_array = "organ"}),
+              "liver.vtk: has no cell array 'organ' to take the regions from, nor another of whole "
+              "numbers; without a name all regions are 0");
+}
+
 TEST(LegacyVtkReader, StartsFromTheRestPositionsOfAFrame) {
     const auto file = read_bytes("a.vtk", old_layout +
                                               "VECTORS rest_position double\n"

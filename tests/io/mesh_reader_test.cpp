@@ -74,6 +74,14 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
     }
 }
 
+TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
+    for (const auto& sample : gmsh_samples()) {
+        SCOPED_TRACE(sample.name);
+        const auto file = read_bytes(sample.name, sample.bytes, {.region_array = "organ"});
+        EXPECT_EQ(file.mesh.regions, sample_mesh().regions);
+    }
+}
+
 TEST(MeshReader, RefusesFilesThatAreCutShort) {
     for (const auto& sample : all_samples()) {
         // Legacy VTK has no end mark: what follows the cells may be missing unnoticed.

@@ -57,9 +57,40 @@ TEST(VtuReader, TakesTheNamedArrayAsRegions) {
     EXPECT_THAT(read_bytes("a.vtu", two_tetrahedra).mesh.regions, ElementsAre(5, -6));
     EXPECT_THAT(read_bytes("a.vtu", two_tetrahedra, {.region_array = "tissue"}).mesh.regions,
                 ElementsAre(2, 3));
-    const auto absent = read_bytes("a.vtu", two_tetrahedra, {.region_array = "none"});
+    const auto absent = read_bytes("a.vtu", with("\"region\"", "\"part\""));
     EXPECT_THAT(absent.mesh.regions, ElementsAre(0, 0));
     EXPECT_THAT(absent.warnings, ElementsAre());
+}
+
+TEST(VtuReader, RefusesAFileWithoutTheRegionsAskedFor) {
+    const ReadOptions options{.region_array = "organ"};
+    EXPECT_EQ(refusal("liver.vtu", two_tetrahedra, options),
+              "liver.vtu: has no cell array 'organ' to take the regions from; its cell arrays of "
+              "whole numbers: 'region'");
+    EXPECT_EQ(refusal("liver.vtu",
+                      with("</CellData>",
+                           "<DataArray type=\"UInt8\" Name=\"part\" format=\"ascii\">1 2"
+                           "</DataArray>\n<DataArray type=\"Int8\" Name=\"pair\" "
+                           "NumberOfComponents=\"2\" format=\"ascii\">1 2 3 4</DataArray>\n"
+                           "</CellData>"),
+                      options),
+              "liver.vtu: has no cell array 'organ' to take the regions from; its cell arrays of "
+              "whole numbers: 'region', 'part'");
+    const auto bare = with("Int32\" Name=\"region\"", "Float32\" Name=\"density\"");
+    EXPECT_EQ(refusal("liver.vtu", bare, options),
+              "liver.vtu: has no cell array 'organ' to take the regions from, nor another of whole "
+              "numbers; without a name all regions are 0");
+    // An array of the points is none of the cells; a piece without cells needs none.
+    EXPECT_THAT(refusal("liver.vtu",
+                        with("<PointData>",
+                             "<PointData><DataArray type=\"Int32\" Name=\"organ\" "
+                             "format=\"ascii\">1 2 3 4 5</DataArray>"),
+                        options),
+                HasSubstr("has no cell array 'organ'"));
+    const auto with_empty_piece =
+        with("<Piece", "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>\n<Piece");
+    EXPECT_THAT(read_bytes("a.vtu", with_empty_piece, {.region_array = "tissue"}).mesh.regions,
+                ElementsAre(2, 3));
 }
 
 TEST(VtuReader, RefusesRegionsThatAreNoWholeNumbers) {

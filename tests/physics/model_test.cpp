@@ -153,7 +153,7 @@ TEST(Model, StopsAtANonFiniteStateAndNamesAnElement) {
     EXPECT_THROW(model.integrate(0.0, 1e-3), PhysicsError);
     set_state(model, state);
     const std::string text = message_of([&] { model.integrate(0.0, 1e-3); });
-    EXPECT_TRUE(has(text, "no longer finite")) << text;
+    EXPECT_TRUE(has(text, "no longer at a finite place")) << text;
     EXPECT_TRUE(has(text, "element " + std::to_string(mesh.label(mesh.anchor(NodeId(3)))))) << text;
     EXPECT_TRUE(has(text, "node " + std::to_string(mesh.label(NodeId(3))))) << text;
 }

@@ -255,11 +255,39 @@ TEST(ScenarioErrors, OfOutputAndExpect) {
               "scene.toml:11:15: key 'output.compression': 'zip': is not known; did you mean "
               "'zlib'? Known here: none, lz4, zlib, lzma");
     EXPECT_EQ(error_of("[expect]\nmass = { max = 1, mn = 0 }\nnodes = {}\n"
-                       "volume = { min = 2, max = 1 }\nJ = 3\n"),
+                       "volume = { min = 2, max = 1 }\nmin_J = 3\n"),
               "scene.toml:10:19: key 'expect.mass.mn': is not known; did you mean 'min'? Known "
               "here: min, max | scene.toml:11:9: key 'expect.nodes': must have min, max or both, "
               "as in { max = 1e-9 } | scene.toml:12:10: key 'expect.volume': min 2 is above max 1 "
-              "| scene.toml:13:5: key 'expect.J': must be a table, but is the number 3");
+              "| scene.toml:13:9: key 'expect.min_J': must be a table, but is the number 3");
+}
+
+TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
+    const std::string floor =
+        "[[constraint]]\nname = \"floor\"\nfix = \"xyz\"\nwhere = { surface = true }\n";
+    const std::string known =
+        "Known here: time, step, nodes, elements, components, mass, volume, kinetic_energy, "
+        "elastic_energy, external_work, dissipated_energy, momentum_x, momentum_y, momentum_z, "
+        "angular_momentum_x, angular_momentum_y, angular_momentum_z, min_J, time_step, "
+        "stable_step, ";
+    const std::string more =
+        "gravity_energy, edits, elements_removed, faces_opened, mass_removed, mass_error, "
+        "energy_error";
+    EXPECT_EQ(error_of("[expect]\nreaction_floor_z = { min = 0 }\n"),
+              "scene.toml:10:1: key 'expect.reaction_floor_z': is not known; did you mean "
+              "'elastic_energy'? " +
+                  known + more);
+    EXPECT_EQ(error_of(floor + "[expect]\nreaction_floor_z = { min = 0 }\n"), "");
+    EXPECT_EQ(error_of("[output]\ninterval = -1\n" + floor +
+                       "[expect]\ntime = { max = \"x\" }\nreaction_flor_z = { min = 0 }\n"
+                       "mas = { mn = 0 }\n"),
+              "scene.toml:10:12: key 'output.interval': -1 is not allowed: must be at least 0 | "
+              "scene.toml:16:16: key 'expect.time.max': must be a number, but is the text \"x\" | "
+              "scene.toml:17:1: key 'expect.reaction_flor_z': is not known; did you mean "
+              "'reaction_floor_z'? " +
+                  known + "reaction_floor_x, reaction_floor_y, reaction_floor_z, " + more +
+                  " | scene.toml:18:1: key 'expect.mas': is not known; did you mean 'mass'? " +
+                  known + "reaction_floor_x, reaction_floor_y, reaction_floor_z, " + more);
 }
 
 TEST(ScenarioErrors, OfOverridesQuoteThem) {

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
+#include <string>
 
+#include "sim/body.h"
 #include "support/mesh_families.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -38,7 +41,13 @@ const Mesh& cube(topology::CellKind kind) {
 
 using Rule = std::function<bool(const Vec3&)>;
 
-/// That nodes, faces and elements are exactly those that the rule on positions gives.
+bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
+    return !where.regions ||
+           std::count(where.regions->begin(), where.regions->end(), mesh.region(e)) > 0;
+}
+
+/// That nodes are exactly those that the rule on positions gives; faces and elements those with
+/// all nodes among them and of the regions.
 void expect_selects(const Selection& where, const Rule& rule) {
     for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
         const Mesh& mesh = cube(kind);
@@ -51,13 +60,16 @@ void expect_selects(const Selection& where, const Rule& rule) {
         for (const FaceId f : topology::boundary_faces(mesh)) {
             int count = 0;
             for (int p = 0; p < mesh.face_size(f); ++p) count += holds(mesh.face_corner(f, p));
-            if (count == mesh.face_size(f)) faces.push_back(f);
+            if (count == mesh.face_size(f) && is_in_regions(mesh, where, f.element))
+                faces.push_back(f);
         }
         EXPECT_EQ(select_faces(mesh, where), faces);
         std::vector<ElementId> elements;
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
             const auto corners = mesh.corners(ElementId(e));
-            if (std::all_of(corners.begin(), corners.end(), holds)) elements.emplace_back(e);
+            if (std::all_of(corners.begin(), corners.end(), holds) &&
+                is_in_regions(mesh, where, ElementId(e)))
+                elements.emplace_back(e);
         }
         EXPECT_EQ(select_elements(mesh, where), elements);
     }
@@ -91,6 +103,98 @@ TEST(Selection, RegionsHaveTheNodesOfTheirElementsThoseBetweenThemTwice) {
     expect_selects(where, [](const Vec3& x) { return x.x() <= 2.0; });
     where.regions = {2, 7};
     expect_selects(where, [](const Vec3& x) { return x.x() >= 2.0; });
+}
+
+/// Three tetrahedra around an edge: the corners of the second, of region 2, are all corners of the
+/// first and the third, of region 1.
+Mesh enclosed() {
+    topology::MeshData data;
+    data.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+    const auto add = [&](std::int64_t a, std::int64_t b, int region) {
+        data.add_cell(topology::CellKind::tetrahedron, std::vector<std::int64_t>{0, a, b, 1},
+                      region);
+    };
+    add(2, 3, 1);
+    add(3, 4, 2);
+    add(4, 5, 1);
+    return Mesh::build(data).mesh;
+}
+
+TEST(Selection, ElementsAndFacesAreOfTheirOwnRegionOnly) {
+    const Mesh mesh = enclosed();
+    ASSERT_EQ(mesh.num_elements(), 3u);
+    Selection where;
+    where.regions = {1};
+    EXPECT_EQ(select_nodes(mesh, where).size(), 6u);
+    EXPECT_EQ(select_elements(mesh, where), (std::vector{ElementId(0), ElementId(2)}));
+    EXPECT_EQ(select_faces(mesh, where).size(), 6u);
+    where.regions = {2};
+    EXPECT_EQ(select_nodes(mesh, where).size(), 4u);
+    EXPECT_EQ(select_elements(mesh, where), std::vector{ElementId(1)});
+    const auto faces = select_faces(mesh, where);
+    EXPECT_EQ(faces.size(), 2u);
+    for (const FaceId f : faces) EXPECT_EQ(f.element, ElementId(1));
+}
+
+TEST(Selection, ABodyForceOnARegionIsForceTimesTheVolumeOfThatRegion) {
+    // Every third tetrahedron, so that those of the other region have all corners in this one too.
+    auto data =
+        topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {4, 4, 4}, {4, 4, 4});
+    for (std::size_t c = 0; c < data.num_cells(); ++c) data.regions[c] = c % 3 == 0 ? 2 : 1;
+    const double volume = 64.0 / 3.0;
+    const Mesh mesh = Mesh::build(data).mesh;
+
+    Scenario scenario;
+    const Vec3 density(1.0, -2.0, 30.0);
+    scenario.loads.push_back({"field", {}, BodyForce{density}, {}});
+    scenario.loads[0].where.regions = {2};
+    physics::MaterialTable table;
+    table.materials = {{.density = 1.0, .method = physics::MassSprings{1.0}}};
+    table.of_region = {{1, 0}, {2, 0}};
+    physics::Model model(mesh, table, build_surroundings(scenario, mesh));
+    model.compute_forces(0.0);
+    const double dt = 0.25 * model.stable_step();
+    model.integrate(0.0, dt);
+    EXPECT_LE((model.totals().momentum / dt - volume * density).norm(), 1e-10);
+}
+
+TEST(Selection, OfANodeThatIsNotThereNamesItsConstraintOrLoadOnce) {
+    const Mesh& mesh = cube(topology::CellKind::tetrahedron);
+    const auto error_of = [&](const Scenario& scenario) -> std::string {
+        try {
+            build_surroundings(scenario, mesh);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    Selection absent, empty;
+    absent.nodes = {{125}};
+    empty.regions = {{3}};
+    const std::string no_node =
+        "where.nodes names node 125, which no element has; the nodes of the mesh are numbered from "
+        "0 to 124";
+    const std::string between = "; the mesh lies between [0, 0, 0] and [4, 4, 4]";
+    Scenario scenario;
+    scenario.constraints.emplace_back();
+    scenario.constraints[0].name = "clamp";
+    scenario.constraints[0].where = absent;
+    EXPECT_EQ(error_of(scenario), "constraint 'clamp': " + no_node);
+    scenario.constraints[0].where = empty;
+    EXPECT_EQ(error_of(scenario), "constraint 'clamp' selects no node" + between);
+
+    const std::pair<decltype(LoadSpec::load), std::string> loads[] = {
+        {NodalForce{Vec3::UnitX()}, "node"},
+        {Traction{Vec3::UnitX()}, "face of the surface"},
+        {Pressure{1.0}, "face of the surface"},
+        {BodyForce{Vec3::UnitX()}, "element"}};
+    for (const auto& [load, things] : loads) {
+        Scenario loaded;
+        loaded.loads.push_back({"pull", absent, load, {}});
+        EXPECT_EQ(error_of(loaded), "load 'pull': " + no_node);
+        loaded.loads[0].where = empty;
+        EXPECT_EQ(error_of(loaded), "load 'pull' selects no " + things + between);
+    }
 }
 
 TEST(Selection, SurfaceLeavesOutWhatIsInside) {

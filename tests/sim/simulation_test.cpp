@@ -304,9 +304,9 @@ where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
 move = [{ time = 0.02, by = [0, 0, 0] }, { time = 0.021, by = [0, 0, 50] }]
 )" + dynamics(0.1)));
     const std::string message = message_of([&] { run(simulation); });
-    EXPECT_NE(message.find("the motion has blown up at element "), std::string::npos) << message;
-    EXPECT_NE(message.find("node "), std::string::npos);
-    EXPECT_NE(message.find("safety"), std::string::npos);
+    EXPECT_EQ(message.find("element "), 0u) << message;
+    EXPECT_NE(message.find(", node "), std::string::npos);
+    EXPECT_NE(message.find("its support is moved too fast"), std::string::npos);
     EXPECT_GE(simulation.time(), 0.01);
     EXPECT_LT(simulation.time(), 0.03);
 }

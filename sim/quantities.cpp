@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/quantities.h"
+
+namespace incise::sim {
+
+std::array<std::string, 3> reaction_quantities(std::string_view constraint) {
+    const std::string reaction = "reaction_" + std::string(constraint);
+    return {reaction + "_x", reaction + "_y", reaction + "_z"};
+}
+
+std::vector<std::string> all_quantities(std::span<const std::string> constraints) {
+    std::vector<std::string> names(history_quantities.begin(), history_quantities.end());
+    for (const std::string& constraint : constraints)
+        for (std::string& name : reaction_quantities(constraint)) names.push_back(std::move(name));
+    names.insert(names.end(), run_quantities.begin(), run_quantities.end());
+    return names;
+}
+
+}  // namespace incise::sim
