@@ -48,9 +48,6 @@ Vec3 on_face(const Mesh& mesh, FaceId f, std::span<const double> weights,
     return sum;
 }
 
-/// A point of the tissue before and after the step.
-using MovingPoint = std::array<Vec3, 2>;
-
 /// How often, modulo two, the blade's edge passes through the segment between two points.
 bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3> before,
                 std::span<const Vec3> after) {

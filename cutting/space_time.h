@@ -1,29 +1,47 @@
-// Whether moving things met: exact, and without gaps from step to step.
+// Whether and where moving things met: exact, and without gaps from step to step.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "topology/types.h"
 
 namespace incise::cutting {
 
-/// A segment whose ends move straight during a step: [0] is where they are before, [1] after.
+/// A point that moves straight during a step: [0] is where it is before, [1] after.
+using MovingPoint = std::array<Vec3, 2>;
+
+/// A segment between two moving points.
 struct MovingSegment {
-    std::array<Vec3, 2> a, b;
+    MovingPoint a, b;
 };
 
-/// Whether the blade's segment passed through the tissue's an odd number of times in the step.
+/// Where a cut passes through a segment of tissue from a to b.
+struct Crossing {
+    double place;  ///< 0 at a, 1 at b
+    Vec3 normal;   ///< of the cut there, of any length but zero, unless it is not known
+    bool operator<(const Crossing& other) const { return place < other.place; }
+};
+
+/// Appends where the blade's segment passed through the tissue's during the step, in no order.
 ///
 /// In space and time each segment sweeps a surface, taken as two triangles; two such surfaces in
-/// four dimensions meet in points, which are counted by the signs of 5 x 5 determinants. Where a
-/// sign is zero, the tissue counts as shifted by an infinitesimal (e, e^2, e^4) relative to the
-/// blade: one and the same shift for all tissue at all times, so that every case is decided once,
-/// from every side alike. Neighbouring segments, and successive steps, share their edges in space
-/// and time: a closed path of tissue is crossed consistently, whoever moves and however the step
-/// is chosen.
+/// four dimensions meet in points, which are found by the signs of 5 x 5 determinants. Where a
+/// sign is zero, the tissue counts as shifted by an infinitesimal (shifted_sign.h). Neighbouring
+/// segments, and successive steps, share their edges in space and time: a closed path of tissue is
+/// crossed consistently, whoever moves and however the step is chosen.
 ///
-/// Exact for any finite input; a zero-length or parallel segment crosses nothing.
+/// Whether there is a crossing is exact for any finite input; the places are rounded. A zero-length
+/// or parallel segment crosses nothing.
+void append_crossings(const MovingSegment& tissue, const MovingSegment& blade,
+                      std::vector<Crossing>& crossings);
+
+/// Whether the blade's segment passed through the tissue's an odd number of times in the step.
 bool cross(const MovingSegment& tissue, const MovingSegment& blade);
+
+/// Whether the resting segment of a blade from p to q passes through the triangle of tissue, with
+/// the same shift: what fronts of a sweep are inside a face of the mesh.
+bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& triangle);
 
 }  // namespace incise::cutting

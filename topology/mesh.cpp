@@ -38,6 +38,23 @@ void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<Eleme
     std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
 }
 
+void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
+                       std::vector<ElementId>& elements) {
+    const std::size_t begin = elements.size();
+    elements.push_back(e);
+    const auto is_known = [&](ElementId other) {
+        const auto known = elements.begin() + static_cast<std::ptrdiff_t>(begin);
+        return std::find(known, elements.end(), other) != elements.end();
+    };
+    for (std::size_t next = begin; next < elements.size(); ++next)
+        for_faces_at(mesh, elements[next], a, [&](FaceId f) {
+            const ElementId other = mesh.neighbor(f).element;
+            if (!other.is_valid() || is_known(other)) return;
+            for (int p = 0; p < mesh.face_size(f); ++p)
+                if (mesh.face_corner(f, p) == b) elements.push_back(other);
+        });
+}
+
 void Mesh::star(NodeId n, std::vector<ElementId>& elements) const {
     elements.clear();
     if (is_alive(n)) collect_star(*this, n, anchor(n), elements);
@@ -81,6 +98,12 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const NodeId>
     face_begin_.push_back(neighbors_.size());
     was_inside_.resize(neighbors_.size(), 0);
     ++num_elements_;
+}
+
+void Mesh::inherit_inside(ElementId e, ElementId parent) {
+    std::copy_n(was_inside_.begin() + static_cast<std::ptrdiff_t>(face_begin_[parent.index()]),
+                num_faces(e),
+                was_inside_.begin() + static_cast<std::ptrdiff_t>(face_begin_[e.index()]));
 }
 
 void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {

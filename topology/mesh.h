@@ -69,7 +69,8 @@ class Mesh {
         return neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)];
     }
 
-    /// Whether the face was joined to another in the source: inside the body, before any cut.
+    /// Whether the face was joined to another in the source: inside the body, before any cut. A
+    /// divided element's parts have what it had at the same places.
     bool was_inside(FaceId f) const {
         return was_inside_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)] != 0;
     }
@@ -97,6 +98,7 @@ class Mesh {
     Mesh() = default;
 
     void append_element_row(CellKind kind, int region, std::span<const NodeId> corners);
+    void inherit_inside(ElementId e, ElementId parent);
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
     /// Joins two faces in the map and in the arrays; their corners are equal, or `shift` tells
     /// how they meet.
@@ -135,6 +137,11 @@ struct BuiltMesh {
 /// Appends, in ascending order, the elements that `start` reaches round its corner `n` through
 /// faces at `n`. Cost: O(star^2) comparisons; stars are small.
 void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements);
+
+/// Appends the elements round the edge from `a` to `b` that tetrahedron `e` reaches through faces
+/// at the edge, in their order.
+void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
+                       std::vector<ElementId>& elements);
 
 /// Position in b's face of the node at position 0 of a's, if the two faces have the same nodes
 /// and run in opposite directions; -1 otherwise.

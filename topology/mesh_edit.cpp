@@ -2,16 +2,38 @@
 #include "topology/mesh_edit.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "topology/error.h"
 
 namespace incise::topology {
 
-MeshEdit::MeshEdit(Mesh& mesh) : mesh_(mesh), is_saved_(mesh.element_capacity(), 0) {}
+namespace {
+
+/// The face of a tetrahedron that does not have the corner.
+constexpr std::array<int, 4> opposite_face = [] {
+    std::array<int, 4> faces{};
+    for (int f = 0; f < 4; ++f) {
+        int corner = 0 + 1 + 2 + 3;
+        for (const int c : traits(CellKind::tetrahedron).face(f)) corner -= c;
+        faces[static_cast<std::size_t>(corner)] = f;
+    }
+    return faces;
+}();
+
+int face_opposite(int corner) { return opposite_face[static_cast<std::size_t>(corner)]; }
+
+}  // namespace
+
+MeshEdit::MeshEdit(Mesh& mesh)
+    : mesh_(mesh),
+      node_capacity_before_(mesh.node_capacity()),
+      element_capacity_before_(mesh.element_capacity()),
+      is_saved_(mesh.element_capacity(), 0) {}
 
 MeshEdit::~MeshEdit() {
-    if (!is_open_ || saved_.empty()) return;
+    if (!is_open_ || (saved_.empty() && parents_.empty())) return;
     ChangeSet changes = differences();
     changes.epoch_before = changes.epoch_after = mesh_.epoch();
     replay(mesh_, inverse(changes));
@@ -22,8 +44,14 @@ void MeshEdit::require_alive(ElementId e) const {
         throw InputError("edit: element " + std::to_string(e.value) + " does not exist");
 }
 
+void MeshEdit::require_older(ElementId e, const char* what) const {
+    if (e.index() >= element_capacity_before_)
+        throw InputError("edit: element " + std::to_string(e.value) +
+                         " was made in this edit and cannot be " + what + " in it: commit first");
+}
+
 void MeshEdit::save(ElementId e) {
-    if (is_saved_[e.index()]) return;
+    if (e.index() >= element_capacity_before_ || is_saved_[e.index()]) return;
     is_saved_[e.index()] = 1;
     const auto corners = mesh_.corners(e);
     SavedRow row{e, mesh_.is_alive(e), {corners.begin(), corners.end()}, {}};
@@ -47,6 +75,7 @@ void MeshEdit::part(FaceId f) {
 
 void MeshEdit::remove(ElementId e) {
     require_alive(e);
+    require_older(e, "removed");
     save(e);
     for (int f = 0; f < mesh_.num_faces(e); ++f)
         if (mesh_.neighbor({e, f}).is_valid()) part({e, f});
@@ -67,6 +96,8 @@ void MeshEdit::open(FaceId f) {
 void MeshEdit::close(FaceId a, FaceId b) {
     require_alive(a.element);
     require_alive(b.element);
+    require_older(a.element, "joined");
+    require_older(b.element, "joined");
     const auto refuse = [&](const char* why) {
         throw InputError("edit: face " + std::to_string(a.face) + " of element " +
                          std::to_string(a.element.value) + " and face " + std::to_string(b.face) +
@@ -113,6 +144,131 @@ void MeshEdit::rewire(ElementId e, int corner, NodeId to) {
     mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(corner)] = to;
 }
 
+// Elements round the edge in their order, arc by arc if the ring is not closed.
+bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
+    ring_.clear();
+    const auto enter = [&](ElementId element, int through) {
+        RingElement at{element, mesh_.corner_of(element, a), mesh_.corner_of(element, b), -1};
+        // Of its two faces at the edge, the way on is the one that was not come through.
+        for (int f = 0; f < 4; ++f)
+            if (f != face_opposite(at.corner_a) && f != face_opposite(at.corner_b) && f != through)
+                at.next_face = f;
+        return at;
+    };
+    const auto next = [&](const RingElement& at) {
+        const FaceId to = mesh_.neighbor({at.element, at.next_face});
+        return to.is_valid() ? enter(to.element, to.face) : RingElement{};
+    };
+    const auto is_tetrahedron = [&](ElementId element) {
+        return mesh_.kind(element) == CellKind::tetrahedron;
+    };
+    const auto add_arc = [&](ElementId start) {
+        // Back to the beginning of the arc, or once round.
+        RingElement first = enter(start, -1);
+        for (;;) {
+            const FaceId to = mesh_.neighbor({first.element, first.next_face});
+            if (!to.is_valid() || to.element == start) break;
+            if (!is_tetrahedron(to.element)) return false;
+            first = enter(to.element, to.face);
+        }
+        // It looks backwards: turn round.
+        first = enter(first.element, first.next_face);
+        for (RingElement at = first;;) {
+            ring_.push_back(at);
+            at = next(at);
+            if (!at.element.is_valid()) return true;
+            if (at.element == first.element) return true;
+            if (!is_tetrahedron(at.element)) return false;
+        }
+    };
+    if (!is_tetrahedron(e) || !add_arc(e)) return false;
+    if (mesh_.neighbor({ring_.back().element, ring_.back().next_face}).is_valid()) return true;
+    // An edge of the boundary: there may be further arcs, joined with this one at its ends only.
+    std::vector<ElementId> star;
+    collect_star(mesh_, a, e, star);
+    for (const ElementId other : star) {
+        const bool is_known = std::any_of(
+            ring_.begin(), ring_.end(), [&](const RingElement& at) { return at.element == other; });
+        if (is_known || mesh_.corner_of(other, b) < 0) continue;
+        if (!is_tetrahedron(other) || !add_arc(other)) return false;
+    }
+    return true;
+}
+
+NodeId MeshEdit::add_node_between(NodeId a, NodeId b, double t) {
+    const NodeId n(mesh_.node_capacity());
+    NodeRecord record{n, (1.0 - t) * mesh_.rest_position(a) + t * mesh_.rest_position(b), {}, 2};
+    record.sources[0] = {a, 1.0 - t};
+    record.sources[1] = {b, t};
+    nodes_added_.push_back(record);
+    mesh_.rest_positions_.push_back(record.rest_position);
+    mesh_.anchors_.emplace_back();
+    ++mesh_.num_nodes_;
+    return n;
+}
+
+ElementId MeshEdit::divide(const RingElement& at, NodeId middle) {
+    const ElementId kept = at.element, added(mesh_.element_capacity());
+    const auto corner_a = static_cast<std::size_t>(at.corner_a);
+    const int inner_face = face_opposite(at.corner_a), cut_face = face_opposite(at.corner_b);
+    const FaceId outer = mesh_.neighbor({kept, inner_face});
+    save(kept);
+    if (outer.is_valid()) {
+        save(outer.element);
+        mesh_.unglue({kept, inner_face});
+    }
+    const auto old = mesh_.corners(kept);
+    std::array<NodeId, 4> corners{old[0], old[1], old[2], old[3]};
+    const NodeId b = corners[static_cast<std::size_t>(at.corner_b)];
+    corners[corner_a] = middle;
+    rewire(kept, at.corner_b, middle);
+    mesh_.append_element_row(CellKind::tetrahedron, mesh_.region(kept), corners);
+    mesh_.inherit_inside(added, kept);
+    mesh_.map_.add_element(added, CellKind::tetrahedron, corners, mesh_.rest_positions());
+    parents_.push_back(kept);
+
+    const auto join = [&](FaceId one, FaceId other) {
+        mesh_.glue(one, other, matching_shift(mesh_, one, other));
+    };
+    join({kept, inner_face}, {added, cut_face});
+    if (outer.is_valid()) join({added, inner_face}, outer);
+    // Of the other corners' stars the lowest element stays what it was.
+    touched_.push_back({b, added});
+    touched_.push_back({middle, kept});
+    return added;
+}
+
+const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, double t) {
+    require_alive(e);
+    const auto refuse = [&](const std::string& why) {
+        throw InputError("edit: the edge between nodes " + std::to_string(a.value) + " and " +
+                         std::to_string(b.value) + " of element " + std::to_string(e.value) +
+                         " cannot be divided: " + why);
+    };
+    if (a == b || mesh_.corner_of(e, a) < 0 || mesh_.corner_of(e, b) < 0)
+        refuse("the element has no such edge");
+    if (!(t > 0.0 && t < 1.0)) refuse("the place " + std::to_string(t) + " is not between 0 and 1");
+    if (!collect_ring(e, a, b)) refuse("an element at it is no tetrahedron");
+
+    bisection_.node = add_node_between(a, b, t);
+    bisection_.elements.clear();
+    for (const RingElement& at : ring_)
+        bisection_.elements.push_back({at.element, divide(at, bisection_.node)});
+    // The first halves are still joined round the edge, their complements follow them.
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+        const FaceId face{ring_[i].element, ring_[i].next_face}, other = mesh_.neighbor(face);
+        if (!other.is_valid()) continue;
+        // The next in the list, except where a ring closes.
+        std::size_t next = i + 1;
+        if (next == ring_.size() || ring_[next].element != other.element) next = 0;
+        while (ring_[next].element != other.element) ++next;
+        const FaceId one{bisection_.elements[i].added, face.face};
+        const FaceId two{bisection_.elements[next].added, other.face};
+        mesh_.glue(one, two, matching_shift(mesh_, one, two));
+    }
+    return bisection_;
+}
+
 void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
     // The absorbed node may already hang together in parts only: start from each that is known.
     std::vector<ElementId> starts{at};
@@ -140,7 +296,8 @@ NodeId MeshEdit::survivor_of(NodeId n) const {
     return n;
 }
 
-void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, ChangeSet& changes) {
+void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates,
+                           std::vector<NodeRecord>& removed) {
     std::vector<std::vector<ElementId>> parts;
     for (const ElementId e : candidates) {
         if (!e.is_valid() || !mesh_.is_alive(e) || mesh_.corner_of(e, n) < 0) continue;
@@ -159,7 +316,7 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, C
             record.sources[0] = {survivor, 1.0};
             record.num_sources = 1;
         }
-        changes.nodes_removed.push_back(record);
+        removed.push_back(record);
         mesh_.anchors_[n.index()] = {};
         --mesh_.num_nodes_;
         return;
@@ -170,7 +327,7 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, C
             keeper = NodeId(mesh_.node_capacity());
             NodeRecord record{keeper, mesh_.rest_position(n), {}, 1};
             record.sources[0] = {n, 1.0};
-            changes.nodes_added.push_back(record);
+            nodes_added_.push_back(record);
             mesh_.rest_positions_.push_back(record.rest_position);
             mesh_.anchors_.emplace_back();
             ++mesh_.num_nodes_;
@@ -182,7 +339,7 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates, C
     }
 }
 
-void MeshEdit::divide_nodes(ChangeSet& changes) {
+void MeshEdit::divide_nodes(std::vector<NodeRecord>& removed) {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     std::vector<ElementId> candidates;
@@ -191,14 +348,17 @@ void MeshEdit::divide_nodes(ChangeSet& changes) {
         candidates.clear();
         for (; i < touched_.size() && touched_[i].node == n; ++i)
             candidates.push_back(touched_[i].element);
-        settle_node(n, candidates, changes);
+        settle_node(n, candidates, removed);
     }
 }
 
 ChangeSet MeshEdit::differences() const {
     ChangeSet changes;
-    changes.node_capacity_before = changes.node_capacity_after = mesh_.node_capacity();
-    changes.element_capacity_before = changes.element_capacity_after = mesh_.element_capacity();
+    changes.node_capacity_before = node_capacity_before_;
+    changes.node_capacity_after = mesh_.node_capacity();
+    changes.element_capacity_before = element_capacity_before_;
+    changes.element_capacity_after = mesh_.element_capacity();
+    changes.nodes_added = nodes_added_;
 
     std::vector<const SavedRow*> rows;
     for (const SavedRow& row : saved_) rows.push_back(&row);
@@ -224,6 +384,18 @@ ChangeSet MeshEdit::differences() const {
             if (now.is_valid() && face < now) changes.faces_closed.push_back({face, now});
         }
     }
+    for (std::size_t i = element_capacity_before_; i < mesh_.element_capacity(); ++i) {
+        const ElementId e(i);
+        const auto corners = mesh_.corners(e);
+        changes.elements_added.push_back({e,
+                                          mesh_.kind(e),
+                                          mesh_.region(e),
+                                          parents_[i - element_capacity_before_],
+                                          {corners.begin(), corners.end()}});
+        for (int f = 0; f < mesh_.num_faces(e); ++f)
+            if (const FaceId face{e, f}, now = mesh_.neighbor(face); face < now)
+                changes.faces_closed.push_back({face, now});
+    }
     std::sort(changes.faces_opened.begin(), changes.faces_opened.end());
     std::sort(changes.faces_closed.begin(), changes.faces_closed.end());
     return changes;
@@ -231,14 +403,11 @@ ChangeSet MeshEdit::differences() const {
 
 ChangeSet MeshEdit::commit() {
     assert(is_open_);
-    const std::size_t node_capacity = mesh_.node_capacity();
-    ChangeSet nodes;
-    divide_nodes(nodes);
+    std::vector<NodeRecord> nodes_removed;
+    divide_nodes(nodes_removed);
     ChangeSet changes = differences();
     is_open_ = false;
-    changes.nodes_added = std::move(nodes.nodes_added);
-    changes.nodes_removed = std::move(nodes.nodes_removed);
-    changes.node_capacity_before = node_capacity;
+    changes.nodes_removed = std::move(nodes_removed);
     changes.epoch_before = mesh_.epoch();
     changes.epoch_after = changes.epoch_before + (changes.is_empty() ? 0 : 1);
     mesh_.epoch_ = changes.epoch_after;

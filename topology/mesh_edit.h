@@ -25,7 +25,7 @@ class MeshEdit {
     MeshEdit(const MeshEdit&) = delete;
     MeshEdit& operator=(const MeshEdit&) = delete;
 
-    /// Removes a living element.
+    /// Removes a living element, not one that this edit has made.
     void remove(ElementId e);
     /// Separates the two elements at a shared face.
     void open(FaceId f);
@@ -34,10 +34,35 @@ class MeshEdit {
     /// Throws InputError if the faces do not fit.
     void close(FaceId a, FaceId b);
 
+    /// An element divided by a new node on one of its edges: `kept` has the first end of the edge
+    /// and keeps its id, `added` has the second end. Local numbers of corners stay: in each of them
+    /// the new node stands where the other end stood.
+    struct DividedElement {
+        ElementId kept, added;
+    };
+    struct Bisection {
+        NodeId node;
+        std::vector<DividedElement> elements;  ///< the ring round the edge
+    };
+
+    /// Divides the edge from `a` to `b` of tetrahedron `e`, and with it every element round the
+    /// edge, by a node at (1 - t) a + t b at rest, 0 < t < 1. The mesh stays conforming.
+    /// The result is valid until the next call.
+    /// Throws InputError if there is no such edge, t is not inside, or a cell at the edge is no
+    /// tetrahedron.
+    const Bisection& bisect(ElementId e, NodeId a, NodeId b, double t);
+
     /// Ends the transaction. The mesh's epoch grows by one, unless nothing changed.
     ChangeSet commit();
 
   private:
+    /// One element of the ring round an edge.
+    struct RingElement {
+        ElementId element;
+        int corner_a = 0, corner_b = 0;
+        int next_face = 0;  ///< towards the following element of the ring
+    };
+
     struct SavedRow {
         ElementId element;
         bool was_alive;
@@ -55,18 +80,28 @@ class MeshEdit {
     void touch_face(FaceId f);
     void part(FaceId f);
     void rewire(ElementId e, int corner, NodeId to);
+    bool collect_ring(ElementId e, NodeId a, NodeId b);
+    NodeId add_node_between(NodeId a, NodeId b, double t);
+    ElementId divide(const RingElement& at, NodeId middle);
+    void require_older(ElementId e, const char* what) const;
     void merge(NodeId survivor, NodeId absorbed, ElementId at);
-    void divide_nodes(ChangeSet& changes);
-    void settle_node(NodeId n, const std::vector<ElementId>& candidates, ChangeSet& changes);
+    void divide_nodes(std::vector<NodeRecord>& removed);
+    void settle_node(NodeId n, const std::vector<ElementId>& candidates,
+                     std::vector<NodeRecord>& removed);
     NodeId survivor_of(NodeId n) const;
     ChangeSet differences() const;
 
     Mesh& mesh_;
+    const std::size_t node_capacity_before_, element_capacity_before_;
     bool is_open_ = true;
     std::vector<SavedRow> saved_;
     std::vector<std::uint8_t> is_saved_;  // by element id
     std::vector<TouchedCorner> touched_;
     std::vector<std::pair<NodeId, NodeId>> merged_;  // absorbed, survivor
+    std::vector<NodeRecord> nodes_added_;
+    std::vector<ElementId> parents_;  // of the elements added, in their order
+    std::vector<RingElement> ring_;   // scratch
+    Bisection bisection_;
 };
 
 /// Applies a recorded edit to a mesh that stands at changes.epoch_before, with the ids recorded.

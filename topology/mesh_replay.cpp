@@ -53,6 +53,7 @@ class MeshReplay {
         const ElementId e = record.id;
         if (e.index() == mesh_.element_capacity()) {
             mesh_.append_element_row(record.kind, record.region, record.corners);
+            if (record.parent.is_valid()) mesh_.inherit_inside(e, record.parent);
         } else {
             mesh_.alive_[e.index()] = 1;
             ++mesh_.num_elements_;

@@ -1,0 +1,69 @@
+// What a cut that goes on has to remember: the elements at its front are cut in part.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "topology/change_set.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+/// The nodes that count as lying on the cut, and which edges at them the cut passes through.
+///
+/// A node on the cut stays on the side where it happens to be: an edge between it and another node
+/// counts as crossed or not, like any edge. Two nodes are on different sides of the cut if a path
+/// of edges between them, away from the front, crosses it an odd number of times. Edges without a
+/// node on the cut are never crossed for long: they get one.
+///
+/// A front forgets what it has left behind, so that a later stroke along the same cut, or across
+/// it, stands for itself.
+class CutFront {
+  public:
+    /// Counts the node as on the cut. A node made on the cut lies there exactly; others have
+    /// been near it. `reach` is the size of the elements there, m.
+    void put_on(topology::NodeId n, bool is_exact, double reach);
+    bool is_on(topology::NodeId n) const { return nodes_.contains(n.value); }
+    bool is_near(topology::NodeId n) const {
+        const auto place = nodes_.find(n.value);
+        return place != nodes_.end() && !place->second.is_exact;
+    }
+
+    bool is_crossed(topology::NodeId a, topology::NodeId b) const;
+    void toggle(topology::NodeId a, topology::NodeId b);
+
+    std::size_t size() const { return nodes_.size(); }
+    bool is_empty() const { return nodes_.empty(); }
+
+    /// Copies of a node are what it is.
+    void follow(const topology::ChangeSet& changes);
+    /// Forgets the nodes for which keep(node, reach) is false.
+    template <class Keep>
+    void forget_unless(Keep keep);
+
+  private:
+    struct Node {
+        bool is_exact = false;
+        double reach = 0.0;
+    };
+    void forget(const std::vector<topology::NodeId>& nodes);
+
+    std::unordered_map<std::int32_t, Node> nodes_;
+    // Both directions of each crossed edge.
+    std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
+};
+
+template <class Keep>
+void CutFront::forget_unless(Keep keep) {
+    std::vector<topology::NodeId> left_behind;
+    for (const auto& [value, node] : nodes_) {
+        const topology::NodeId n(static_cast<std::size_t>(value));
+        if (!keep(n, node.reach)) left_behind.push_back(n);
+    }
+    forget(left_behind);
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,32 @@
+// What a cut follows: where it passes through the edges of a mesh.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cutting/space_time.h"
+#include "cutting/tissue_motion.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+/// A surface at rest cuts tissue as it is after the step; a moving edge, what it meets during the
+/// step. All answers are exact up to the places, and agree with each other: round any triangle of
+/// tissue the crossings are even in number, unless the border of the surface runs through it.
+class CutSurface {
+  public:
+    virtual ~CutSurface() = default;
+
+    /// False only if the surface is nowhere in the box.
+    virtual bool may_meet(const Box& box) const = 0;
+    /// Appends where the surface passes through the segment from a to b, in no order. The same
+    /// segment is always asked for in the same direction.
+    virtual void append_crossings(const MovingPoint& a, const MovingPoint& b,
+                                  std::vector<Crossing>& crossings) const = 0;
+    /// Whether the border with which an earlier sweep ended, and this one begins, runs through the
+    /// triangle.
+    virtual bool starts_inside(const std::array<MovingPoint, 3>&) const { return false; }
+};
+
+}  // namespace incise::cutting

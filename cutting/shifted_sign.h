@@ -1,0 +1,116 @@
+// Signs of determinants that decide where things lie, exact and never undecided by chance.
+// Internal to cutting; only its .cpp files include this, for it needs CGAL.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <CGAL/MP_Float.h>
+#include <CGAL/determinant.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace incise::cutting {
+
+/// A point in n dimensions. Tissue counts as shifted by an infinitesimal (e, e^2, e^4) in space,
+/// one and the same shift for all tissue at all times, so that every case is decided once and from
+/// every side alike.
+template <std::size_t n>
+struct ShiftedPoint {
+    std::array<double, n> x;  ///< the first three are space
+    bool is_tissue = false;
+};
+
+/// A determinant: its value, and the sign that it has after the shift.
+struct ShiftedSign {
+    int sign = 0;        ///< 0 only if no shift in space decides it
+    double value = 0.0;  ///< without the shift; as exact as a double can be where it is near zero
+};
+
+namespace detail {
+
+template <class Number, std::size_t n>
+using Square = std::array<std::array<Number, n>, n>;
+
+/// The row of ones is eliminated by subtracting the last column. Along `axis`, if any, stands the
+/// indicator of tissue: the derivative with respect to the shift along it.
+template <class Number, std::size_t n>
+Square<Number, n> reduced(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
+    const auto entry = [&](const ShiftedPoint<n>& point, std::size_t row) -> double {
+        if (static_cast<int>(row) == axis) return point.is_tissue ? 1.0 : 0.0;
+        return point.x[row];
+    };
+    Square<Number, n> m;
+    for (std::size_t row = 0; row < n; ++row) {
+        const Number last(entry(*points[n], row));
+        for (std::size_t c = 0; c < n; ++c) m[row][c] = Number(entry(*points[c], row)) - last;
+    }
+    return m;
+}
+
+template <class Number>
+Number determinant(const Square<Number, 3>& m) {
+    return CGAL::determinant(m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1],
+                             m[2][2]);
+}
+
+template <class Number>
+Number determinant(const Square<Number, 4>& m) {
+    return CGAL::determinant(m[0][0], m[0][1], m[0][2], m[0][3], m[1][0], m[1][1], m[1][2], m[1][3],
+                             m[2][0], m[2][1], m[2][2], m[2][3], m[3][0], m[3][1], m[3][2],
+                             m[3][3]);
+}
+
+/// The determinant with all signs positive: what its rounding errors are measured by.
+inline double permanent(const Square<double, 3>& m) {
+    const auto at = [&](std::size_t r, std::size_t c) { return std::abs(m[r][c]); };
+    double sum = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t d = (c + 1) % 3, e = (c + 2) % 3;
+        sum += at(0, c) * (at(1, d) * at(2, e) + at(1, e) * at(2, d));
+    }
+    return sum;
+}
+
+inline double permanent(const Square<double, 4>& m) {
+    const auto at = [&](std::size_t r, std::size_t c) { return std::abs(m[r][c]); };
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b < 4; ++b) {
+            if (b == a) continue;
+            // The two columns that remain.
+            std::size_t rest[2], k = 0;
+            for (std::size_t c = 0; c < 4; ++c)
+                if (c != a && c != b) rest[k++] = c;
+            sum += at(0, a) * at(1, b) *
+                   (at(2, rest[0]) * at(3, rest[1]) + at(2, rest[1]) * at(3, rest[0]));
+        }
+    return sum;
+}
+
+template <std::size_t n>
+ShiftedSign sign_of_determinant(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
+    const auto m = reduced<double, n>(points, axis);
+    const double value = determinant(m);
+    // Each of the at most 24 products has four rounded differences and under a dozen roundings
+    // more: 64 units of rounding bound their sum generously.
+    constexpr double bound = 64.0 * 0x1.0p-53;
+    const double uncertainty = bound * permanent(m);
+    if (std::abs(value) > uncertainty && uncertainty > 0x1.0p-900)
+        return {value > 0.0 ? 1 : -1, value};
+    const CGAL::MP_Float exact = determinant(reduced<CGAL::MP_Float, n>(points, axis));
+    return {static_cast<int>(CGAL::sign(exact)), CGAL::to_double(exact)};
+}
+
+}  // namespace detail
+
+/// Orientation of n + 1 points in n dimensions (3, or 4 with time as the last).
+template <std::size_t n>
+ShiftedSign orientation(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
+    ShiftedSign result = detail::sign_of_determinant<n>(points, -1);
+    for (int axis = 0; axis < 3 && result.sign == 0; ++axis)
+        result.sign = detail::sign_of_determinant<n>(points, axis).sign;
+    return result;
+}
+
+}  // namespace incise::cutting

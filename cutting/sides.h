@@ -1,0 +1,29 @@
+// Which faces part the two sides of a cut.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "cutting/cut_front.h"
+#include "topology/mesh.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+/// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the cut
+/// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
+/// the cut ends, they do not agree yet.
+///
+/// An element is where its corner is that is not on the cut. One that has no such corner goes with
+/// the neighbour with which it shares the largest face, so that it does not come loose. Small
+/// groups that hang on the rest of their side by nodes only, which snapping may leave, stay with
+/// the other side: they would be crumbs.
+///
+/// @param touched  the elements to look at, and thereby their faces
+std::vector<topology::FaceId> parted_faces(const topology::Mesh& mesh, const CutFront& front,
+                                           const std::vector<topology::ElementId>& touched);
+
+/// Area of a triangular face at rest, m2.
+double rest_area(const topology::Mesh& mesh, topology::FaceId f);
+
+}  // namespace incise::cutting

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/splitter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <queue>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "cutting/sides.h"
+#include "cutting/step_length.h"
+#include "topology/error.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::cutting {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::MeshEdit;
+using topology::NodeId;
+
+namespace {
+
+/// Nearer to an end than this share of an edge, rounding would decide.
+constexpr double smallest_snap = 1e-7;
+
+/// An edge of the mesh, the lower node first.
+struct Edge {
+    NodeId a, b;
+    auto operator<=>(const Edge&) const = default;
+};
+
+Edge edge_between(NodeId a, NodeId b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+struct EdgeHash {
+    std::size_t operator()(const Edge& e) const {
+        const auto key = (static_cast<std::uint64_t>(e.a.index()) << 32) | e.b.index();
+        return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 20);
+    }
+};
+
+class Splitter {
+  public:
+    Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
+             const SplitOptions& options)
+        : mesh_(mesh),
+          tissue_(tissue),
+          surface_(surface),
+          front_(front),
+          options_(options),
+          snap_(std::max(options.snap, smallest_snap)),
+          num_old_nodes_(mesh.node_capacity()),
+          edit_(mesh) {}
+
+    Split run() {
+        find_crossed_edges();
+        while (!queue_.empty()) divide_next();
+        std::sort(touched_.begin(), touched_.end());
+        touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+        for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
+        for (const FaceId f : parted_faces(mesh_, front_, touched_)) {
+            report_.cut_area += rest_area(mesh_, f);
+            ++report_.faces_opened;
+            edit_.open(f);
+        }
+        Split result{edit_.commit(), report_};
+        front_.follow(result.changes);
+        return result;
+    }
+
+  private:
+    /// Where the surface passes through an edge, and how far away its ends are from it there, both
+    /// in units of the edge's length at rest.
+    struct Passage {
+        double place, from_a, from_b;
+    };
+    using Passages = std::vector<Passage>;  // in ascending order of places
+
+    /// An edge to be divided, unless an end of it comes to count as on the surface.
+    struct Pending {
+        ElementId element;  // one of those that have the edge
+        Passages passages;
+    };
+    struct Turn {
+        double length;
+        Edge edge;
+        // The longest comes first, of equal ones the lowest.
+        bool operator<(const Turn& other) const {
+            return length != other.length ? length < other.length : other.edge < edge;
+        }
+    };
+    MovingPoint point(NodeId n) const {
+        if (n.index() < num_old_nodes_)
+            return {tissue_.before[n.index()], tissue_.after[n.index()]};
+        return new_points_[n.index() - num_old_nodes_];
+    }
+
+    double rest_length(const Edge& edge) const {
+        return (mesh_.rest_position(edge.a) - mesh_.rest_position(edge.b)).norm();
+    }
+
+    void find_crossed_edges();
+    Passages passages(const Edge& edge, ElementId element) const;
+    Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
+    void receive(const Edge& edge, ElementId element, Passages passages);
+    bool is_to_be_divided(const Edge& edge, Passages& passages);
+    void divide_next();
+    bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const;
+    double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
+    void divide(const Edge& edge, ElementId element, double place);
+    void inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring);
+    void snap_to(NodeId n, double reach);
+
+    Mesh& mesh_;
+    const TissueMotion& tissue_;
+    const CutSurface& surface_;
+    CutFront& front_;
+    const SplitOptions& options_;
+    const double snap_;
+    const std::size_t num_old_nodes_;
+    MeshEdit edit_;
+
+    std::vector<MovingPoint> new_points_;
+    std::unordered_map<Edge, Pending, EdgeHash> pending_;
+    std::priority_queue<Turn> queue_;
+    std::vector<Edge> toggled_;       // crossed in this sweep and not divided
+    std::vector<ElementId> touched_;  // crossed, or made of such
+    std::vector<ElementId> ring_;     // scratch
+    SplitReport report_;
+};
+
+/// Normals go the other way than points: n . F dX = (F^T n) . dX, F the deformation gradient.
+Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
+    const auto corners = mesh_.corners(e);
+    Eigen::Matrix3d rest, current;
+    for (int k = 0; k < 3; ++k) {
+        const NodeId n = corners[static_cast<std::size_t>(k) + 1];
+        rest.col(k) = mesh_.rest_position(n) - mesh_.rest_position(corners[0]);
+        current.col(k) = point(n)[1] - point(corners[0])[1];
+    }
+    return rest.transpose().inverse() * (current.transpose() * normal);
+}
+
+Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const {
+    std::vector<Crossing> crossings;
+    surface_.append_crossings(point(edge.a), point(edge.b), crossings);
+    std::sort(crossings.begin(), crossings.end());
+    // Two that are nearer to each other than what is told apart cancel out.
+    for (std::size_t i = 0; i + 1 < crossings.size();) {
+        if (crossings[i + 1].place - crossings[i].place >= snap_) {
+            ++i;
+            continue;
+        }
+        const auto first = crossings.begin() + static_cast<std::ptrdiff_t>(i);
+        crossings.erase(first, first + 2);
+        if (i > 0) --i;
+    }
+    Passages passages;
+    for (const Crossing& crossing : crossings) {
+        double steepness = 1.0;
+        if (mesh_.kind(element) == CellKind::tetrahedron) {
+            const Vec3 normal = normal_at_rest(element, crossing.normal);
+            const Vec3 along = mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a);
+            const double size = normal.norm() * along.norm();
+            if (size > 0.0) steepness = std::abs(normal.dot(along)) / size;
+        }
+        passages.push_back(
+            {crossing.place, crossing.place * steepness, (1.0 - crossing.place) * steepness});
+    }
+    return passages;
+}
+
+void Splitter::find_crossed_edges() {
+    std::vector<std::pair<Edge, ElementId>> edges;
+    for (std::size_t i = 0; i < mesh_.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh_.is_alive(e) || !surface_.may_meet(tissue_.box(e))) continue;
+        const auto corners = mesh_.corners(e);
+        const topology::CellTraits& t = traits(mesh_.kind(e));
+        for (int k = 0; k < t.num_edges; ++k) {
+            const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
+            edges.emplace_back(edge_between(corners[static_cast<std::size_t>(p)],
+                                            corners[static_cast<std::size_t>(q)]),
+                               e);
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+
+    struct Found {
+        Edge edge;
+        ElementId element;
+        Passages passages;
+    };
+    std::vector<Found> found;
+    for (std::size_t i = 0; i < edges.size();) {
+        const Edge edge = edges[i].first;
+        std::size_t end = i;
+        while (end < edges.size() && edges[end].first == edge) ++end;
+        auto passed = passages(edge, edges[i].second);
+        if (!passed.empty()) {
+            for (std::size_t k = i; k < end; ++k) touched_.push_back(edges[k].second);
+            found.push_back({edge, edges[i].second, std::move(passed)});
+        }
+        i = end;
+    }
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    report_.elements_crossed = touched_.size();
+    for (const ElementId e : touched_)
+        if (mesh_.kind(e) != CellKind::tetrahedron)
+            throw InputError("element " + std::to_string(mesh_.label(e)) + " is a " +
+                             traits(mesh_.kind(e)).name +
+                             ", and only tetrahedra can be split; use mode = \"separate\"");
+
+    // Which nodes are near comes first: it decides about all edges at them.
+    for (const Found& f : found) {
+        if (f.passages.front().from_a < snap_) snap_to(f.edge.a, rest_length(f.edge));
+        if (f.passages.back().from_b < snap_) snap_to(f.edge.b, rest_length(f.edge));
+    }
+    for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
+}
+
+void Splitter::snap_to(NodeId n, double reach) {
+    if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
+    front_.put_on(n, false, reach);
+}
+
+// Of a node near the surface, the nearest crossing of any edge counts as at the node.
+bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
+    auto begin = passages.begin(), end = passages.end();
+    if (begin != end && front_.is_near(edge.a)) ++begin;
+    if (begin != end && front_.is_near(edge.b)) --end;
+    while (begin != end && begin->from_a < snap_) {
+        snap_to(edge.a, rest_length(edge));
+        ++begin;
+    }
+    while (begin != end && (end - 1)->from_b < snap_) {
+        snap_to(edge.b, rest_length(edge));
+        --end;
+    }
+    // Between two nodes on the surface there is nothing but rounding.
+    if (begin == end || (front_.is_on(edge.a) && front_.is_on(edge.b))) return false;
+    passages = Passages(begin, end);
+    return true;
+}
+
+void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
+    const bool is_odd = passages.size() % 2 == 1;
+    Passages left = passages;
+    if (is_to_be_divided(edge, left)) {
+        queue_.push({rest_length(edge), edge});
+        pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
+    } else if (is_odd) {
+        toggled_.push_back(edge);
+    }
+}
+
+void Splitter::divide_next() {
+    const Edge edge = queue_.top().edge;
+    queue_.pop();
+    const auto place = pending_.find(edge);
+    Pending pending = std::move(place->second);
+    pending_.erase(place);
+    const bool is_odd = pending.passages.size() % 2 == 1;
+    Passages left = pending.passages;
+    if (is_to_be_divided(edge, left)) {
+        const Passage& passage = left[left.size() / 2];
+        const double t = place_to_divide(edge, pending.element, passage);
+        if (t > 0.0) {
+            divide(edge, pending.element, t);
+            return;
+        }
+        snap_to(passage.place < 0.5 ? edge.a : edge.b, rest_length(edge));
+    }
+    if (is_odd) toggled_.push_back(edge);
+}
+
+/// Whether the halves of all elements round the edge, divided there, are large enough.
+bool Splitter::is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const {
+    const Vec3 middle = (1.0 - t) * mesh_.rest_position(edge.a) + t * mesh_.rest_position(edge.b);
+    for (const ElementId e : ring) {
+        const auto least = options_.min_step_length.find(mesh_.region(e));
+        if (least == options_.min_step_length.end()) continue;
+        for (const NodeId replaced : {edge.a, edge.b}) {
+            std::array<Vec3, 4> x;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const NodeId n = mesh_.corners(e)[k];
+                x[k] = n == replaced ? middle : mesh_.rest_position(n);
+            }
+            if (!(own_step_length(x) >= least->second)) return false;
+        }
+    }
+    return true;
+}
+
+/// Where to divide the edge: on the surface; if a half would be too small, nearer to the middle by
+/// as much as nodes may be off the surface; negative if it would be too small there too.
+double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
+    const double place = passage.place;
+    if (options_.min_step_length.empty()) return place;
+    ring_.clear();
+    topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
+    if (is_fit(edge, ring_, place)) return place;
+    const double reach = snap_ / (passage.from_a + passage.from_b);
+    const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
+    return is_fit(edge, ring_, moved) ? moved : -1.0;
+}
+
+void Splitter::divide(const Edge& edge, ElementId element, double t) {
+    const double reach = rest_length(edge);
+    const MovingPoint from = point(edge.a), to = point(edge.b);
+    const MeshEdit::Bisection& halves = edit_.bisect(element, edge.a, edge.b, t);
+    const NodeId middle = halves.node;
+    ++report_.edges_divided;
+    new_points_.push_back({(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]});
+
+    std::vector<NodeId> ring;
+    for (const auto& [kept, added] : halves.elements) {
+        touched_.push_back(kept);
+        touched_.push_back(added);
+        for (const NodeId n : mesh_.corners(added)) {
+            if (n == middle || n == edge.b) continue;
+            ring.push_back(n);
+            // Edges that end where the added half begins have gone over to it.
+            const auto waiting = pending_.find(edge_between(edge.b, n));
+            if (waiting != pending_.end()) waiting->second.element = added;
+        }
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    inherit(edge, middle, ring);
+    front_.put_on(middle, true, reach);
+
+    const auto ask = [&](NodeId other) {
+        const Edge born = edge_between(other, middle);
+        ElementId holder;
+        for (const auto& [kept, added] : halves.elements)
+            for (const ElementId e : {kept, added})
+                if (mesh_.corner_of(e, other) >= 0) holder = e;
+        auto passed = passages(born, holder);
+        if (!passed.empty()) receive(born, holder, std::move(passed));
+    };
+    ask(edge.a);
+    ask(edge.b);
+    for (const NodeId n : ring) ask(n);
+}
+
+// What earlier sweeps crossed: the middle counts as on the side of the end b, so the edges round
+// it are crossed as those at b are.
+void Splitter::inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring) {
+    if (front_.is_empty()) return;
+    const bool is_crossed = front_.is_crossed(edge.a, edge.b);
+    for (const NodeId n : ring) {
+        const bool at_a = front_.is_crossed(edge.a, n), at_b = front_.is_crossed(edge.b, n);
+        // Unless the front of before was inside this face: then it depends in which half.
+        const bool has_front = at_a != (at_b != is_crossed);
+        const bool front_is_at_b =
+            has_front && surface_.starts_inside({point(middle), point(edge.b), point(n)});
+        if (at_b != front_is_at_b) front_.toggle(middle, n);
+    }
+    if (!is_crossed) return;
+    front_.toggle(edge.a, edge.b);
+    front_.toggle(edge.a, middle);
+}
+
+}  // namespace
+
+Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
+            const SplitOptions& options) {
+    return Splitter(mesh, tissue, surface, front, options).run();
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,59 @@
+// The exact cut: elements are divided along a surface and parted there.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+
+#include "cutting/cut_front.h"
+#include "cutting/cut_surface.h"
+#include "cutting/tissue_motion.h"
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::cutting {
+
+/// Measured: docs/cutting.md.
+inline constexpr double default_snap = 0.25;
+
+struct SplitOptions {
+    /// A node nearer to the surface than this share of an edge that the surface crosses counts as
+    /// lying on it; nothing is moved. In [0, 0.5).
+    double snap = default_snap;
+    /// By region, the least step length (step_length.h) that a divided element may be left with, m.
+    /// Where the surface would leave less, the new node may be off it by `snap`; if that does not
+    /// do, the nearer end of the edge counts as on the surface. Regions not named: no limit.
+    std::map<int, double> min_step_length;
+};
+
+/// What a cut did.
+struct SplitReport {
+    std::size_t elements_crossed = 0;  ///< of before, those through which the surface passed
+    std::size_t nodes_snapped = 0;     ///< nodes of before that count as on the surface
+    std::size_t edges_divided = 0;
+    std::size_t faces_opened = 0;
+    double cut_area = 0.0;  ///< of one side of the opened faces, at rest, m2
+};
+
+struct Split {
+    topology::ChangeSet changes;
+    SplitReport report;
+};
+
+/// Divides the tetrahedra that the surface passes through and opens the faces on it, in one
+/// transaction.
+///
+/// Edges that the surface crosses are divided there, longest first; each division takes every
+/// element round the edge in two, so the mesh stays conforming, and no volume is lost. Then the
+/// faces open whose three nodes lie on the surface and whose elements are on different sides of
+/// it. A body through which the surface passes right across is parted; where the surface ends, so
+/// do the opened faces, within one element.
+///
+/// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
+///               brought up to date
+/// Throws InputError, and leaves the mesh as it was, if a crossed element is no tetrahedron.
+/// Cost: a few microseconds for each element that is crossed.
+Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
+            CutFront& front, const SplitOptions& options);
+
+}  // namespace incise::cutting

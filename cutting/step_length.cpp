@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/step_length.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace incise::cutting {
+
+namespace {
+
+/// Six times the volume, and the inverse altitudes of the corners.
+struct Shape {
+    double six_volumes;
+    std::array<double, 4> inverse_altitudes;
+
+    explicit Shape(const std::array<Vec3, 4>& x)
+        : six_volumes(std::abs((x[1] - x[0]).dot((x[2] - x[0]).cross(x[3] - x[0])))) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 &a = x[(k + 1) % 4], &b = x[(k + 2) % 4], &c = x[(k + 3) % 4];
+            inverse_altitudes[k] = (b - a).cross(c - a).norm() / six_volumes;
+        }
+    }
+    double sum() const {
+        return inverse_altitudes[0] + inverse_altitudes[1] + inverse_altitudes[2] +
+               inverse_altitudes[3];
+    }
+};
+
+}  // namespace
+
+double own_step_length(const std::array<Vec3, 4>& corners) {
+    const Shape shape(corners);
+    const double largest =
+        *std::max_element(shape.inverse_altitudes.begin(), shape.inverse_altitudes.end());
+    return 1.0 / std::sqrt(largest * shape.sum());
+}
+
+double step_length(const topology::Mesh& mesh) {
+    // At each node 2 / sqrt(s / m) with s the sum of V (1/h) sum_j (1/h_j), m that of V / 4.
+    std::vector<double> stiffness(mesh.node_capacity(), 0.0), volume(mesh.node_capacity(), 0.0);
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
+        std::array<Vec3, 4> x;
+        for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
+        const Shape shape(x);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::size_t n = mesh.corners(e)[k].index();
+            stiffness[n] += shape.six_volumes * shape.inverse_altitudes[k] * shape.sum();
+            volume[n] += shape.six_volumes;
+        }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < volume.size(); ++n)
+        if (volume[n] > 0.0) least = std::min(least, std::sqrt(volume[n] / stiffness[n]));
+    return least;
+}
+
+std::map<int, double> min_step_lengths(double snap, const std::map<int, double>& step_length) {
+    const double share = std::min(2.0 * snap, 0.5);
+    std::map<int, double> least;
+    if (share > 0.0)
+        for (const auto& [region, length] : step_length) least[region] = share * length;
+    return least;
+}
+
+}  // namespace incise::cutting

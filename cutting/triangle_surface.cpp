@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/triangle_surface.h"
+
+#include <algorithm>
+#include <limits>
+#include <unsupported/Eigen/BVH>
+
+#include "cutting/shifted_sign.h"
+
+namespace incise::cutting {
+
+namespace {
+
+using Triangle = std::array<Vec3, 3>;
+
+Box box_of(const Triangle& t) {
+    Box box(t[0]);
+    box.extend(t[1]).extend(t[2]);
+    return box;
+}
+
+ShiftedPoint<3> point(const Vec3& x, bool is_tissue) { return {{x.x(), x.y(), x.z()}, is_tissue}; }
+
+/// Where the segment of tissue from a to b passes through the triangle; negative if nowhere.
+double crossing(const Vec3& a, const Vec3& b, const Triangle& triangle) {
+    const auto from = point(a, true), to = point(b, true);
+    const auto u = point(triangle[0], false), v = point(triangle[1], false),
+               w = point(triangle[2], false);
+    const ShiftedSign below = orientation<3>({&from, &u, &v, &w});
+    if (below.sign == 0) return -1.0;
+    const ShiftedSign above = orientation<3>({&to, &u, &v, &w});
+    if (above.sign != -below.sign) return -1.0;
+    const int turn = orientation<3>({&from, &to, &u, &v}).sign;
+    if (turn == 0 || orientation<3>({&from, &to, &v, &w}).sign != turn ||
+        orientation<3>({&from, &to, &w, &u}).sign != turn)
+        return -1.0;
+    const double height = std::abs(below.value) + std::abs(above.value);
+    return height > 0.0 ? std::abs(below.value) / height : 0.5;
+}
+
+/// Least squared distance of x from the triangle: from its inside, or else from its edges.
+double squared_distance(const Vec3& x, const Triangle& t) {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double square = normal.squaredNorm();
+    bool is_over_inside = square > 0.0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 edge = t[(k + 1) % 3] - t[k], from = x - t[k];
+        is_over_inside = is_over_inside && normal.dot(edge.cross(from)) >= 0.0;
+        const double length = edge.squaredNorm();
+        const double s = length > 0.0 ? std::clamp(from.dot(edge) / length, 0.0, 1.0) : 0.0;
+        nearest = std::min(nearest, (from - s * edge).squaredNorm());
+    }
+    if (!is_over_inside) return nearest;
+    const double height = normal.dot(x - t[0]);
+    return height * height / square;
+}
+
+struct AnyInBox {
+    Box box;
+    bool found = false;
+    bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
+    bool intersectObject(const Triangle& t) {
+        found = box.intersects(box_of(t));
+        return found;  // the first will do
+    }
+};
+
+struct CrossingsOf {
+    const Vec3 &a, &b;
+    std::vector<Crossing>& crossings;
+    Box box;
+    bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
+    bool intersectObject(const Triangle& t) const {
+        if (const double place = crossing(a, b, t); place >= 0.0)
+            crossings.push_back({place, (t[1] - t[0]).cross(t[2] - t[0])});
+        return false;
+    }
+};
+
+struct DistanceFrom {
+    using Scalar = double;
+    const Vec3& x;
+    double minimumOnVolume(const Box& volume) const { return volume.squaredExteriorDistance(x); }
+    double minimumOnObject(const Triangle& t) const { return squared_distance(x, t); }
+};
+
+}  // namespace
+
+struct TriangleSurface::Tree {
+    Eigen::KdBVH<double, 3, Triangle> bvh;
+    bool is_empty = true;
+};
+
+TriangleSurface::TriangleSurface(const topology::SurfaceData& surface)
+    : tree_(std::make_unique<Tree>()) {
+    std::vector<Triangle> triangles;
+    std::vector<Box> boxes;
+    for (const auto& corners : surface.triangles) {
+        const auto at = [&](std::size_t k) {
+            return surface.points[static_cast<std::size_t>(corners[k])];
+        };
+        triangles.push_back({at(0), at(1), at(2)});
+        boxes.push_back(box_of(triangles.back()));
+    }
+    tree_->is_empty = triangles.empty();
+    if (!triangles.empty())
+        tree_->bvh.init(triangles.begin(), triangles.end(), boxes.begin(), boxes.end());
+}
+
+TriangleSurface::~TriangleSurface() = default;
+
+bool TriangleSurface::may_meet(const Box& box) const {
+    if (tree_->is_empty) return false;
+    AnyInBox query{box};
+    Eigen::BVIntersect(tree_->bvh, query);
+    return query.found;
+}
+
+void TriangleSurface::append_crossings(const MovingPoint& a, const MovingPoint& b,
+                                       std::vector<Crossing>& crossings) const {
+    if (tree_->is_empty) return;
+    Box box(a[1]);
+    box.extend(b[1]);
+    CrossingsOf query{a[1], b[1], crossings, box};
+    Eigen::BVIntersect(tree_->bvh, query);
+}
+
+double TriangleSurface::distance(const Vec3& x) const {
+    if (tree_->is_empty) return std::numeric_limits<double>::infinity();
+    DistanceFrom query{x};
+    return std::sqrt(Eigen::BVMinimize(tree_->bvh, query));
+}
+
+}  // namespace incise::cutting

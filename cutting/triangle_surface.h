@@ -1,0 +1,32 @@
+// A cut along a triangulated surface, open or closed.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cutting/cut_surface.h"
+#include "topology/surface_data.h"
+
+namespace incise::cutting {
+
+/// Triangles that share an edge share its points, so that nothing slips through between them; a
+/// closed surface frees its inside. Triangles without area cut nothing.
+class TriangleSurface final : public CutSurface {
+  public:
+    /// Cost: O(n log n).
+    explicit TriangleSurface(const topology::SurfaceData& surface);
+    ~TriangleSurface() override;
+
+    bool may_meet(const Box& box) const override;
+    void append_crossings(const MovingPoint& a, const MovingPoint& b,
+                          std::vector<Crossing>& crossings) const override;
+
+    /// Least distance of a point from the triangles, m; infinite without triangles.
+    double distance(const Vec3& x) const;
+
+  private:
+    struct Tree;
+    std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace incise::cutting
