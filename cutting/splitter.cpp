@@ -28,6 +28,13 @@ namespace {
 /// Nearer to an end than this share of an edge, rounding would decide.
 constexpr double smallest_snap = 1e-7;
 
+/// Nearer than this share of an edge to an end that is on the surface, it is no other passage but a
+/// bend of the surface, or that the tissue's motion between two steps is taken as straight.
+constexpr double bend = 0.25;
+
+/// How often an edge is divided in one sweep: folds of a surface could go on for ever.
+constexpr int max_generation = 6;
+
 /// An edge of the mesh, the lower node first.
 struct Edge {
     NodeId a, b;
@@ -99,6 +106,10 @@ class Splitter {
         return new_points_[n.index() - num_old_nodes_];
     }
 
+    int generation(NodeId n) const {
+        return n.index() < num_old_nodes_ ? 0 : generations_[n.index() - num_old_nodes_];
+    }
+
     double rest_length(const Edge& edge) const {
         return (mesh_.rest_position(edge.a) - mesh_.rest_position(edge.b)).norm();
     }
@@ -125,6 +136,7 @@ class Splitter {
     MeshEdit edit_;
 
     std::vector<MovingPoint> new_points_;
+    std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
     std::vector<Edge> toggled_;       // crossed in this sweep and not divided
@@ -234,16 +246,15 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
     auto begin = passages.begin(), end = passages.end();
     if (begin != end && front_.is_near(edge.a)) ++begin;
     if (begin != end && front_.is_near(edge.b)) --end;
-    while (begin != end && begin->from_a < snap_) {
-        snap_to(edge.a, rest_length(edge));
-        ++begin;
-    }
-    while (begin != end && (end - 1)->from_b < snap_) {
-        snap_to(edge.b, rest_length(edge));
-        --end;
-    }
-    // Between two nodes on the surface there is nothing but rounding.
-    if (begin == end || (front_.is_on(edge.a) && front_.is_on(edge.b))) return false;
+    const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
+    if (is_on_a && is_on_b) return false;  // between them there is nothing but rounding
+    for (; begin != end && begin->from_a < snap_; ++begin)
+        if (!is_on_a) snap_to(edge.a, rest_length(edge));
+    for (; begin != end && (end - 1)->from_b < snap_; --end)
+        if (!is_on_b) snap_to(edge.b, rest_length(edge));
+    while (begin != end && is_on_a && begin->place < bend) ++begin;
+    while (begin != end && is_on_b && (end - 1)->place > 1.0 - bend) --end;
+    if (begin == end) return false;
     passages = Passages(begin, end);
     return true;
 }
@@ -301,6 +312,7 @@ bool Splitter::is_fit(const Edge& edge, const std::vector<ElementId>& ring, doub
 /// as much as nodes may be off the surface; negative if it would be too small there too.
 double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
     const double place = passage.place;
+    if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
     if (options_.min_step_length.empty()) return place;
     ring_.clear();
     topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
@@ -315,6 +327,7 @@ void Splitter::divide(const Edge& edge, ElementId element, double t) {
     const MovingPoint from = point(edge.a), to = point(edge.b);
     const MeshEdit::Bisection& halves = edit_.bisect(element, edge.a, edge.b, t);
     const NodeId middle = halves.node;
+    generations_.push_back(1 + std::max(generation(edge.a), generation(edge.b)));
     ++report_.edges_divided;
     new_points_.push_back({(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]});
 
