@@ -54,6 +54,9 @@ class ElementBlock {
     /// Takes the element in and precomputes it from the rest positions (by node id).
     virtual void insert(ElementId e, std::span<const NodeId> corners,
                         std::span<const Vec3> rest_positions) = 0;
+    /// Recomputes an element that it has, with other corners.
+    virtual void replace(ElementId e, std::span<const NodeId> corners,
+                         std::span<const Vec3> rest_positions) = 0;
     virtual void erase(ElementId e) = 0;
 
   protected:
@@ -126,20 +129,15 @@ class KernelBlock final : public ElementBlock {
 
     void insert(ElementId e, std::span<const NodeId> corners,
                 std::span<const Vec3> rest_positions) override {
-        assert(corners.size() == num_corners);
-        Row row;
-        Corners X;
-        for (std::size_t k = 0; k < num_corners; ++k) {
-            row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
-            X[k] = rest_positions[corners[k].index()];
-        }
-        row.rest = kernel_.precompute(X);
-        row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
-        const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
-        std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
         const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
-        rows_.insert(rows_.begin() + (place - elements_.begin()), row);
+        rows_.insert(rows_.begin() + (place - elements_.begin()),
+                     make_row(corners, rest_positions));
         elements_.insert(place, e);
+    }
+
+    void replace(ElementId e, std::span<const NodeId> corners,
+                 std::span<const Vec3> rest_positions) override {
+        rows_[slot_of(e)] = make_row(corners, rest_positions);
     }
 
     void erase(ElementId e) override {
@@ -154,6 +152,21 @@ class KernelBlock final : public ElementBlock {
         typename Kernel::Element rest;
         ElementShares shares;
     };
+
+    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions) const {
+        assert(corners.size() == num_corners);
+        Row row;
+        Corners X;
+        for (std::size_t k = 0; k < num_corners; ++k) {
+            row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
+            X[k] = rest_positions[corners[k].index()];
+        }
+        row.rest = kernel_.precompute(X);
+        row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
+        const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
+        std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
+        return row;
+    }
 
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {
         Corners x;

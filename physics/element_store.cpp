@@ -55,6 +55,10 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions());
 }
 
+void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
+    blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions());
+}
+
 void ElementStore::erase(ElementId e, int region) { blocks_[block_index(e, region)]->erase(e); }
 
 }  // namespace incise::physics

@@ -29,6 +29,8 @@ class ElementStore {
     ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
 
     void insert(const topology::Mesh& mesh, ElementId e);
+    /// Recomputes an element whose corners are others now.
+    void replace(const topology::Mesh& mesh, ElementId e);
     /// @param region of the element, which the mesh may have forgotten by now
     void erase(ElementId e, int region);
 

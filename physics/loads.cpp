@@ -40,20 +40,19 @@ struct Adder {
                 forces[members[i].node.index()] += factor * load.shares[i] * load.force;
     }
     void operator()(const TractionLoad& load) const {
-        for (const FaceId f : load.faces)
-            if (is_on_boundary(body.mesh, f)) {
-                const double area = area_vector(body.mesh, f, body.mesh.rest_positions()).norm();
-                spread(body.mesh, f, factor * area * load.traction, forces);
-            }
+        for_loaded(load.faces, [&](FaceId f) {
+            const double area = area_vector(body.mesh, f, body.mesh.rest_positions()).norm();
+            spread(body.mesh, f, factor * area * load.traction, forces);
+        });
     }
     void operator()(const PressureLoad& load) const {
-        for (const FaceId f : load.faces)
-            if (is_on_boundary(body.mesh, f))
-                spread(body.mesh, f,
-                       -factor * load.pressure * area_vector(body.mesh, f, body.positions), forces);
+        for_loaded(load.faces, [&](FaceId f) {
+            spread(body.mesh, f,
+                   -factor * load.pressure * area_vector(body.mesh, f, body.positions), forces);
+        });
     }
     void operator()(const BodyLoad& load) const {
-        for (const ElementId e : load.elements) {
+        for (const ElementId e : load.elements.members()) {
             if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
             const auto corners = body.mesh.corners(e);
             const double volume = body.elements.block_of(body.mesh, e).rest_volume(e);
@@ -62,12 +61,46 @@ struct Adder {
                     factor * volume / static_cast<double>(corners.size()) * load.force;
         }
     }
+
+    template <class Visit>
+    void for_loaded(const FaceSet& faces, Visit visit) const {
+        for (const FaceSet::Member& member : faces.members())
+            if (!member.left_to.is_valid() && is_on_boundary(body.mesh, member.face))
+                visit(member.face);
+    }
 };
+
+// Anew for every family of copies with a member among `touched`.
+void share(NodalLoad& load, const LoadedBody& body, std::span<const NodeId> touched) {
+    const auto& members = load.nodes.members();
+    load.shares.resize(members.size(), 0.0);
+    std::map<NodeId, double> family_mass;
+    for (const NodeId n : touched)
+        if (const auto* member = load.nodes.find(n); member && member->origin.is_valid())
+            family_mass[member->origin] = 0.0;
+    if (family_mass.empty()) return;
+    const auto mass_of = [&](const NodeSet::Member& m) {
+        return body.mesh.is_alive(m.node) ? body.masses[m.node.index()] : 0.0;
+    };
+    for (const auto& m : members)
+        if (const auto family = family_mass.find(m.origin); family != family_mass.end())
+            family->second += mass_of(m);
+    for (std::size_t i = 0; i < members.size(); ++i)
+        if (const auto family = family_mass.find(members[i].origin); family != family_mass.end()) {
+            const double mass = mass_of(members[i]);
+            load.shares[i] = mass > 0.0 ? mass / family->second : 0.0;
+        }
+}
 
 }  // namespace
 
 Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move(loads)) {
-    share(body);
+    for (Load& load : loads_)
+        if (auto* nodal = std::get_if<NodalLoad>(&load.kind)) {
+            std::vector<NodeId> all;
+            for (const auto& member : nodal->nodes.members()) all.push_back(member.node);
+            share(*nodal, body, all);
+        }
 }
 
 void Loads::add(const LoadedBody& body, double time, std::span<Vec3> forces) const {
@@ -77,29 +110,22 @@ void Loads::add(const LoadedBody& body, double time, std::span<Vec3> forces) con
     }
 }
 
-void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body) {
-    bool any = false;
-    for (Load& load : loads_)
-        if (auto* nodal = std::get_if<NodalLoad>(&load.kind))
-            any = nodal->nodes.apply(changes) || any;
-    if (any) share(body);
-}
+void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body,
+                  std::span<const NodeId> touched) {
+    struct Follower {
+        const topology::ChangeSet& changes;
+        const LoadedBody& body;
+        std::span<const NodeId> touched;
 
-void Loads::share(const LoadedBody& body) {
-    for (Load& load : loads_) {
-        auto* nodal = std::get_if<NodalLoad>(&load.kind);
-        if (!nodal) continue;
-        const auto mass_of = [&](const NodeSet::Member& m) {
-            return body.mesh.is_alive(m.node) ? body.masses[m.node.index()] : 0.0;
-        };
-        std::map<NodeId, double> family_mass;
-        for (const auto& m : nodal->nodes.members()) family_mass[m.origin] += mass_of(m);
-        nodal->shares.clear();
-        for (const auto& m : nodal->nodes.members()) {
-            const double mass = mass_of(m);
-            nodal->shares.push_back(mass > 0.0 ? mass / family_mass[m.origin] : 0.0);
+        void operator()(NodalLoad& load) const {
+            load.nodes.apply(changes);
+            share(load, body, touched);
         }
-    }
+        void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, changes); }
+        void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, changes); }
+        void operator()(BodyLoad& load) const { load.elements.apply(changes); }
+    };
+    for (Load& load : loads_) std::visit(Follower{changes, body, touched}, load.kind);
 }
 
 }  // namespace incise::physics

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "physics/element_set.h"
 #include "physics/element_store.h"
 #include "physics/node_set.h"
 #include "physics/time_curve.h"
@@ -15,7 +16,8 @@
 namespace incise::physics {
 
 /// The same force, N, on each selected node. Copies of a node share its force by mass, so that
-/// opening a face neither adds force nor tears the copies apart.
+/// opening a face neither adds force nor tears the copies apart. A node born between selected ones
+/// has no share: the force stays what it was, and where it was.
 struct NodalLoad {
     NodeSet nodes;
     Vec3 force;
@@ -24,19 +26,19 @@ struct NodalLoad {
 
 /// Force per rest area, Pa, in a fixed direction, on faces of the boundary.
 struct TractionLoad {
-    std::vector<topology::FaceId> faces;
+    FaceSet faces;
     Vec3 traction;
 };
 
 /// Pressure, Pa, positive inwards, on the current area along the current normal.
 struct PressureLoad {
-    std::vector<topology::FaceId> faces;
+    FaceSet faces;
     double pressure;
 };
 
 /// Force per rest volume, N/m3.
 struct BodyLoad {
-    std::vector<topology::ElementId> elements;
+    ElementSet elements;
     Vec3 force;
 };
 
@@ -63,11 +65,13 @@ class Loads {
     /// faces that have come to lie inside, carry nothing. Cost: proportional to the selections.
     void add(const LoadedBody& body, double time, std::span<Vec3> forces) const;
 
-    /// Carries the selections through an edit that the body has followed.
-    void apply(const topology::ChangeSet& changes, const LoadedBody& body);
+    /// Carries the selections through an edit that the body has followed: parts of loaded faces and
+    /// elements are loaded as these were.
+    /// @param touched nodes whose mass may have changed
+    void apply(const topology::ChangeSet& changes, const LoadedBody& body,
+               std::span<const topology::NodeId> touched);
 
   private:
-    void share(const LoadedBody& body);
     std::vector<Load> loads_;
 };
 

@@ -159,6 +159,7 @@ void Model::explain_failure(double dt) const {
 // Keeps momentum and centre of mass; equal states stay what they are to the bit.
 void Model::merge(NodeId absorbed, NodeId survivor) {
     const std::size_t from = absorbed.index(), into = survivor.index();
+    if (masses_[from] == 0.0) return;  // born in the same edit: nothing to bring
     Merge merge{survivor, positions_[into], velocities_[into], {}, {}};
     const double mass = masses_[from] + masses_[into];
     const double weight = masses_[from] / mass;
@@ -185,22 +186,30 @@ bool Model::take_back_merge(NodeId absorbed) {
     return true;
 }
 
+void Model::take_from_sources(const NodeRecord& record) {
+    if (record.num_sources == 0) return;  // back with what it had
+    Vec3 x = Vec3::Zero(), v = Vec3::Zero();
+    for (int s = 0; s < record.num_sources; ++s) {
+        const auto& source = record.sources[static_cast<std::size_t>(s)];
+        x += source.weight * positions_[source.node.index()];
+        v += source.weight * velocities_[source.node.index()];
+    }
+    positions_[record.id.index()] = x;
+    velocities_[record.id.index()] = v;
+}
+
 void Model::carry_state(const ChangeSet& changes) {
     for (const NodeRecord& record : changes.nodes_removed)
         if (record.num_sources == 1) merge(record.id, record.sources[0].node);
+    const auto& added = changes.nodes_added;
+    const auto first_born =
+        std::lower_bound(added.begin(), added.end(), NodeId(changes.node_capacity_before),
+                         [](const NodeRecord& record, NodeId n) { return record.id < n; });
     // In reverse: the last of several nodes to join a survivor leaves it first.
-    for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend();
-         ++record) {
-        if (record->num_sources == 0 || take_back_merge(record->id)) continue;
-        Vec3 x = Vec3::Zero(), v = Vec3::Zero();
-        for (int s = 0; s < record->num_sources; ++s) {
-            const auto& source = record->sources[static_cast<std::size_t>(s)];
-            x += source.weight * positions_[source.node.index()];
-            v += source.weight * velocities_[source.node.index()];
-        }
-        positions_[record->id.index()] = x;
-        velocities_[record->id.index()] = v;
-    }
+    for (auto record = std::make_reverse_iterator(first_born); record != added.rend(); ++record)
+        if (!take_back_merge(record->id)) take_from_sources(*record);
+    // In ascending order: a node may lie between others that the edit made before it.
+    std::for_each(first_born, added.end(), [&](const NodeRecord& r) { take_from_sources(r); });
     merges_.erase(merges_.lower_bound(NodeId(changes.node_capacity_after)), merges_.end());
 }
 
@@ -217,32 +226,42 @@ void Model::apply(const ChangeSet& changes) {
     carry_state(changes);
 
     std::vector<NodeId> touched;
+    const auto touch = [&](std::span<const NodeId> nodes) {
+        touched.insert(touched.end(), nodes.begin(), nodes.end());
+    };
+    const auto touch_all_of = [&](const topology::ElementRecord& record) {
+        touch(record.corners);
+        // What it was divided from, or joins again, has another shape and mass now.
+        const ElementId parent = record.parent;
+        if (parent.is_valid() && parent.index() < changes.element_capacity_after)
+            touch(mesh_.corners(parent));
+    };
     for (const auto& record : changes.elements_removed) {
         elements_.erase(record.id, record.region);
-        touched.insert(touched.end(), record.corners.begin(), record.corners.end());
+        touch_all_of(record);
     }
     for (const auto& record : changes.elements_added) {
         elements_.insert(mesh_, record.id);
-        touched.insert(touched.end(), record.corners.begin(), record.corners.end());
+        touch_all_of(record);
     }
     for (std::size_t i = 0; i < changes.rewired.size(); ++i) {
         const auto& rewiring = changes.rewired[i];
-        if (i == 0 || changes.rewired[i - 1].element != rewiring.element) {
-            elements_.erase(rewiring.element, mesh_.region(rewiring.element));
-            elements_.insert(mesh_, rewiring.element);
-        }
+        if (i == 0 || changes.rewired[i - 1].element != rewiring.element)
+            elements_.replace(mesh_, rewiring.element);
         touched.push_back(rewiring.from);
         touched.push_back(rewiring.to);
     }
     for (const NodeRecord& record : changes.nodes_removed) touched.push_back(record.id);
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    touched.erase(
+        std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
+        touched.end());
     resize(changes.node_capacity_after);
-    for (const NodeId n : touched)
-        if (n.index() < changes.node_capacity_after) gather(n);
+    for (const NodeId n : touched) gather(n);
 
     supports_.apply(mesh_, changes);
-    loads_.apply(changes, loaded_body());
+    loads_.apply(changes, loaded_body(), touched);
 }
 
 Totals Model::totals() const {

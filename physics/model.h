@@ -63,9 +63,14 @@ class Model {
     void integrate(double time, double dt);
 
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
-    /// the edited mesh with the same state. Copied nodes copy their state; merged ones keep
-    /// momentum. The inverse of an edit, applied before anything moved, gives the former state
-    /// back to the bit. Forces are those of before until compute_forces is called.
+    /// the edited mesh with the same state. Copied nodes copy their state, a node between others
+    /// takes a mean of theirs with the weights of the record, merged ones keep momentum.
+    /// Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of mass and the
+    /// elastic energy of all laws (not of springs), but lumped masses lose angular momentum
+    /// m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2 / 2, m
+    /// being a quarter of the mass of the elements round the edge.
+    /// The inverse of an edit, applied before anything moved, gives the former state back to the
+    /// bit. Forces are those of before until compute_forces is called.
     /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
     void apply(const topology::ChangeSet& changes);
 
@@ -112,6 +117,7 @@ class Model {
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
     void carry_state(const topology::ChangeSet& changes);
+    void take_from_sources(const topology::NodeRecord& record);
     void merge(NodeId absorbed, NodeId survivor);
     bool take_back_merge(NodeId absorbed);
     [[noreturn]] void explain_failure(double dt) const;

@@ -19,8 +19,8 @@ const NodeSet::Member* NodeSet::find(NodeId n) const {
     return place != members_.end() && place->node == n ? &*place : nullptr;
 }
 
-bool NodeSet::apply(const topology::ChangeSet& changes) {
-    if (members_.empty()) return false;
+void NodeSet::apply(const topology::ChangeSet& changes) {
+    if (members_.empty()) return;
     while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
         members_.pop_back();
     for (const topology::NodeRecord& record : changes.nodes_added) {
@@ -32,9 +32,8 @@ bool NodeSet::apply(const topology::ChangeSet& changes) {
         if (!all) continue;
         // New ids lie above all others, so the list stays sorted.
         const bool is_copy = record.num_sources == 1;
-        members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : record.id});
+        members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : NodeId()});
     }
-    return true;
 }
 
 }  // namespace incise::physics

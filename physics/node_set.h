@@ -9,26 +9,29 @@
 
 namespace incise::physics {
 
-/// A node born between members is one itself. Members that die stay listed, so that an undone
-/// edit finds them again: ask the mesh who is alive.
+/// A node born between members is one itself; one between a member and another node is none.
+/// Members that die stay listed, so that an undone edit finds them again: ask the mesh who is
+/// alive.
 class NodeSet {
   public:
     struct Member {
         topology::NodeId node;
-        topology::NodeId origin;  ///< the member of the first selection that it is a copy of
+        /// The member of the first selection that it is, or is a copy of; invalid for one born
+        /// between others and for its copies.
+        topology::NodeId origin;
     };
 
     explicit NodeSet(std::vector<topology::NodeId> nodes = {});
 
     /// In ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }
+    /// Null for a node that is no member.
+    const Member* find(topology::NodeId n) const;
     bool contains(topology::NodeId n) const { return find(n) != nullptr; }
 
-    /// Returns whether the set or the stars of its members may have changed.
-    bool apply(const topology::ChangeSet& changes);
+    void apply(const topology::ChangeSet& changes);
 
   private:
-    const Member* find(topology::NodeId n) const;
     std::vector<Member> members_;
 };
 

@@ -2,6 +2,7 @@
 #include "physics/supports.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "topology/error.h"
 
@@ -18,31 +19,31 @@ Vec3 Support::target(const Vec3& X, double time) const {
 
 Supports::Supports(const topology::Mesh& mesh, std::vector<Support> supports)
     : supports_(std::move(supports)) {
-    index_nodes(mesh);
+    row_of_node_.resize(mesh.node_capacity(), -1);
+    for (const Support& support : supports_)
+        for (const NodeSet::Member& member : support.nodes.members()) index(mesh, member.node);
 }
 
-void Supports::index_nodes(const topology::Mesh& mesh) {
-    row_of_node_.assign(mesh.node_capacity(), -1);
-    rows_.clear();
-    for (std::size_t s = 0; s < supports_.size(); ++s)
-        for (const NodeSet::Member& member : supports_[s].nodes.members()) {
-            const std::size_t n = member.node.index();
-            if (!mesh.is_alive(member.node)) continue;
-            if (row_of_node_[n] < 0) {
-                row_of_node_[n] = static_cast<std::int32_t>(rows_.size());
-                rows_.push_back({-1, -1, -1});
-            }
-            auto& row = rows_[static_cast<std::size_t>(row_of_node_[n])];
-            for (std::size_t c = 0; c < 3; ++c) {
-                if (!supports_[s].components[c]) continue;
-                if (row[c] >= 0)
-                    throw InputError("node " + std::to_string(mesh.label(member.node)) +
-                                     " is held in " + "xyz"[c] + " by both '" +
-                                     supports_[static_cast<std::size_t>(row[c])].name + "' and '" +
-                                     supports_[s].name + "'; make their selections disjoint");
-                row[c] = static_cast<int>(s);
-            }
+void Supports::index(const topology::Mesh& mesh, NodeId n) {
+    constexpr std::array<int, 3> free{-1, -1, -1};
+    std::array<int, 3> row = free;
+    for (std::size_t s = 0; s < supports_.size() && mesh.is_alive(n); ++s) {
+        if (!supports_[s].nodes.contains(n)) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (!supports_[s].components[c]) continue;
+            if (row[c] >= 0)
+                throw InputError("node " + std::to_string(mesh.label(n)) + " is held in " +
+                                 "xyz"[c] + " by both '" +
+                                 supports_[static_cast<std::size_t>(row[c])].name + "' and '" +
+                                 supports_[s].name + "'; make their selections disjoint");
+            row[c] = static_cast<int>(s);
         }
+    }
+    row_of_node_[n.index()] = -1;
+    if (row == free) return;
+    const auto place = std::find(rows_.begin(), rows_.end(), row);
+    row_of_node_[n.index()] = static_cast<std::int32_t>(place - rows_.begin());
+    if (place == rows_.end()) rows_.push_back(row);
 }
 
 void Supports::place(const std::array<int, 3>& support_of, const Vec3& X, double time,
@@ -54,9 +55,11 @@ void Supports::place(const std::array<int, 3>& support_of, const Vec3& X, double
 }
 
 void Supports::apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-    bool any = false;
-    for (Support& support : supports_) any = support.nodes.apply(changes) || any;
-    if (any) index_nodes(mesh);
+    for (Support& support : supports_) support.nodes.apply(changes);
+    row_of_node_.resize(changes.node_capacity_after, -1);
+    for (const auto* records : {&changes.nodes_added, &changes.nodes_removed})
+        for (const topology::NodeRecord& record : *records)
+            if (record.id.index() < changes.node_capacity_after) index(mesh, record.id);
 }
 
 }  // namespace incise::physics

@@ -48,14 +48,16 @@ class Supports {
     /// Sets the prescribed components of `x` to where they are to be at `time`.
     void place(const std::array<int, 3>& support_of, const Vec3& X, double time, Vec3& x) const;
 
+    /// @param mesh after the edit
+    /// Cost: proportional to the nodes that came and went.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
   private:
-    void index_nodes(const topology::Mesh& mesh);
+    void index(const topology::Mesh& mesh, topology::NodeId n);
 
     std::vector<Support> supports_;
     std::vector<std::int32_t> row_of_node_;
-    std::vector<std::array<int, 3>> rows_;
+    std::vector<std::array<int, 3>> rows_;  // those that occur: few, as many nodes share one
 };
 
 }  // namespace incise::physics

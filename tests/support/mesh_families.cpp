@@ -95,6 +95,30 @@ std::vector<FaceId> inner_faces(const Mesh& mesh) {
     return faces;
 }
 
+std::pair<NodeId, NodeId> longest_edge(const Mesh& mesh, ElementId e) {
+    std::pair<NodeId, NodeId> longest;
+    double length = 0.01;  // of tiny elements rounding would make flat ones
+    for (const auto& [a, b] : traits(mesh.kind(e)).edges) {
+        if (a == b) continue;  // beyond the last
+        const NodeId from = mesh.corners(e)[static_cast<std::size_t>(a)];
+        const NodeId to = mesh.corners(e)[static_cast<std::size_t>(b)];
+        const double l = (mesh.rest_position(from) - mesh.rest_position(to)).norm();
+        if (l > length) {
+            length = l;
+            longest = {from, to};
+        }
+    }
+    return longest;
+}
+
+bool is_among_tetrahedra(const Mesh& mesh, NodeId n) {
+    std::vector<ElementId> star;
+    mesh.star(n, star);
+    return std::all_of(star.begin(), star.end(), [&](ElementId e) {
+        return mesh.kind(e) == CellKind::tetrahedron;
+    });
+}
+
 // Pairs of boundary faces at the same rest positions: what an opened face left.
 std::vector<FacePair> open_pairs(const Mesh& mesh) {
     std::map<std::vector<double>, FaceId> seen;
@@ -164,7 +188,7 @@ std::vector<const MeshFamily*> tetrahedral_families() {
 
 ChangeSet random_edit(Mesh& mesh, Random& random) {
     MeshEdit edit(mesh);
-    const std::size_t kind = random.below(5);
+    const std::size_t kind = random.below(6);
     const auto elements = living_elements(mesh);
     if (elements.empty()) return edit.commit();
     const std::size_t budget = 1 + (random.below(4) == 0 ? elements.size() / 20 : 0);
@@ -206,6 +230,22 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
             for (const FaceId f : inner_faces(mesh))
                 if (side(f.element) != side(mesh.neighbor(f).element) && random.uniform() < share)
                     edit.open(f);
+        }
+    }
+    if (kind == 5) {  // edges divided, near each other; then some of the faces about opened
+        ElementId e = elements[random.below(elements.size())];
+        for (std::size_t i = 0; i < 2 * budget; ++i) {
+            if (mesh.kind(e) != CellKind::tetrahedron) break;
+            const auto [from, to] = longest_edge(mesh, e);  // any other would soon make slivers
+            if (!from.is_valid() || !is_among_tetrahedra(mesh, from)) break;
+            const MeshEdit::Bisection& halves =
+                edit.bisect(e, from, to, random.uniform(0.25, 0.75));
+            const auto& last = halves.elements[random.below(halves.elements.size())];
+            for (const ElementId part : {last.kept, last.added})
+                for (int f = 0; f < 4; ++f)
+                    if (mesh.neighbor({part, f}).is_valid() && random.below(4) == 0)
+                        edit.open({part, f});
+            e = random.below(2) == 0 ? last.kept : last.added;
         }
     }
     if (kind == 4 || kind == 3) {  // closings

@@ -1,0 +1,499 @@
+// A body whose elements are divided: state, motion, supports and loads go on to the parts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <functional>
+
+#include "physics/balance.h"
+#include "physics/descent.h"
+#include "physics/test_bodies.h"
+#include "topology/box_mesh.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::ChangeSet;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::MeshEdit;
+using topology::NodeId;
+
+const NeoHookean law{1.5e3, 4e3};
+
+struct Edge {
+    ElementId element;
+    NodeId a, b;
+};
+
+Edge random_edge(const Mesh& mesh, test::Random& random) {
+    const auto elements = living_elements(mesh);
+    const ElementId e = elements[random.below(elements.size())];
+    const std::size_t a = random.below(4), b = (a + 1 + random.below(3)) % 4;
+    return {e, mesh.corners(e)[a], mesh.corners(e)[b]};
+}
+
+ChangeSet bisect(Mesh& mesh, const Edge& edge, double t) {
+    MeshEdit edit(mesh);
+    edit.bisect(edge.element, edge.a, edge.b, t);
+    return edit.commit();
+}
+
+void take_back(Mesh& mesh, Model& model, const ChangeSet& changes) {
+    replay(mesh, inverse(changes));
+    model.apply(inverse(changes));
+}
+
+/// The edge of an element with the two nodes that are where `is_end` says.
+template <class Predicate>
+Edge edge_where(const Mesh& mesh, Predicate is_edge) {
+    for (const ElementId e : living_elements(mesh))
+        for (const NodeId a : mesh.corners(e))
+            for (const NodeId b : mesh.corners(e))
+                if (a != b && is_edge(mesh.rest_position(a), mesh.rest_position(b)))
+                    return {e, a, b};
+    ADD_FAILURE() << "no such edge";
+    return {};
+}
+
+void open_all_inner_faces(Mesh& mesh, MeshEdit& edit) {
+    for (const ElementId e : living_elements(mesh))
+        for (int f = 0; f < 4; ++f)
+            if (mesh.neighbor({e, f}).is_valid()) edit.open({e, f});
+}
+
+Mesh cube() { return Mesh::build(test::jittered_cube(2, 0.2, 3)).mesh; }
+
+Mesh one_tetrahedron() { return Mesh::build(test::mesh_families().front().data).mesh; }
+
+/// Outer forces by node on the resting body, from one step.
+std::vector<Vec3> loads_at_rest(Model& model) {
+    set_state(model, rest_state(model.mesh()));
+    const double dt = 1e-4;
+    model.integrate(0.0, dt);
+    std::vector<Vec3> forces;
+    for (std::size_t n = 0; n < model.masses().size(); ++n)
+        forces.push_back(model.masses()[n] / dt * model.velocities()[n]);
+    return forces;
+}
+
+Vec3 sum_of(const std::vector<Vec3>& vectors) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& v : vectors) sum += v;
+    return sum;
+}
+
+// With m_e the mass of an element round the edge, the body loses sum of m_e/4 t (1 - t)
+// (x_b - x_a) x (v_b - v_a) of angular and sum of m_e/4 t (1 - t) |v_b - v_a|^2 / 2 of kinetic
+// energy: what the ends' motion relative to each other has above that of the point between them.
+TEST(Bisection, ChangesTheMotionByTheFormulaForLumpedMasses) {
+    for (const auto* family : test::tetrahedral_families()) {
+        SCOPED_TRACE(family->name);
+        const auto table = table_of_all_materials();
+        const auto data = with_regions(family->data, table.materials.size());
+        test::Random random(11);
+        for (int i = 0; i < 30; ++i) {
+            Mesh mesh = Mesh::build(data).mesh;
+            Surroundings s;
+            s.gravity = {1.0, -2.0, 3.0};
+            Model model(mesh, table, s);
+            set_state(model, random_state(mesh, random, 0.02, 1.0));
+            const Edge edge = random_edge(mesh, random);
+            const double t = random.uniform(0.05, 0.95);
+
+            double quarter = 0.0;
+            for (const ElementId e : living_elements(mesh))
+                if (mesh.corner_of(e, edge.a) >= 0 && mesh.corner_of(e, edge.b) >= 0)
+                    quarter +=
+                        0.25 * model.density(mesh.region(e)) * model.element_result(e).volume;
+            const auto at = [](auto values, NodeId n) { return values[n.index()]; };
+            const Vec3 dx = at(model.positions(), edge.b) - at(model.positions(), edge.a);
+            const Vec3 dv = at(model.velocities(), edge.b) - at(model.velocities(), edge.a);
+            const Vec3 x =
+                (1.0 - t) * at(model.positions(), edge.a) + t * at(model.positions(), edge.b);
+            const Vec3 v =
+                (1.0 - t) * at(model.velocities(), edge.a) + t * at(model.velocities(), edge.b);
+            const Balance before(model);
+
+            const ChangeSet changes = bisect(mesh, edge, t);
+            ASSERT_EQ(changes.nodes_added.size(), 1u);
+            model.apply(changes);
+            const Balance after(model);
+            const NodeId born = changes.nodes_added.front().id;
+            EXPECT_EQ(at(model.positions(), born), x);
+            EXPECT_EQ(at(model.velocities(), born), v);
+            EXPECT_NEAR(at(model.masses(), born), quarter, 1e-13 * quarter);
+            const Totals &p = before.totals, &q = after.totals;
+            EXPECT_NEAR(q.kinetic_energy - p.kinetic_energy,
+                        -0.5 * quarter * t * (1.0 - t) * dv.squaredNorm(),
+                        round_off * p.kinetic_energy);
+            EXPECT_LE(
+                (q.angular_momentum - p.angular_momentum + quarter * t * (1.0 - t) * dx.cross(dv))
+                    .norm(),
+                round_off * before.angular_scale);
+            EXPECT_NEAR(q.mass, p.mass, round_off * p.mass);
+            EXPECT_NEAR(q.rest_volume, p.rest_volume, round_off * p.rest_volume);
+            EXPECT_LE((q.momentum - p.momentum).norm(), round_off * before.momentum_scale);
+            EXPECT_LE((after.moment_of_mass - before.moment_of_mass).norm(),
+                      round_off * before.moment_scale);
+            EXPECT_NEAR(q.gravity_energy, p.gravity_energy, round_off * 4.0 * before.moment_scale);
+        }
+    }
+}
+
+TEST(Bisection, GivesThePartsTheStateOfTheWhole) {
+    for (const NamedLaw& named : test_laws()) {
+        SCOPED_TRACE(named.name);
+        const double modulus = std::visit(
+            [](const auto& l) { return l.rest_lambda() + 2.0 * l.rest_mu(); }, named.law);
+        test::Random random(12);
+        for (int i = 0; i < 30; ++i) {
+            Mesh mesh = one_tetrahedron();
+            Model model(mesh, table_of_one_law(named.law));
+            set_state(model, random_state(mesh, random, 0.1, 1.0));
+            const auto deformation_gradient = [&](ElementId e) {
+                Mat3 now, rest;
+                for (int k = 0; k < 3; ++k) {
+                    const auto corners = mesh.corners(e);
+                    const NodeId n = corners[static_cast<std::size_t>(k) + 1];
+                    now.col(k) =
+                        model.positions()[n.index()] - model.positions()[corners[0].index()];
+                    rest.col(k) = mesh.rest_position(n) - mesh.rest_position(corners[0]);
+                }
+                return (now * rest.inverse()).eval();
+            };
+            const ElementId e(0);
+            const ElementResult whole = model.element_result(e);
+            const Mat3 F = deformation_gradient(e);
+            const ChangeSet changes =
+                bisect(mesh, random_edge(mesh, random), random.uniform(0.2, 0.8));
+            model.apply(changes);
+            ASSERT_EQ(living_elements(mesh).size(), 2u);
+            double volume = 0.0, energy = 0.0;
+            for (const ElementId part : living_elements(mesh)) {
+                const ElementResult result = model.element_result(part);
+                volume += result.volume;
+                energy += result.energy;
+                EXPECT_LE((deformation_gradient(part) - F).norm(), 1e-12);
+                EXPECT_NEAR(result.volume_ratio, whole.volume_ratio, 1e-12);
+                EXPECT_LE((result.cauchy_stress - whole.cauchy_stress).norm(),
+                          1e-12 * (whole.cauchy_stress.norm() + modulus));
+                EXPECT_NEAR(result.energy / result.volume, whole.energy / whole.volume,
+                            1e-12 * (whole.energy / whole.volume + modulus));
+            }
+            EXPECT_NEAR(volume, whole.volume, 1e-14 * whole.volume);
+            EXPECT_NEAR(energy, whole.energy, 1e-12 * (whole.energy + modulus * whole.volume));
+        }
+    }
+}
+
+// All the pieces of a face bear what it bore, and what was inside never bears anything.
+TEST(Bisection, KeepsTheForceAndMomentOfTractionAndPressure) {
+    const Vec3 traction(3.0, -2.0, 5.0);
+    const double pressure = 7.0;
+    for (const bool is_pressure : {false, true}) {
+        Mesh mesh = cube();
+        std::vector<FaceId> loaded;  // two sides that meet in an edge
+        for (const FaceId f : topology::boundary_faces(mesh))
+            for (const int c : {0, 2}) {
+                bool is_on_side = true;
+                for (int p = 0; p < 3; ++p)
+                    is_on_side &= mesh.rest_position(mesh.face_corner(f, p))[c] == 1.0;
+                if (is_on_side) loaded.push_back(f);
+            }
+        ASSERT_EQ(loaded.size(), 16u);
+        Surroundings s;
+        if (is_pressure)
+            s.loads.push_back({"gas", PressureLoad{loaded, pressure}, {}});
+        else
+            s.loads.push_back({"wind", TractionLoad{loaded, traction}, {}});
+        // So soft that elastic forces, whose sum is nothing but round-off, do not show.
+        Model model(mesh, table_of_one_law(NeoHookean{1e-3, 1e-3}), s);
+        test::Random random(13);
+        BodyState state = random_state(mesh, random, 0.05, 0.0);
+        const auto force_and_moment = [&] {
+            set_state(model, state);
+            Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+            const double dt = 1e-4;
+            model.integrate(0.0, dt);
+            for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
+                const Vec3 f = model.masses()[n] / dt * model.velocities()[n];
+                force += f;
+                moment += state.positions[n].cross(f);
+            }
+            return std::pair{force, moment};
+        };
+        const auto [force, moment] = force_and_moment();
+        if (!is_pressure) {
+            EXPECT_LE((force - 2.0 * traction).norm(), 1e-13);
+        }
+        for (int i = 0; i < 60; ++i) {
+            set_state(model, state);
+            MeshEdit edit(mesh);
+            for (std::size_t k = random.below(4) + 1; k > 0; --k) {
+                const Edge edge = random_edge(mesh, random);
+                edit.bisect(edge.element, edge.a, edge.b, random.uniform(0.3, 0.7));
+                if (random.below(3) == 0)
+                    for (int f = 0; f < 4; ++f)
+                        if (mesh.neighbor({edge.element, f}).is_valid())
+                            edit.open({edge.element, f});
+            }
+            model.apply(edit.commit());
+            state = state_of(model);
+            for (Vec3& v : state.velocities) v.setZero();
+            const auto [force_now, moment_now] = force_and_moment();
+            EXPECT_LE((force_now - force).norm(), 1e-12 * force.norm());
+            EXPECT_LE((moment_now - moment).norm(), 1e-12 * moment.norm());
+        }
+    }
+}
+
+/// A tetrahedron with one face under traction and a body force, and what it is to bear.
+struct LoadedTetrahedron {
+    Mesh mesh = one_tetrahedron();
+    Descent descent;
+    Model model;
+
+    explicit LoadedTetrahedron(int loaded_face)
+        : descent(mesh, {{}, {}, {{ElementId(0), loaded_face}}, {ElementId(0)}}),
+          model(mesh, table_of_one_law(law), surroundings()) {}
+
+    void apply(const ChangeSet& changes) {
+        model.apply(changes);
+        descent.follow(changes);
+        expect_loads_of_a_fresh_model();
+    }
+    void expect_loads_of_a_fresh_model() {
+        Model fresh(mesh, table_of_one_law(law), surroundings());
+        EXPECT_EQ(loads_at_rest(model), loads_at_rest(fresh));
+    }
+    Surroundings surroundings() const {
+        const Selections now = descent.now(mesh);
+        Surroundings s;
+        s.loads = {{"traction", TractionLoad{now.loaded_faces, {3.0, -2.0, 5.0}}, {}},
+                   {"pressure", PressureLoad{now.loaded_faces, 7.0}, {}},
+                   {"body force", BodyLoad{now.loaded_elements, {0.0, 1.0, 0.0}}, {}}};
+        return s;
+    }
+};
+
+// A face may go to the added element as a whole; the one that the kept element then has under its
+// number lies inside, and does not come to bear the load when a cut opens it.
+TEST(Bisection, DoesNotLoadAFaceThatItMade) {
+    for (int loaded_face = 0; loaded_face < 4; ++loaded_face)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < 4; ++j) {
+                if (i == j) continue;
+                for (const bool is_opened_at_once : {true, false}) {
+                    SCOPED_TRACE(testing::Message() << "face " << loaded_face << ", edge " << i
+                                                    << " to " << j << is_opened_at_once);
+                    LoadedTetrahedron body(loaded_face);
+                    const auto corners = body.mesh.corners(ElementId(0));
+                    const Edge edge{ElementId(0), corners[i], corners[j]};
+                    // Ids that are given out again are not mistaken for those they were before.
+                    const Edge other{ElementId(0), corners[j], corners[(i + 1) % 4]};
+                    if (other.a != other.b) {
+                        const ChangeSet undone = bisect(body.mesh, other, 0.5);
+                        body.model.apply(undone);
+                        take_back(body.mesh, body.model, undone);
+                        body.expect_loads_of_a_fresh_model();
+                    }
+                    MeshEdit edit(body.mesh);
+                    edit.bisect(edge.element, edge.a, edge.b, 0.25);
+                    if (is_opened_at_once) open_all_inner_faces(body.mesh, edit);
+                    body.apply(edit.commit());
+                    if (is_opened_at_once) continue;
+                    MeshEdit opening(body.mesh);
+                    open_all_inner_faces(body.mesh, opening);
+                    body.apply(opening.commit());
+                }
+            }
+}
+
+TEST(Bisection, CarriesLoadsThroughDivisionsOfParts) {
+    test::Random random(14);
+    for (int i = 0; i < 200; ++i) {
+        SCOPED_TRACE(i);
+        LoadedTetrahedron body(i % 4);
+        for (int k = 0; k < 3; ++k) {
+            MeshEdit edit(body.mesh);
+            for (int d = 0; d < 3; ++d) {
+                const Edge edge = random_edge(body.mesh, random);
+                edit.bisect(edge.element, edge.a, edge.b, random.uniform(0.3, 0.7));
+                // Removed at once: its parts remain.
+                if (edge.element == ElementId(0) && random.below(8) == 0) edit.remove(edge.element);
+            }
+            if (k > 0) open_all_inner_faces(body.mesh, edit);
+            body.apply(edit.commit());
+        }
+    }
+}
+
+// One edit that joins two faces again and divides an edge of them, before or after: who was merged
+// must not hide whose parts the pieces are.
+TEST(Bisection, AndJoiningInOneEditKeepsLoadsAndState) {
+    for (const bool is_divided_first : {false, true}) {
+        Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;  // two by a face
+        const FaceId shared = [&] {
+            for (int f = 0;; ++f)
+                if (mesh.neighbor({ElementId(0), f}).is_valid()) return FaceId{ElementId(0), f};
+        }();
+        const FaceId other = mesh.neighbor(shared);
+        MeshEdit opening(mesh);
+        opening.open(shared);
+        opening.commit();
+        const Vec3 traction(3.0, -2.0, 5.0);
+        std::vector<FaceId> loaded = topology::boundary_faces(mesh);
+        std::erase(loaded, shared);
+        std::erase(loaded, other);
+        Surroundings s;
+        s.loads = {{"wind", TractionLoad{loaded, traction}, {}}};
+        Model model(mesh, table_of_one_law(law), s);
+        const Vec3 force = sum_of(loads_at_rest(model));
+        const BodyState state = rest_state(mesh);
+        set_state(model, state);
+
+        MeshEdit edit(mesh);
+        const auto divide = [&](FaceId f, int from, int to) {
+            return edit.bisect(f.element, mesh.face_corner(f, from), mesh.face_corner(f, to), 0.5)
+                .node;
+        };
+        const auto position_in = [&](FaceId f, const Vec3& X) {
+            int p = 0;
+            while (mesh.rest_position(mesh.face_corner(f, p)) != X) ++p;
+            return p;
+        };
+        const Vec3 a = mesh.rest_position(mesh.face_corner(shared, 0)),
+                   b = mesh.rest_position(mesh.face_corner(shared, 1));
+        if (is_divided_first) {
+            divide(shared, 0, 1);
+            divide(other, position_in(other, a), position_in(other, b));
+        }
+        edit.close(shared, other);
+        if (!is_divided_first) divide(shared, 0, 1);
+        const ChangeSet changes = edit.commit();
+        model.apply(changes);
+        for (const NodeId n : nodes_where(mesh, [](const Vec3&) { return true; }))
+            EXPECT_EQ(model.positions()[n.index()], mesh.rest_position(n));
+        EXPECT_LE((sum_of(loads_at_rest(model)) - force).norm(), 1e-13 * force.norm());
+        set_state(model, rest_state(mesh));
+        take_back(mesh, model, changes);
+        EXPECT_EQ(state_of(model), state);
+        EXPECT_LE((sum_of(loads_at_rest(model)) - force).norm(), 1e-13 * force.norm());
+    }
+}
+
+TEST(Bisection, AddsNoForceToALoadOnNodes) {
+    Mesh mesh = cube();
+    const auto is_loaded = [](const Vec3& X) { return X.z() == 1.0; };
+    const auto loaded = nodes_where(mesh, is_loaded);
+    const Vec3 force(1.0, -2.0, 0.5);
+    Surroundings s;
+    s.loads.push_back({"hooks", NodalLoad{NodeSet(loaded), force, {}}, {}});
+    Model model(mesh, table_of_one_law(law), s);
+    const std::vector<Vec3> before = loads_at_rest(model);
+    const Vec3 total = static_cast<double>(loaded.size()) * force;
+    ASSERT_LE((sum_of(before) - total).norm(), 1e-12);
+
+    const ChangeSet changes = bisect(
+        mesh,
+        edge_where(mesh,
+                   [&](const Vec3& a, const Vec3& b) { return is_loaded(a) && is_loaded(b); }),
+        0.3);
+    model.apply(changes);
+    const NodeId born = changes.nodes_added.front().id;
+    std::vector<Vec3> after = loads_at_rest(model);
+    EXPECT_LE(after[born.index()].norm(), 1e-11);  // elastic round-off
+    for (std::size_t n = 0; n < before.size(); ++n) EXPECT_LE((after[n] - before[n]).norm(), 1e-12);
+    // Neither has a copy of the new node, nor do copies of the others add to the whole.
+    MeshEdit edit(mesh);
+    open_all_inner_faces(mesh, edit);
+    const ChangeSet opened = edit.commit();
+    model.apply(opened);
+    after = loads_at_rest(model);
+    EXPECT_LE((sum_of(after) - total).norm(), 1e-12);
+    for (const auto& record : opened.nodes_added) {
+        const bool is_of_born = record.sources[0].node == born;
+        EXPECT_LE(is_of_born ? after[record.id.index()].norm() : 0.0, 1e-11);
+    }
+    take_back(mesh, model, opened);
+    take_back(mesh, model, changes);
+    EXPECT_EQ(loads_at_rest(model), before);
+}
+
+TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
+    const auto left = [](const Vec3& X) { return X.x() == 0.0; };
+    const auto right = [](const Vec3& X) { return X.x() == 1.0; };
+    const auto middle = [&](const Vec3& X) { return !left(X) && !right(X); };
+    struct Case {
+        std::function<bool(const Vec3&)> a, b;
+        bool is_held;
+    };
+    for (const Case& c : {Case{left, left, true}, Case{right, right, true},
+                          Case{left, middle, false}, Case{middle, right, false}}) {
+        Mesh mesh = cube();
+        Surroundings s;
+        s.gravity = {0.0, 0.0, -9.81};
+        s.supports = {holding("left", NodeSet(nodes_where(mesh, left))),
+                      holding("right", NodeSet(nodes_where(mesh, right)))};
+        Model model(mesh, table_of_one_law(law), s);
+        const ChangeSet changes = bisect(
+            mesh, edge_where(mesh, [&](const Vec3& a, const Vec3& b) { return c.a(a) && c.b(b); }),
+            0.5);
+        model.apply(changes);
+        MeshEdit edit(mesh);
+        open_all_inner_faces(mesh, edit);  // copies are held as what they are copies of
+        const ChangeSet opened = edit.commit();
+        model.apply(opened);
+        double time = 0.0;
+        step(model, time, 1e-3);
+        const NodeId born = changes.nodes_added.front().id;
+        std::vector<NodeId> copies{born};
+        for (const auto& record : opened.nodes_added)
+            if (record.sources[0].node == born) copies.push_back(record.id);
+        ASSERT_GT(copies.size(), 1u);
+        for (const NodeId n : copies)
+            EXPECT_EQ(model.velocities()[n.index()].z() == 0.0, c.is_held);
+    }
+}
+
+TEST(Supports, IndexedEditByEditEqualFreshOnes) {
+    for (const auto* family : test::tetrahedral_families()) {
+        SCOPED_TRACE(family->name);
+        Mesh mesh = Mesh::build(family->data).mesh;
+        const auto all = nodes_where(mesh, [](const Vec3&) { return true; });
+        test::Random random(15);
+        std::vector<Support> supports(3);
+        for (std::size_t i = 0; i < 3; ++i) {
+            std::vector<NodeId> some;
+            for (const NodeId n : all)
+                if (random.below(2) == 0) some.push_back(n);
+            supports[i] = holding("support " + std::to_string(i), NodeSet(some));
+            for (std::size_t c = 0; c < 3; ++c) supports[i].components[c] = c == i;
+        }
+        Supports followed(mesh, supports);
+        const auto apply = [&](const ChangeSet& changes) {
+            followed.apply(mesh, changes);
+            for (Support& support : supports) support.nodes.apply(changes);
+            const Supports fresh(mesh, supports);
+            for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
+                const auto *a = followed.of_node(n), *b = fresh.of_node(n);
+                ASSERT_EQ(a == nullptr, b == nullptr) << n;
+                ASSERT_TRUE(!a || *a == *b) << n;
+            }
+        };
+        for (int i = 0; i < 200 && mesh.num_elements() > 0; ++i) {
+            const ChangeSet changes = test::random_edit(mesh, random);
+            apply(changes);
+            if (random.below(3) > 0) continue;
+            replay(mesh, inverse(changes));
+            apply(inverse(changes));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::physics
