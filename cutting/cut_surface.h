@@ -27,6 +27,9 @@ class CutSurface {
     /// Whether the border with which an earlier sweep ended, and this one begins, runs through the
     /// triangle.
     virtual bool starts_inside(const std::array<MovingPoint, 3>&) const { return false; }
+    /// Whether the cut, if it goes on, does so from within `reach` of the point (as it is after the
+    /// step).
+    virtual bool ends_near(const Vec3&, double /*reach*/) const { return true; }
 };
 
 }  // namespace incise::cutting

@@ -92,7 +92,7 @@ void Sides::place_elements_on_cut() {
     std::priority_queue<Bond> bonds;
     const auto add = [&](FaceId from, FaceId to) {
         if (is_placed(from.element) && !is_placed(to.element))
-            bonds.push({rest_area(mesh_, from), from});
+            bonds.push({topology::rest_area(mesh_, from), from});
     };
     for (const FaceId face : faces_) {
         add(face, mesh_.neighbor(face));
@@ -201,13 +201,6 @@ bool Sides::is_parted(FaceId f) const {
 std::vector<FaceId> parted_faces(const Mesh& mesh, const CutFront& front,
                                  const std::vector<ElementId>& touched) {
     return Sides(mesh, front).parted_faces(touched);
-}
-
-double rest_area(const Mesh& mesh, FaceId f) {
-    const auto at = [&](int p) -> const Vec3& {
-        return mesh.rest_position(mesh.face_corner(f, p));
-    };
-    return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
 }
 
 }  // namespace incise::cutting

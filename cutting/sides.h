@@ -23,7 +23,4 @@ namespace incise::cutting {
 std::vector<topology::FaceId> parted_faces(const topology::Mesh& mesh, const CutFront& front,
                                            const std::vector<topology::ElementId>& touched);
 
-/// Area of a triangular face at rest, m2.
-double rest_area(const topology::Mesh& mesh, topology::FaceId f);
-
 }  // namespace incise::cutting

@@ -32,6 +32,10 @@ constexpr double smallest_snap = 1e-7;
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
 
+/// How many edge lengths away from where a sweep has ended nothing more comes of it: elements that
+/// are cut in part hang on nodes nearer than that.
+constexpr double reach_of_front = 4.0;
+
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
 
@@ -70,12 +74,15 @@ class Splitter {
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
         for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
         for (const FaceId f : parted_faces(mesh_, front_, touched_)) {
-            report_.cut_area += rest_area(mesh_, f);
+            report_.cut_area += topology::rest_area(mesh_, f);
             ++report_.faces_opened;
             edit_.open(f);
         }
         Split result{edit_.commit(), report_};
         front_.follow(result.changes);
+        front_.forget_unless([&](NodeId n, double reach) {
+            return surface_.ends_near(final_position(n, result.changes), reach_of_front * reach);
+        });
         return result;
     }
 
@@ -104,6 +111,15 @@ class Splitter {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
         return new_points_[n.index() - num_old_nodes_];
+    }
+
+    /// Of a copy, where its source is.
+    Vec3 final_position(NodeId n, const topology::ChangeSet& changes) const {
+        if (n.index() >= num_old_nodes_ + new_points_.size()) {
+            const std::size_t row = n.index() - changes.node_capacity_before;
+            n = changes.nodes_added[row].sources[0].node;
+        }
+        return point(n)[1];
     }
 
     int generation(NodeId n) const {

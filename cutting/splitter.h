@@ -14,7 +14,7 @@
 namespace incise::cutting {
 
 /// Measured: docs/cutting.md.
-inline constexpr double default_snap = 0.25;
+inline constexpr double default_snap = 0.2;
 
 struct SplitOptions {
     /// A node nearer to the surface than this share of an edge that the surface crosses counts as

@@ -59,7 +59,7 @@ double step_length(const topology::Mesh& mesh) {
 }
 
 std::map<int, double> min_step_lengths(double snap, const std::map<int, double>& step_length) {
-    const double share = std::min(2.0 * snap, 0.5);
+    const double share = std::min(2.5 * snap, 0.5);
     std::map<int, double> least;
     if (share > 0.0)
         for (const auto& [region, length] : step_length) least[region] = share * length;

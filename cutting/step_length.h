@@ -21,7 +21,7 @@ double own_step_length(const std::array<Vec3, 4>& corners);
 double step_length(const topology::Mesh& mesh);
 
 /// The limits by which cuts leave a body at least a share of its stable step, however many there
-/// are: that share is twice what nodes may be off the surface, and at most a half.
+/// are: that share is 2.5 times what nodes may be off the surface, and at most a half.
 /// @param step_length  by region: the body's stable step before the first cut times the speed of
 ///                     waves in the region
 std::map<int, double> min_step_lengths(double snap, const std::map<int, double>& step_length);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "cutting/swept_edge.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace incise::cutting {
@@ -28,6 +29,16 @@ bool SweptEdge::starts_inside(const std::array<MovingPoint, 3>& triangle) const 
     for (const MovingSegment& s : segments_)
         is_odd ^= pierces(s.a[0], s.b[0], {triangle[0][0], triangle[1][0], triangle[2][0]});
     return is_odd;
+}
+
+bool SweptEdge::ends_near(const Vec3& x, double reach) const {
+    for (const MovingSegment& s : segments_) {
+        const Vec3 along = s.b[1] - s.a[1], from = x - s.a[1];
+        const double square = along.squaredNorm();
+        const double t = square > 0.0 ? std::clamp(from.dot(along) / square, 0.0, 1.0) : 0.0;
+        if ((from - t * along).squaredNorm() < reach * reach) return true;
+    }
+    return false;
 }
 
 }  // namespace incise::cutting

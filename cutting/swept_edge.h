@@ -18,6 +18,7 @@ class SweptEdge final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
     bool starts_inside(const std::array<MovingPoint, 3>& triangle) const override;
+    bool ends_near(const Vec3& x, double reach) const override;
 
   private:
     std::vector<MovingSegment> segments_;

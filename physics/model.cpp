@@ -264,9 +264,15 @@ void Model::apply(const ChangeSet& changes) {
     loads_.apply(changes, loaded_body(), touched);
 }
 
+double Model::own_step(ElementId e) const {
+    const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
+    const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());
+    return 2.0 / std::sqrt(stiffness / shares.mass);
+}
+
 Totals Model::totals() const {
     Sum mass, volume, kinetic, elastic, gravity;
-    std::array<Sum, 3> momentum, angular;
+    std::array<Sum, 3> momentum, angular, moment;
     for (std::size_t n = 0; n < masses_.size(); ++n) {
         const double m = masses_[n];
         if (m == 0.0) continue;
@@ -278,6 +284,7 @@ Totals Model::totals() const {
         for (int c = 0; c < 3; ++c) {
             momentum[static_cast<std::size_t>(c)] += p[c];
             angular[static_cast<std::size_t>(c)] += l[c];
+            moment[static_cast<std::size_t>(c)] += m * positions_[n][c];
         }
     }
     std::vector<double> energies;
@@ -296,6 +303,8 @@ Totals Model::totals() const {
     for (int c = 0; c < 3; ++c) {
         t.momentum[c] = momentum[static_cast<std::size_t>(c)].value();
         t.angular_momentum[c] = angular[static_cast<std::size_t>(c)].value();
+        if (t.mass > 0.0)
+            t.centre_of_mass[c] = moment[static_cast<std::size_t>(c)].value() / t.mass;
     }
     return t;
 }

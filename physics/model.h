@@ -33,6 +33,7 @@ struct Totals {
     double gravity_energy = 0.0;  ///< J, zero at the origin
     Vec3 momentum = Vec3::Zero();
     Vec3 angular_momentum = Vec3::Zero();
+    Vec3 centre_of_mass = Vec3::Zero();  ///< m
 };
 
 /// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
@@ -76,6 +77,9 @@ class Model {
 
     /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
     double stable_step() const { return stable_step_.value(); }
+
+    /// The same bound for the element alone, were its nodes no other's, seconds.
+    double own_step(ElementId e) const;
 
     /// The element with the lowest id at the node that sets the stable step.
     ElementId limiting_element() const {

@@ -3,35 +3,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "topology/geometry.h"
+#include "topology/mesh_metrics.h"
 
 namespace incise::sim {
 
-Ledger::Ledger(const physics::Model& model) : model_(model), initial_(account()) {}
+namespace {
+
+double least_altitude(const topology::Mesh& mesh, topology::ElementId e) {
+    std::vector<Vec3> x;
+    for (const topology::NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+    return topology::min_altitude(mesh.kind(e), x);
+}
+
+/// The elements of before that were divided, and those that came of it.
+struct Divided {
+    std::size_t num_parents = 0;
+    double least_altitude = std::numeric_limits<double>::infinity();
+};
+
+Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
+    std::vector<topology::ElementId> parents;
+    Divided divided;
+    for (const topology::ElementRecord& record : changes.elements_added) {
+        if (!record.parent.is_valid()) continue;
+        divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, record.id));
+        if (record.parent.index() < changes.element_capacity_before)
+            parents.push_back(record.parent);
+    }
+    std::sort(parents.begin(), parents.end());
+    parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
+    for (const topology::ElementId e : parents)
+        if (mesh.is_alive(e))
+            divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, e));
+    divided.num_parents = parents.size();
+    return divided;
+}
+
+double least_altitude(const topology::Mesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i); mesh.is_alive(e))
+            least = std::min(least, least_altitude(mesh, e));
+    return least;
+}
+
+}  // namespace
+
+Ledger::Ledger(const physics::Model& model)
+    : model_(model),
+      counts_(count()),
+      initial_min_altitude_(least_altitude(model.mesh())),
+      initial_(account()) {}
+
+Ledger::Counts Ledger::count() const {
+    const topology::Mesh& mesh = model_.mesh();
+    return {mesh.num_nodes(), mesh.num_elements(), topology::components(mesh).count};
+}
 
 Account Ledger::account() const {
-    const topology::Mesh& mesh = model_.mesh();
-    return {mesh.num_nodes(), mesh.num_elements(), topology::components(mesh).count,
-            model_.totals(), model_.stable_step()};
+    return {counts_.nodes, counts_.elements, counts_.components, model_.totals(),
+            model_.stable_step()};
 }
 
 const EditRecord& Ledger::record(double time, std::uint64_t step, const std::string& tool,
-                                 const topology::ChangeSet& changes, const Account& before,
+                                 const cutting::Split& done, const Account& before,
                                  double mass_removed) {
+    const topology::ChangeSet& changes = done.changes;
+    const Divided divided = divided_elements(model_.mesh(), changes);
     EditRecord edit;
     edit.time = time;
     edit.step = step;
     edit.tool = tool;
     edit.elements_removed = changes.elements_removed.size();
     edit.elements_added = changes.elements_added.size();
-    const topology::Mesh& mesh = model_.mesh();
-    for (const topology::FacePair& pair : changes.faces_opened)
-        edit.faces_opened += mesh.is_alive(pair.a.element) && mesh.is_alive(pair.b.element);
+    edit.elements_crossed = done.report.elements_crossed;
+    edit.elements_split = divided.num_parents;
+    edit.faces_opened = done.report.faces_opened;
     edit.nodes_added = changes.nodes_added.size();
+    edit.nodes_duplicated = edit.nodes_added - done.report.edges_divided;
     edit.nodes_removed = changes.nodes_removed.size();
+    edit.nodes_snapped = done.report.nodes_snapped;
+    edit.cut_area = done.report.cut_area;
+    if (divided.num_parents > 0)
+        edit.min_altitude_ratio = divided.least_altitude / initial_min_altitude_;
     edit.mass_removed = mass_removed;
     edit.before = before;
+    counts_ = count();
     edit.after = account();
     mass_removed_ += mass_removed;
     const auto energy = [](const Account& a) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "cutting/splitter.h"
 #include "physics/model.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
@@ -25,10 +27,20 @@ struct EditRecord {
     double time = 0.0;
     std::uint64_t step = 0;
     std::string tool;
-    std::size_t elements_removed = 0, elements_split = 0, elements_added = 0;
-    std::size_t faces_opened = 0;  ///< between elements that live on
-    std::size_t nodes_added = 0, nodes_removed = 0;
-    double mass_removed = 0.0;  ///< kg: density times rest volume of the removed elements
+    std::size_t elements_removed = 0;
+    std::size_t elements_crossed = 0;  ///< by the surface of a cut that splits
+    std::size_t elements_split = 0;    ///< of these, the ones that were divided
+    std::size_t elements_added = 0;
+    std::size_t faces_opened = 0;      ///< between elements that live on
+    std::size_t nodes_added = 0;       ///< of both kinds:
+    std::size_t nodes_duplicated = 0;  ///< copies, where nodes were divided
+    std::size_t nodes_removed = 0;
+    std::size_t nodes_snapped = 0;  ///< that counted as on the cut, though only near it
+    double cut_area = 0.0;          ///< of one side of the opened faces, at rest, m2
+    double mass_removed = 0.0;      ///< kg: density times rest volume of the removed elements
+    /// Least altitude of the elements that were divided and of those that came of it, over the
+    /// least of the mesh at the start; not a number if none were.
+    double min_altitude_ratio = std::numeric_limits<double>::quiet_NaN();
     Account before, after;
 };
 
@@ -36,11 +48,12 @@ class Ledger {
   public:
     explicit Ledger(const physics::Model& model);
 
-    /// The body as it is now. Cost: O(#nodes + #elements).
+    /// The body as the model has it, edits counted up to the last one booked: between an edit of
+    /// the mesh and the model's following it, the body of before. Cost: O(#nodes + #elements).
     Account account() const;
     /// Books an edit; called after the model has followed it.
     const EditRecord& record(double time, std::uint64_t step, const std::string& tool,
-                             const topology::ChangeSet& changes, const Account& before,
+                             const cutting::Split& done, const Account& before,
                              double mass_removed);
 
     const std::vector<EditRecord>& edits() const { return edits_; }
@@ -55,7 +68,15 @@ class Ledger {
     double energy_error() const;
 
   private:
+    struct Counts {
+        std::size_t nodes, elements;
+        int components;
+    };
+    Counts count() const;
+
     const physics::Model& model_;
+    Counts counts_;
+    double initial_min_altitude_;
     Account initial_;
     std::vector<EditRecord> edits_;
     double mass_removed_ = 0.0, energy_removed_ = 0.0;

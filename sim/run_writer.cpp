@@ -36,6 +36,7 @@ Json to_json(const Account& account) {
             {"elastic_energy", account.totals.elastic_energy},
             {"momentum", to_json(account.totals.momentum)},
             {"angular_momentum", to_json(account.totals.angular_momentum)},
+            {"centre_of_mass", to_json(account.totals.centre_of_mass)},
             {"stable_step", account.stable_step}};
 }
 
@@ -44,12 +45,17 @@ Json to_json(const EditRecord& edit) {
             {"step", edit.step},
             {"tool", edit.tool},
             {"elements_removed", edit.elements_removed},
+            {"elements_crossed", edit.elements_crossed},
             {"elements_split", edit.elements_split},
             {"elements_added", edit.elements_added},
             {"faces_opened", edit.faces_opened},
             {"nodes_added", edit.nodes_added},
+            {"nodes_duplicated", edit.nodes_duplicated},
             {"nodes_removed", edit.nodes_removed},
+            {"nodes_snapped", edit.nodes_snapped},
+            {"cut_area", edit.cut_area},
             {"mass_removed", edit.mass_removed},
+            {"min_altitude_ratio", edit.min_altitude_ratio},
             {"before", to_json(edit.before)},
             {"after", to_json(edit.after)}};
 }
@@ -99,18 +105,22 @@ std::vector<std::pair<std::string, double>> history_row(const Simulation& simula
 
 std::vector<std::pair<std::string, double>> summary_quantities(const Simulation& simulation) {
     auto quantities = history_row(simulation);
-    std::size_t removed = 0, opened = 0;
-    double mass_removed = 0.0;
+    std::size_t removed = 0, split = 0, added = 0, opened = 0;
+    double cut_area = 0.0, mass_removed = 0.0;
     for (const EditRecord& edit : simulation.ledger().edits()) {
         removed += edit.elements_removed;
+        split += edit.elements_split;
+        added += edit.elements_added;
         opened += edit.faces_opened;
+        cut_area += edit.cut_area;
         mass_removed += edit.mass_removed;
     }
     const Ledger& ledger = simulation.ledger();
     append(quantities, run_quantities,
            std::array{simulation.model().totals().gravity_energy,
                       static_cast<double>(ledger.edits().size()), static_cast<double>(removed),
-                      static_cast<double>(opened), mass_removed, ledger.mass_error(),
+                      static_cast<double>(split), static_cast<double>(added),
+                      static_cast<double>(opened), cut_area, mass_removed, ledger.mass_error(),
                       ledger.energy_error()});
     return quantities;
 }
@@ -192,7 +202,8 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     summary["edits"] = simulation.ledger().edits().size();
     for (const auto& [name, value] : quantities) summary[name] = value;
     for (const char* count :
-         {"step", "nodes", "elements", "components", "edits", "elements_removed", "faces_opened"})
+         {"step", "nodes", "elements", "components", "edits", "elements_removed", "elements_split",
+          "elements_added", "faces_opened"})
         if (summary.contains(count)) summary[count] = summary[count].get<std::int64_t>();
     summary["frames"] = num_frames();
     summary["wall_time"] = outcome.wall_time;

@@ -138,9 +138,25 @@ struct Carver {
     std::variant<SphereShape, CapsuleShape, BoxShape> shape;
 };
 
-/// Opens the faces that its edge sweeps across.
+enum class CutMode { split, separate };
+
+/// Cuts along what its edge sweeps.
 struct Blade {
     std::vector<Vec3> edge;  ///< polyline in the tool's frame, at least two points
+    CutMode mode = CutMode::split;
+    std::optional<double> snap;  ///< of splitting: see cutting::SplitOptions
+};
+
+/// The points x with (x - point) . normal = 0.
+struct PlaneSpec {
+    Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+};
+
+/// Splits all at once, when its time comes, along a plane or the triangulated surface of a file.
+struct Cut {
+    std::variant<PlaneSpec, std::filesystem::path> along;
+    double scale = 1.0;  ///< all coordinates of the surface are multiplied by it
+    std::optional<double> snap;
 };
 
 /// Where a tool's frame is: p -> at + R(axis, angle) p.
@@ -150,10 +166,10 @@ struct Pose {
     double angle = 0.0;         ///< radians
 };
 
-/// A tool is there from the first to the last key of its path.
+/// A tool is there from the first to the last key of its path; a cut has one key, its time.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, Blade> kind;
+    std::variant<Carver, Blade, Cut> kind;
     std::vector<TimeKey<Pose>> path;  ///< at least one key, for a blade two
 };
 

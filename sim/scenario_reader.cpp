@@ -34,17 +34,6 @@ constexpr double max_box_elements = 1e8;
 /// More frames than this are more likely a slip than a wish.
 constexpr double many_frames = 1e5;
 
-void check_mesh_file(const TableReader& mesh, const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        mesh.error("file", "there is no file " + file.string() +
-                               " (paths are relative to the scenario's folder)");
-    else if (std::filesystem::is_directory(file, error))
-        mesh.error("file", file.string() + " is a folder, not a mesh file");
-    else if (!std::ifstream(file))
-        mesh.error("file", file.string() + " cannot be read; check its permissions");
-}
-
 BoxMeshSpec read_box_mesh(const TableReader& box) {
     BoxMeshSpec spec;
     box.require("size", "edge lengths, as in size = [0.1, 0.1, 0.4]");
@@ -86,13 +75,31 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     const double end_time = scenario.dynamics.end_time;
     scenario.constraints = read_constraints(root, end_time);
     scenario.loads = read_loads(root, end_time);
-    scenario.tools = read_tools(root, end_time);
+    scenario.tools = read_tools(root, scenario.folder, end_time);
     scenario.output = read_output(root, end_time);
     scenario.expect = read_expectations(root, scenario.constraints);
     return scenario;
 }
 
 }  // namespace
+
+std::filesystem::path read_file_name(const TableReader& table, std::string_view key,
+                                     const std::filesystem::path& folder, const std::string& kind) {
+    const std::string name = table.text(key);
+    const std::filesystem::path file = folder / name;
+    std::error_code error;
+    if (name.empty()) {
+        if (table.is_text(key)) table.error(key, "is empty: name a " + kind);
+    } else if (!std::filesystem::exists(file, error)) {
+        table.error(key, "there is no file " + file.string() +
+                             " (paths are relative to the scenario's folder)");
+    } else if (std::filesystem::is_directory(file, error)) {
+        table.error(key, file.string() + " is a folder, not a " + kind);
+    } else if (!std::ifstream(file)) {
+        table.error(key, file.string() + " cannot be read; check its permissions");
+    }
+    return file;
+}
 
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder) {
     MeshSpec spec;
@@ -101,12 +108,7 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     if (!mesh) return spec;
     const auto source = mesh->one_of({"file", "box"});
     if (source == "file") {
-        const std::string file = mesh->text("file");
-        spec.source = folder / file;
-        if (!file.empty())
-            check_mesh_file(*mesh, folder / file);
-        else if (mesh->is_text("file"))
-            mesh->error("file", "is empty: name a mesh file");
+        spec.source = read_file_name(*mesh, "file", folder, "mesh file");
     } else if (const auto box = mesh->table("box", {box_keys}); source == "box" && box) {
         spec.source = read_box_mesh(*box);
     }

@@ -19,7 +19,9 @@ DynamicsSpec read_dynamics(const TableReader& root);
 /// @param end_time  later keys are warned of; not above 0 if it is not known
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time);
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
-std::vector<ToolSpec> read_tools(const TableReader& root, double end_time);
+/// @param folder  what the names of surface files are relative to
+std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
+                                 double end_time);
 OutputSpec read_output(const TableReader& root, double end_time);
 /// @param constraints  whose reactions are among the quantities
 std::vector<Expectation> read_expectations(const TableReader& root,
@@ -30,6 +32,12 @@ std::vector<Expectation> read_expectations(const TableReader& root,
 /// columns. Adds it to `used`.
 std::string read_name(const TableReader& table, const std::string& fallback,
                       std::vector<std::string>& used);
+
+/// A file named relative to the scenario's folder. Reports a name that is empty, and a file that is
+/// not there or cannot be read.
+/// @param kind  such as "mesh file"
+std::filesystem::path read_file_name(const TableReader& table, std::string_view key,
+                                     const std::filesystem::path& folder, const std::string& kind);
 
 /// Reads an array of tables that each have a time and something else, in ascending order of time.
 /// Reports an empty array, and times that are negative, do not ascend or come after `end_time`.

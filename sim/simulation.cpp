@@ -2,10 +2,12 @@
 #include "sim/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <sstream>
 
-#include "cutting/cut_plan.h"
+#include "cutting/step_length.h"
 #include "sim/body.h"
 #include "topology/error.h"
 
@@ -19,6 +21,23 @@ topology::Mesh take_mesh(const MeshSpec& spec, std::vector<std::string>& warning
     return std::move(built.mesh);
 }
 
+/// By region, the stable step times the speed of waves there, m. The speed is that which relates
+/// the stable step of an element to the lengths in it.
+std::map<int, double> step_lengths(const physics::Model& model) {
+    const topology::Mesh& mesh = model.mesh();
+    std::map<int, double> lengths;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
+        std::array<Vec3, 4> x;
+        for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
+        const double speed = cutting::own_step_length(x) / model.own_step(e);
+        double& length = lengths[mesh.region(e)];
+        length = std::max(length, speed * model.stable_step());
+    }
+    return lengths;
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario)
@@ -26,8 +45,9 @@ Simulation::Simulation(const Scenario& scenario)
       mesh_(take_mesh(scenario.mesh, warnings_)),
       model_(mesh_, build_materials(scenario.materials, mesh_, warnings_),
              build_surroundings(scenario, mesh_)),
-      ledger_(model_),
-      tools_(scenario.tools.begin(), scenario.tools.end()) {
+      ledger_(model_) {
+    const auto step_length = step_lengths(model_);
+    for (const ToolSpec& spec : scenario.tools) tools_.emplace_back(spec, step_length, warnings_);
     step_limit();  // a fixed step that is too large is refused before anything is written
 }
 
@@ -44,29 +64,29 @@ void Simulation::step() {
 
     model_.integrate(from, to - from);
 
-    const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions()};
-    std::vector<cutting::CutPlan> plans;
-    for (const Tool& tool : tools_) plans.push_back(tool.plan(tissue, from, to));
-
     time_ = to;
     last_step_ = to - from;
     ++num_steps_;
-    for (std::size_t t = 0; t < tools_.size(); ++t) cut(plans[t], tools_[t]);
+    for (Tool& tool : tools_) cut(tool, from, to);
 
     model_.compute_forces(time_);
     for (Observer* observer : observers_) observer->on_step(*this);
     tell_frame();
 }
 
-void Simulation::cut(const cutting::CutPlan& plan, const Tool& tool) {
-    if (plan.is_empty()) return;
+void Simulation::cut(Tool& tool, double from, double to) {
+    if (!tool.is_present(from, to)) return;
     const Account before = ledger_.account();
-    const topology::ChangeSet changes = cutting::execute(plan, mesh_);
+    const cutting::Split done = tool.cut(mesh_, previous_positions_, model_.positions(), from, to);
+    const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
+    topology::append_new_nodes(changes, previous_positions_);
+    for (Tool& other : tools_)
+        if (&other != &tool) other.follow(changes);
     const EditRecord& edit =
-        ledger_.record(time_, num_steps_, tool.name(), changes, before, mass_removed);
+        ledger_.record(time_, num_steps_, tool.name(), done, before, mass_removed);
     for (Observer* observer : observers_) observer->on_edit(*this, edit);
 }
 

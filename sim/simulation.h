@@ -59,7 +59,7 @@ class Simulation {
     };
     Interval next_step() const;
     double step_limit() const;
-    void cut(const cutting::CutPlan& plan, const Tool& tool);
+    void cut(Tool& tool, double from, double to);
     void tell_frame();
 
     Scenario scenario_;

@@ -2,9 +2,16 @@
 #include "sim/tool.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cutting/carver.h"
+#include "cutting/cut_plan.h"
+#include "cutting/plane.h"
 #include "cutting/separator.h"
+#include "cutting/step_length.h"
+#include "cutting/swept_edge.h"
+#include "cutting/triangle_surface.h"
+#include "io/surface_reader.h"
 
 namespace incise::sim {
 
@@ -22,7 +29,44 @@ cutting::CarverShape rigid(const Carver& carver) {
     return cutting::Cuboid{std::get<BoxShape>(carver.shape).size};
 }
 
+std::shared_ptr<const cutting::CutSurface> load_surface(const Cut& cut,
+                                                        std::vector<std::string>& warnings) {
+    if (const auto* plane = std::get_if<PlaneSpec>(&cut.along))
+        return std::make_shared<cutting::Plane>(plane->point, plane->normal);
+    const auto& path = std::get<std::filesystem::path>(cut.along);
+    io::SurfaceFile file = io::read_surface(path);
+    for (const auto& warning : file.warnings) warnings.push_back(path.string() + ": " + warning);
+    for (Vec3& x : file.surface.points) x *= cut.scale;
+    return std::make_shared<cutting::TriangleSurface>(file.surface);
+}
+
+double snap_of(const ToolSpec& spec) {
+    std::optional<double> snap;
+    if (const auto* blade = std::get_if<Blade>(&spec.kind)) snap = blade->snap;
+    if (const auto* cut = std::get_if<Cut>(&spec.kind)) snap = cut->snap;
+    return snap.value_or(cutting::default_snap);
+}
+
+/// Carries the plan out. Faces of removed elements are not counted as opened.
+cutting::Split carry_out(const cutting::CutPlan& plan, topology::Mesh& mesh) {
+    cutting::Split done{cutting::execute(plan, mesh), {}};
+    for (const topology::FacePair& pair : done.changes.faces_opened) {
+        if (!mesh.is_alive(pair.a.element) || !mesh.is_alive(pair.b.element)) continue;
+        ++done.report.faces_opened;
+        done.report.cut_area += topology::rest_area(mesh, pair.a);
+    }
+    return done;
+}
+
 }  // namespace
+
+Tool::Tool(const ToolSpec& spec, const std::map<int, double>& step_length,
+           std::vector<std::string>& warnings)
+    : spec_(spec) {
+    options_.snap = snap_of(spec);
+    options_.min_step_length = cutting::min_step_lengths(options_.snap, step_length);
+    if (const auto* cut = std::get_if<Cut>(&spec.kind)) surface_ = load_surface(*cut, warnings);
+}
 
 cutting::Pose Tool::pose(double time) const {
     const auto after =
@@ -42,22 +86,43 @@ bool Tool::is_present(double from, double to) const {
     return to > first && from < last;
 }
 
-cutting::CutPlan Tool::plan(const cutting::TissueMotion& tissue, double from, double to) const {
+cutting::Split Tool::cut(topology::Mesh& mesh, std::span<const Vec3> before,
+                         std::span<const Vec3> after, double from, double to) {
+    if (!is_present(from, to)) return {};
+    const cutting::TissueMotion tissue{mesh, before, after};
+    return std::visit([&](const auto& kind) { return cut_with(kind, mesh, tissue, from, to); },
+                      spec_.kind);
+}
+
+cutting::Split Tool::cut_with(const Carver& carver, topology::Mesh& mesh,
+                              const cutting::TissueMotion& tissue, double from, double to) {
     cutting::CutPlan plan;
-    if (!is_present(from, to)) return plan;
-    const cutting::Pose before = pose(from), after = pose(to);
-    if (const auto* carver = std::get_if<Carver>(&spec_.kind)) {
-        plan.elements_to_remove = cutting::covered_elements(tissue, rigid(*carver), before, after);
-    } else {
-        const auto& edge = std::get<Blade>(spec_.kind).edge;
-        std::vector<Vec3> edge_before, edge_after;
-        for (const Vec3& x : edge) {
-            edge_before.push_back(before.to_world(x));
-            edge_after.push_back(after.to_world(x));
-        }
-        plan.faces_to_open = cutting::faces_to_open(tissue, edge_before, edge_after);
-    }
-    return plan;
+    plan.elements_to_remove =
+        cutting::covered_elements(tissue, rigid(carver), pose(from), pose(to));
+    return carry_out(plan, mesh);
+}
+
+std::vector<Vec3> Tool::edge_at(const Blade& blade, double time) const {
+    const cutting::Pose at = pose(time);
+    std::vector<Vec3> edge;
+    for (const Vec3& x : blade.edge) edge.push_back(at.to_world(x));
+    return edge;
+}
+
+cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
+                              const cutting::TissueMotion& tissue, double from, double to) {
+    const auto before = edge_at(blade, from), after = edge_at(blade, to);
+    if (blade.mode == CutMode::split)
+        return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_);
+    cutting::CutPlan plan;
+    plan.faces_to_open = cutting::faces_to_open(tissue, before, after);
+    return carry_out(plan, mesh);
+}
+
+cutting::Split Tool::cut_with(const Cut&, topology::Mesh& mesh, const cutting::TissueMotion& tissue,
+                              double, double) {
+    cutting::CutFront front;
+    return cutting::split(mesh, tissue, *surface_, front, options_);
 }
 
 }  // namespace incise::sim

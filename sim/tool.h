@@ -1,31 +1,57 @@
-// A tool of the scenario in motion: where it is when, and what it plans to cut.
+// A tool of the scenario in motion: where it is when, and what it cuts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <map>
+#include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
-#include "cutting/cut_plan.h"
+#include "cutting/cut_front.h"
 #include "cutting/pose.h"
-#include "cutting/tissue_motion.h"
+#include "cutting/splitter.h"
 #include "sim/scenario.h"
+#include "topology/change_set.h"
+#include "topology/mesh.h"
 
 namespace incise::sim {
 
 /// Follows its path: position linear between keys, orientation along the shortest turn.
 class Tool {
   public:
-    explicit Tool(const ToolSpec& spec) : spec_(spec) {}
+    /// @param step_length  by region, what cuts keep a share of: see cutting::min_step_lengths
+    /// Throws InputError if the file of its surface cannot be read. Warnings name that file.
+    Tool(const ToolSpec& spec, const std::map<int, double>& step_length,
+         std::vector<std::string>& warnings);
 
     const std::string& name() const { return spec_.name; }
     cutting::Pose pose(double time) const;
     /// Whether it acts in the step (from, to], s: it is there from its first to its last key, a
     /// tool with one key in the step that contains it. The first step contains its start too.
     bool is_present(double from, double to) const;
-    /// What it cuts while it and the tissue move in [from, to]. Touches nothing.
-    cutting::CutPlan plan(const cutting::TissueMotion& tissue, double from, double to) const;
+
+    /// Cuts what it meets while it moves and the nodes move from `before` to `after` (m, by node
+    /// id) in [from, to]. Returns what it did, which is nothing if it is not there.
+    cutting::Split cut(topology::Mesh& mesh, std::span<const Vec3> before,
+                       std::span<const Vec3> after, double from, double to);
+
+    /// Its front keeps up with what another tool did.
+    void follow(const topology::ChangeSet& changes) { front_.follow(changes); }
 
   private:
+    cutting::Split cut_with(const Carver& carver, topology::Mesh& mesh,
+                            const cutting::TissueMotion& tissue, double from, double to);
+    cutting::Split cut_with(const Blade& blade, topology::Mesh& mesh,
+                            const cutting::TissueMotion& tissue, double from, double to);
+    cutting::Split cut_with(const Cut& cut, topology::Mesh& mesh,
+                            const cutting::TissueMotion& tissue, double from, double to);
+    std::vector<Vec3> edge_at(const Blade& blade, double time) const;
+
     ToolSpec spec_;
+    cutting::SplitOptions options_;
+    cutting::CutFront front_;                             // of a blade that splits
+    std::shared_ptr<const cutting::CutSurface> surface_;  // of a cut
 };
 
 }  // namespace incise::sim

@@ -10,12 +10,12 @@ namespace {
 using io::format_number;
 using Keys = std::string_view;
 
-constexpr Keys tool_keys[] = {"kind", "name", "path", "shape", "edge", "mode"};
-constexpr Keys planned_tool_keys[] = {"time", "plane", "surface", "file"};
-constexpr Keys kinds[] = {"carver", "blade"};
-constexpr Keys planned_kinds[] = {"cut"};
-constexpr Keys modes[] = {"separate"};
-constexpr Keys planned_modes[] = {"split"};
+constexpr Keys tool_keys[] = {"kind", "name", "path",  "shape",   "edge", "mode",
+                              "snap", "time", "plane", "surface", "scale"};
+constexpr Keys kinds[] = {"carver", "blade", "cut"};
+constexpr Keys modes[] = {"split", "separate"};  // in the order of CutMode
+constexpr Limits snap_limits{.low = 0.0, .high = 0.5, .includes_low = true};
+constexpr Keys plane_keys[] = {"point", "normal"};
 constexpr Keys pose_keys[] = {"time", "at", "rotate"};
 constexpr Keys rotation_keys[] = {"axis", "angle"};
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
@@ -74,11 +74,28 @@ Blade read_blade(const TableReader& tool) {
         if (blade.edge[i] == blade.edge[i - 1])
             tool.error("edge", "points " + std::to_string(i - 1) + " and " + std::to_string(i) +
                                    " (from 0) are the same: leave one out");
-    tool.require("mode",
-                 "this version supports mode = \"separate\" only, which opens the faces between "
-                 "elements that the edge sweeps across");
-    tool.choice("mode", {modes, planned_modes});
+    if (const auto mode = tool.has("mode") ? tool.choice("mode", {modes}) : std::nullopt)
+        blade.mode = static_cast<CutMode>(*mode);
+    blade.snap = tool.number_if_given("snap", snap_limits);
+    if (blade.snap && blade.mode == CutMode::separate)
+        tool.error("snap", "belongs to mode = \"split\": leave it out");
     return blade;
+}
+
+Cut read_cut(const TableReader& tool, const std::filesystem::path& folder) {
+    Cut cut;
+    const auto along = tool.one_of({"plane", "surface"});
+    if (const auto plane = tool.table("plane", {plane_keys}); plane && along) {
+        plane->require("point", "a point of the plane, as in point = [0, 0, 0]");
+        plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
+        cut.along = PlaneSpec{plane->vector("point"), plane->direction("normal", Vec3::UnitZ())};
+    }
+    if (along == "surface")
+        cut.along = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
+    cut.scale = tool.number("scale", 1.0, limits::positive);
+    if (tool.has("scale") && along == "plane") tool.error("scale", "is for surfaces: leave it out");
+    cut.snap = tool.number_if_given("snap", snap_limits);
+    return cut;
 }
 
 void refuse(const TableReader& tool, std::initializer_list<std::string_view> keys,
@@ -87,39 +104,56 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
         if (tool.has(key)) tool.error(key, "belongs to " + owner + ": leave it out");
 }
 
+/// A cut has a time instead of a path.
+std::vector<TimeKey<Pose>> read_time(const TableReader& tool) {
+    tool.require("time", "when it cuts, seconds, as in time = 0.5");
+    return {{tool.number("time", 0.0, limits::non_negative), {}}};
+}
+
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<Blade>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
     if (end_time > 0.0 && !spec.path.empty() && spec.path.front().time > end_time)
-        tool.warning("path", "tool " + in_quotes(spec.name) + " starts at " +
-                                 format_number(spec.path.front().time) + " s, after the end at " +
-                                 format_number(end_time) + " s");
+        tool.warning(tool.has("time") ? "time" : "path",
+                     "tool " + in_quotes(spec.name) + " starts at " +
+                         format_number(spec.path.front().time) + " s, after the end at " +
+                         format_number(end_time) + " s");
 }
 
 }  // namespace
 
-std::vector<ToolSpec> read_tools(const TableReader& root, double end_time) {
+std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
+                                 double end_time) {
     std::vector<ToolSpec> specs;
     std::vector<std::string> names;
     std::array<int, std::size(kinds)> counts{};
-    for (const auto& tool : root.tables("tool", {tool_keys, planned_tool_keys})) {
+    for (const auto& tool : root.tables("tool", {tool_keys})) {
         tool.require("kind", "must be one of " + list_of(kinds));
-        const auto kind = tool.choice("kind", {kinds, planned_kinds});
+        const auto kind = tool.choice("kind", {kinds});
         if (!kind) continue;
         ToolSpec spec;
         spec.name = read_name(
             tool, std::string(kinds[*kind]) + "_" + std::to_string(++counts[*kind]), names);
         if (kinds[*kind] == "carver") {
             spec.kind = read_carver(tool);
-            refuse(tool, {"edge", "mode"}, "a blade");
-        } else {
+            refuse(tool, {"edge", "mode", "snap"}, "a blade");
+        } else if (kinds[*kind] == "blade") {
             spec.kind = read_blade(tool);
             refuse(tool, {"shape"}, "a carver");
+        } else {
+            spec.kind = read_cut(tool, folder);
+            refuse(tool, {"shape"}, "a carver");
+            refuse(tool, {"edge", "mode", "path"}, "a blade");
         }
-        tool.require("path",
-                     "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = "
-                     "[0, 0, 0] }]");
-        spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
+        if (kinds[*kind] == "cut") {
+            spec.path = read_time(tool);
+        } else {
+            refuse(tool, {"time", "plane", "surface", "scale"}, "a cut");
+            tool.require("path",
+                         "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = "
+                         "[0, 0, 0] }]");
+            spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
+        }
         check_path(tool, spec, end_time);
         specs.push_back(std::move(spec));
     }

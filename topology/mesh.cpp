@@ -147,6 +147,14 @@ int matching_shift(const Mesh& mesh, FaceId a, FaceId b) {
     return -1;
 }
 
+double rest_area(const Mesh& mesh, FaceId f) {
+    const auto at = [&](int p) -> const Vec3& {
+        return mesh.rest_position(mesh.face_corner(f, p));
+    };
+    if (mesh.face_size(f) == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+    return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
+}
+
 Components components(const Mesh& mesh) {
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);

@@ -147,6 +147,9 @@ void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
 /// and run in opposite directions; -1 otherwise.
 int matching_shift(const Mesh& mesh, FaceId a, FaceId b);
 
+/// Area of a face at rest, m2; of a quadrilateral that of its bilinear patch's mean plane.
+double rest_area(const Mesh& mesh, FaceId f);
+
 /// Piece number of each element (by id; -1 for dead ones): elements joined through faces have the
 /// same; pieces are numbered from 0 in the order of their lowest element.
 struct Components {

@@ -51,6 +51,18 @@ void measure_corner(const std::array<Vec3, 3>& edges, MeshMetrics& metrics) {
     }
 }
 
+/// Looks at a cell from each of its corners.
+void measure_cell(CellKind kind, std::span<const Vec3> corners, MeshMetrics& metrics) {
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const auto& neighbors = neighbors_of_kind[static_cast<std::size_t>(kind)][k];
+        if (neighbors[0] < 0) continue;
+        std::array<Vec3, 3> edges;
+        for (std::size_t i = 0; i < 3; ++i)
+            edges[i] = corners[static_cast<std::size_t>(neighbors[i])] - corners[k];
+        measure_corner(edges, metrics);
+    }
+}
+
 void measure_cells(const MeshData& data, MeshMetrics& metrics) {
     metrics.box_min.setConstant(std::numeric_limits<double>::infinity());
     metrics.box_max = -metrics.box_min;
@@ -68,14 +80,7 @@ void measure_cells(const MeshData& data, MeshMetrics& metrics) {
         ++metrics.num_of_kind[static_cast<std::size_t>(kind)];
         ++metrics.cells_of_region[data.regions[c]];
         metrics.volume += signed_volume(kind, {points.data(), corners.size()});
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const auto& neighbors = neighbors_of_kind[static_cast<std::size_t>(kind)][k];
-            if (neighbors[0] < 0) continue;
-            std::array<Vec3, 3> edges;
-            for (std::size_t i = 0; i < 3; ++i)
-                edges[i] = points[static_cast<std::size_t>(neighbors[i])] - points[k];
-            measure_corner(edges, metrics);
-        }
+        measure_cell(kind, {points.data(), corners.size()}, metrics);
     }
 }
 
@@ -137,6 +142,13 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
 }
 
 }  // namespace
+
+double min_altitude(CellKind kind, std::span<const Vec3> corners) {
+    MeshMetrics metrics;
+    metrics.min_altitude = std::numeric_limits<double>::infinity();
+    measure_cell(kind, corners, metrics);
+    return metrics.min_altitude;
+}
 
 MeshMetrics measure(const MeshData& data) {
     const MeshCheck found = check(data);

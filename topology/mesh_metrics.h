@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <span>
 
 #include "topology/cell_kind.h"
 #include "topology/mesh_data.h"
@@ -32,6 +33,9 @@ struct MeshMetrics {
     /// Least angle between two faces of a cell along their common edge, measured at its ends.
     double min_dihedral_angle = 0.0;
 };
+
+/// MeshMetrics::min_altitude of one cell.
+double min_altitude(CellKind kind, std::span<const Vec3> corners);
 
 /// Throws InputError with all that check() finds wrong. Cost: O(n log n).
 MeshMetrics measure(const MeshData& data);

@@ -164,18 +164,6 @@ TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
             << line;
     EXPECT_NE(error_of("[output]\ncheckpoint_interval = 1\n").find("not support it yet"),
               std::string::npos);
-    EXPECT_NE(error_of("[[tool]]\nkind = \"cut\"\n").find("'cut': this version does not support"),
-              std::string::npos);
-    const std::string blade =
-        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
-        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
-    EXPECT_EQ(error_of(blade + "mode = \"split\"\n"),
-              "scene.toml:13:8: key 'tool[0].mode': 'split': this version does not support it yet; "
-              "supported: separate");
-    EXPECT_EQ(error_of(blade),
-              "scene.toml:9:1: key 'tool[0].mode': is missing: this version supports mode = "
-              "\"separate\" only, which opens the faces between elements that the edge sweeps "
-              "across");
 }
 
 TEST(ScenarioErrors, OfConstraints) {
@@ -229,7 +217,7 @@ TEST(ScenarioErrors, OfLoads) {
 
 TEST(ScenarioErrors, OfTools) {
     EXPECT_EQ(error_of("[[tool]]\nedge = []\n"),
-              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade");
+              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
               "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
@@ -244,6 +232,39 @@ TEST(ScenarioErrors, OfTools) {
               "scene.toml:12:8: key 'tool[0].edge': points 0 and 1 (from 0) are the same: leave "
               "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a blade "
               "cuts where it moves");
+    const std::string blade =
+        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
+        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
+    EXPECT_EQ(error_of(blade), "");
+    EXPECT_EQ(error_of(blade + "mode = \"slit\"\n"),
+              "scene.toml:13:8: key 'tool[0].mode': 'slit': is not known; did you mean 'split'? "
+              "Known here: split, separate");
+    EXPECT_EQ(error_of(blade + "snap = 0.5\n"),
+              "scene.toml:13:8: key 'tool[0].snap': 0.5 is not allowed: must be at least 0 and "
+              "below 0.5");
+    EXPECT_EQ(error_of(blade + "mode = \"separate\"\nsnap = 0.1\n"),
+              "scene.toml:14:8: key 'tool[0].snap': belongs to mode = \"split\": leave it out");
+    EXPECT_EQ(error_of(blade + "time = 1\n"),
+              "scene.toml:13:8: key 'tool[0].time': belongs to a cut: leave it out");
+}
+
+TEST(ScenarioErrors, OfCuts) {
+    const std::string cut = "[[tool]]\nkind = \"cut\"\n";
+    EXPECT_EQ(error_of(cut),
+              "scene.toml:9:1: key 'tool[0]': must have exactly one of plane, surface | "
+              "scene.toml:9:1: key 'tool[0].time': is missing: when it cuts, seconds, as in time = "
+              "0.5");
+    EXPECT_EQ(error_of(cut + "time = -1\nplane = { point = [0, 0, 0], normal = [0, 0, 0] }\n"),
+              "scene.toml:11:8: key 'tool[0].time': -1 is not allowed: must be at least 0 | "
+              "scene.toml:12:39: key 'tool[0].plane.normal': is not allowed: a direction must have "
+              "a length above 0");
+    EXPECT_NE(error_of(cut + "time = 1\nsurface = \"none.stl\"\n").find("there is no file"),
+              std::string::npos);
+    EXPECT_EQ(error_of(cut + "time = 1\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\n"
+                             "path = []\nedge = [[0, 0, 0], [1, 0, 0]]\nscale = 2\n"),
+              "scene.toml:13:8: key 'tool[0].path': belongs to a blade: leave it out | "
+              "scene.toml:14:8: key 'tool[0].edge': belongs to a blade: leave it out | "
+              "scene.toml:15:9: key 'tool[0].scale': is for surfaces: leave it out");
 }
 
 TEST(ScenarioErrors, OfOutputAndExpect) {
@@ -271,8 +292,8 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
         "angular_momentum_x, angular_momentum_y, angular_momentum_z, min_J, time_step, "
         "stable_step, ";
     const std::string more =
-        "gravity_energy, edits, elements_removed, faces_opened, mass_removed, mass_error, "
-        "energy_error";
+        "gravity_energy, edits, elements_removed, elements_split, elements_added, faces_opened, "
+        "cut_area, mass_removed, mass_error, energy_error";
     EXPECT_EQ(error_of("[expect]\nreaction_floor_z = { min = 0 }\n"),
               "scene.toml:10:1: key 'expect.reaction_floor_z': is not known; did you mean "
               "'elastic_energy'? " +

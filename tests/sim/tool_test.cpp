@@ -17,7 +17,8 @@ Tool tool_on(std::vector<TimeKey<Pose>> path) {
     ToolSpec spec;
     spec.kind = Carver{SphereShape{0.1}};
     spec.path = std::move(path);
-    return Tool(spec);
+    std::vector<std::string> warnings;
+    return Tool(spec, {}, warnings);
 }
 
 double angle_between(const cutting::Pose& pose, double angle, const Vec3& axis) {

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/geometric_cut.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include "cutting/cut_plan.h"
+#include "cutting/plane.h"
+#include "cutting/separator.h"
+#include "cutting/step_length.h"
+#include "cutting/swept_edge.h"
+#include "cutting/triangle_surface.h"
+#include "topology/error.h"
+#include "topology/geometry.h"
+#include "topology/mesh_metrics.h"
+
+namespace incise::sim {
+
+using cutting::CutFront;
+using cutting::TissueMotion;
+using topology::CellKind;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+
+namespace {
+
+/// To which share of the mean edge length a sweep's surface is triangulated.
+constexpr double strip_accuracy = 1e-3;
+constexpr double max_strip_divisions = 64.0;
+
+template <class Do>
+void for_each_element(const Mesh& mesh, Do act) {
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (mesh.is_alive(ElementId(i))) act(ElementId(i));
+}
+
+double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corners) {
+    std::array<Vec3, topology::max_corners> x;
+    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
+    return topology::signed_volume(kind, {x.data(), corners.size()});
+}
+
+/// Of the polygon's projection on its own mean plane, which for triangles and flat ones is all.
+double area_of(const Mesh& mesh, FaceId f) {
+    const Vec3& origin = mesh.rest_position(mesh.face_corner(f, 0));
+    Vec3 sum = Vec3::Zero();
+    for (int p = 1; p + 1 < mesh.face_size(f); ++p)
+        sum += (mesh.rest_position(mesh.face_corner(f, p)) - origin)
+                   .cross(mesh.rest_position(mesh.face_corner(f, p + 1)) - origin);
+    return 0.5 * sum.norm();
+}
+
+/// The triangles on the cut that lie against another one: those that parted there.
+std::vector<FaceId> opened_faces(const Mesh& mesh, const CutFront& front) {
+    struct Placed {
+        std::array<Vec3, 3> corners;
+        FaceId face;
+    };
+    const auto order = [](const Vec3& a, const Vec3& b) {
+        return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
+    };
+    std::vector<Placed> placed;
+    for (const FaceId f : topology::boundary_faces(mesh)) {
+        if (mesh.face_size(f) != 3) continue;
+        Placed p{{}, f};
+        bool is_on = true;
+        for (int k = 0; k < 3; ++k) {
+            const NodeId n = mesh.face_corner(f, k);
+            is_on = is_on && front.is_on(n);
+            p.corners[static_cast<std::size_t>(k)] = mesh.rest_position(n);
+        }
+        if (!is_on) continue;
+        std::sort(p.corners.begin(), p.corners.end(), order);
+        placed.push_back(p);
+    }
+    std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) {
+        return std::lexicographical_compare(a.corners.begin(), a.corners.end(), b.corners.begin(),
+                                            b.corners.end(), order);
+    });
+    std::vector<FaceId> opened;
+    for (std::size_t i = 0; i + 1 < placed.size(); ++i)
+        if (placed[i].corners == placed[i + 1].corners) opened.push_back(placed[i].face);
+    return opened;
+}
+
+/// What the edge sweeps: between two points of it and two poses, a grid on a bilinear patch, fine
+/// enough for triangles to follow the patch.
+topology::SurfaceData swept_surface(const SweepCut& sweep, double tolerance) {
+    topology::SurfaceData surface;
+    for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p)
+        for (std::size_t s = 0; s + 1 < sweep.poses[p].size(); ++s) {
+            const Vec3 &a = sweep.poses[p][s], &b = sweep.poses[p][s + 1];
+            const Vec3 &c = sweep.poses[p + 1][s], &d = sweep.poses[p + 1][s + 1];
+            // A quadrilateral's middle is off its diagonals by a quarter of its twist.
+            const double twist = (a - b - c + d).norm() / 4.0;
+            const auto n = static_cast<std::int64_t>(
+                std::clamp(std::ceil(std::sqrt(twist / tolerance)), 1.0, max_strip_divisions));
+            const auto first = static_cast<std::int64_t>(surface.points.size());
+            for (std::int64_t i = 0; i <= n; ++i)
+                for (std::int64_t j = 0; j <= n; ++j) {
+                    const double u = static_cast<double>(i) / static_cast<double>(n);
+                    const double v = static_cast<double>(j) / static_cast<double>(n);
+                    surface.points.push_back((1.0 - u) * ((1.0 - v) * a + v * b) +
+                                             u * ((1.0 - v) * c + v * d));
+                    if (i == n || j == n) continue;
+                    const std::int64_t here = first + i * (n + 1) + j, next = here + n + 1;
+                    surface.triangles.push_back({here, here + 1, next + 1});
+                    surface.triangles.push_back({here, next + 1, next});
+                }
+        }
+    return surface;
+}
+
+/// Scaled by a power of two, which changes no sign and no plane, so that squares neither overflow
+/// nor vanish.
+Vec3 well_scaled(const Vec3& normal) {
+    const int exponent = -std::ilogb(normal.cwiseAbs().maxCoeff());
+    return normal.unaryExpr([&](double x) { return std::scalbn(x, exponent); });
+}
+
+bool is_all_tetrahedra(const Mesh& mesh) {
+    bool is_all = true;
+    for_each_element(mesh, [&](ElementId e) { is_all &= mesh.kind(e) == CellKind::tetrahedron; });
+    return is_all;
+}
+
+CutBody describe(const Mesh& mesh) {
+    const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
+    CutBody body;
+    body.elements = mesh.num_elements();
+    body.nodes = mesh.num_nodes();
+    body.volume = metrics.volume;
+    body.min_dihedral_angle = metrics.min_dihedral_angle;
+    body.min_altitude = metrics.min_altitude;
+    body.mean_edge_length = metrics.mean_edge_length;
+    body.box_min = metrics.box_min;
+    body.box_max = metrics.box_max;
+    if (is_all_tetrahedra(mesh)) body.step_length = cutting::step_length(mesh);
+    return body;
+}
+
+std::vector<Piece> pieces_of(const Mesh& mesh) {
+    const topology::Components components = topology::components(mesh);
+    std::vector<Piece> pieces(static_cast<std::size_t>(components.count));
+    for_each_element(mesh, [&](ElementId e) {
+        Piece& piece = pieces[static_cast<std::size_t>(components.of_element[e.index()])];
+        piece.volume += volume_of(mesh, mesh.kind(e), mesh.corners(e));
+        ++piece.elements;
+    });
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece& a, const Piece& b) { return a.volume > b.volume; });
+    return pieces;
+}
+
+void add(const CutCounts& counts, CutCounts& total) {
+    total.elements_crossed += counts.elements_crossed;
+    total.elements_added += counts.elements_added;
+    total.elements_removed += counts.elements_removed;
+    total.nodes_added += counts.nodes_added;
+    total.nodes_duplicated += counts.nodes_duplicated;
+    total.nodes_snapped += counts.nodes_snapped;
+    total.faces_opened += counts.faces_opened;
+    total.cut_area += counts.cut_area;
+    total.volume_removed += counts.volume_removed;
+    total.split_seconds += counts.split_seconds;
+    if (counts.surface_distance)
+        total.surface_distance =
+            std::max(total.surface_distance.value_or(0.0), *counts.surface_distance);
+}
+
+class Cutter {
+  public:
+    Cutter(Mesh& mesh, const GeometricCutOptions& options, const CutBody& before)
+        : mesh_(mesh),
+          mode_(options.mode),
+          split_options_{options.snap, {}},
+          strip_tolerance_(strip_accuracy * before.mean_edge_length) {
+        if (mode_ != CutMode::split) return;
+        std::map<int, double> lengths;
+        const double length = cutting::step_length(mesh);
+        for_each_element(mesh, [&](ElementId e) { lengths[mesh.region(e)] = length; });
+        split_options_.min_step_length = cutting::min_step_lengths(options.snap, lengths);
+    }
+
+    CutCounts apply(const CutTool& tool) {
+        counts_ = {};
+        opened_.clear();
+        std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
+        return counts_;
+    }
+
+  private:
+    void cut(const PlaneCut& plane) {
+        const Vec3 normal = well_scaled(plane.normal), unit = normal.normalized();
+        const cutting::Plane surface(plane.point, normal);
+        if (mode_ == CutMode::split)
+            split(surface);
+        else
+            separate(
+                [&](const Vec3& a, const Vec3& b) { return surface.side(a) != surface.side(b); });
+        measure_distance([&](const Vec3& x) { return std::abs(unit.dot(x - plane.point)); });
+    }
+
+    void cut(const SurfaceCut& given) {
+        const cutting::TriangleSurface surface(given.surface);
+        std::vector<cutting::Crossing> crossings;
+        if (mode_ == CutMode::split)
+            split(surface);
+        else
+            separate([&](const Vec3& a, const Vec3& b) {
+                crossings.clear();
+                surface.append_crossings({a, a}, {b, b}, crossings);
+                return crossings.size() % 2 == 1;
+            });
+        measure_distance([&](const Vec3& x) { return surface.distance(x); });
+    }
+
+    void cut(const SweepCut& sweep) {
+        CutFront front;
+        for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p) {
+            const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
+            if (mode_ == CutMode::split) {
+                split(cutting::SweptEdge(before, after), front);
+            } else {
+                const auto rest = mesh_.rest_positions();
+                open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
+            }
+        }
+        if (mode_ == CutMode::split) opened_ = opened_faces(mesh_, front);
+        if (counts_.faces_opened == 0) return;
+        const cutting::TriangleSurface surface(swept_surface(sweep, strip_tolerance_));
+        measure_distance([&](const Vec3& x) { return surface.distance(x); });
+    }
+
+    void cut(const ShapeRemoval& removal) {
+        const auto rest = mesh_.rest_positions();
+        const cutting::Pose pose{Eigen::Quaterniond::Identity(), removal.at};
+        const auto covered =
+            cutting::covered_elements({mesh_, rest, rest}, removal.shape, pose, pose);
+        const auto changes = cutting::execute({covered, {}}, mesh_);
+        for (const topology::ElementRecord& record : changes.elements_removed)
+            counts_.volume_removed += volume_of(mesh_, record.kind, record.corners);
+        book(changes);
+    }
+
+    void split(const cutting::CutSurface& surface) {
+        CutFront front;
+        split(surface, front);
+        opened_ = opened_faces(mesh_, front);
+    }
+
+    void split(const cutting::CutSurface& surface, CutFront& front) {
+        // A copy: the split adds positions to those of the mesh.
+        const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
+        const TissueMotion tissue{mesh_, rest, rest};
+        const auto start = std::chrono::steady_clock::now();
+        const cutting::Split result = cutting::split(mesh_, tissue, surface, front, split_options_);
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+        counts_.split_seconds += elapsed.count();
+        counts_.elements_crossed += result.report.elements_crossed;
+        counts_.nodes_snapped += result.report.nodes_snapped;
+        counts_.faces_opened += result.report.faces_opened;
+        counts_.cut_area += result.report.cut_area;
+        book(result.changes);
+    }
+
+    /// Opens the faces between elements for whose centres, at rest, `are_parted` holds.
+    template <class AreParted>
+    void separate(AreParted are_parted) {
+        std::vector<FaceId> faces;
+        const auto rest = mesh_.rest_positions();
+        for_each_element(mesh_, [&](ElementId e) {
+            const Vec3 centre = TissueMotion::centre(mesh_, e, rest);
+            for (int f = 0; f < mesh_.num_faces(e); ++f) {
+                const FaceId face{e, f}, other = mesh_.neighbor(face);
+                if (face < other &&
+                    are_parted(centre, TissueMotion::centre(mesh_, other.element, rest)))
+                    faces.push_back(face);
+            }
+        });
+        open(faces);
+    }
+
+    void open(const std::vector<FaceId>& faces) {
+        const auto changes = cutting::execute({{}, faces}, mesh_);
+        std::set<ElementId> crossed;
+        for (const topology::FacePair& pair : changes.faces_opened) {
+            crossed.insert({pair.a.element, pair.b.element});
+            opened_.push_back(pair.a);
+            counts_.cut_area += area_of(mesh_, pair.a);
+        }
+        counts_.elements_crossed += crossed.size();
+        counts_.faces_opened += changes.faces_opened.size();
+        book(changes);
+    }
+
+    void book(const topology::ChangeSet& changes) {
+        counts_.elements_added += changes.elements_added.size();
+        counts_.elements_removed += changes.elements_removed.size();
+        counts_.nodes_added += changes.nodes_added.size();
+        for (const topology::NodeRecord& record : changes.nodes_added)
+            counts_.nodes_duplicated += record.num_sources == 1;
+    }
+
+    template <class Distance>
+    void measure_distance(Distance distance) {
+        if (counts_.faces_opened == 0) return;
+        std::set<NodeId> nodes;
+        for (const FaceId f : opened_)
+            for (int p = 0; p < mesh_.face_size(f); ++p) nodes.insert(mesh_.face_corner(f, p));
+        double largest = 0.0;
+        for (const NodeId n : nodes) largest = std::max(largest, distance(mesh_.rest_position(n)));
+        counts_.surface_distance = largest;
+    }
+
+    Mesh& mesh_;
+    const CutMode mode_;
+    cutting::SplitOptions split_options_;
+    const double strip_tolerance_;
+    // Of the tool at work.
+    CutCounts counts_;
+    std::vector<FaceId> opened_;
+};
+
+/// What to say of a tool that cut nothing, which is seldom what was meant.
+std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts& counts,
+                                           const CutBody& body) {
+    std::ostringstream text;
+    text.precision(4);
+    if (std::holds_alternative<ShapeRemoval>(tool.kind)) {
+        if (counts.elements_removed > 0) return std::nullopt;
+        text << "removes nothing: it covers the centre of no element";
+    } else {
+        if (counts.faces_opened > 0) return std::nullopt;
+        if (counts.elements_crossed > 0) {
+            text << "crosses " << counts.elements_crossed
+                 << (counts.elements_crossed == 1 ? " element" : " elements")
+                 << " and opens no face: it only grazes the body, or runs along an earlier cut";
+            return text.str();
+        }
+        text << "cuts nothing: it passes between no two parts of the body";
+    }
+    text << ", which reached from " << body.box_min.transpose() << " to "
+         << body.box_max.transpose() << " before the first tool";
+    return text.str();
+}
+
+CutBody describe_result(const Mesh& mesh) {
+    try {
+        return describe(mesh);
+    } catch (const InputError& error) {
+        throw InputError(std::string("after the cuts: ") + error.what() +
+                         "\nuse a larger snap, or move the cut a little");
+    }
+}
+
+template <class A, class B>
+std::optional<double> ratio(A a, B b) {
+    if (!(b > B{})) return std::nullopt;
+    return static_cast<double>(a) / static_cast<double>(b);
+}
+
+}  // namespace
+
+double GeometricCutReport::volume_error() const {
+    return std::abs(after.volume + total.volume_removed - before.volume) / before.volume;
+}
+
+std::optional<double> GeometricCutReport::growth() const {
+    return ratio(total.elements_added, total.elements_crossed);
+}
+
+std::optional<double> GeometricCutReport::microseconds_per_crossed_element() const {
+    if (total.split_seconds == 0.0) return std::nullopt;
+    return ratio(1e6 * total.split_seconds, total.elements_crossed);
+}
+
+std::optional<double> GeometricCutReport::stable_step_ratio() const {
+    if (!before.step_length || !after.step_length) return std::nullopt;
+    return ratio(*after.step_length, *before.step_length);
+}
+
+CutMode usual_mode(const Mesh& mesh) {
+    return is_all_tetrahedra(mesh) ? CutMode::split : CutMode::separate;
+}
+
+GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
+                                 const GeometricCutOptions& options) {
+    GeometricCutReport report;
+    report.before = describe(mesh);
+    Cutter cutter(mesh, options, report.before);
+    for (const CutTool& tool : tools) {
+        try {
+            const CutCounts counts = cutter.apply(tool);
+            if (mesh.num_elements() == 0)
+                throw InputError("removes the last element: nothing is left of the body");
+            if (const auto complaint = complaint_about(tool, counts, report.before))
+                report.warnings.push_back(tool.name + ": " + *complaint);
+            add(counts, report.total);
+            report.tools.push_back({tool.name, counts, topology::components(mesh).count});
+        } catch (const InputError& error) {
+            throw InputError(tool.name + ": " + error.what());
+        }
+    }
+    report.after = describe_result(mesh);
+    report.pieces = pieces_of(mesh);
+    return report;
+}
+
+}  // namespace incise::sim

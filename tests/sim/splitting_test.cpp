@@ -1,0 +1,153 @@
+// Blades and cuts that split elements during a run: what they part, and what the ledger books.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "run_folder.h"
+#include "topology/validate.h"
+
+namespace incise::sim {
+namespace {
+
+const std::vector<std::string> no_violations;
+
+/// Through the whole cube at a slant, where the mesh has no faces.
+const std::string slanting_blade = R"(
+[[tool]]
+kind = "blade"
+name = "knife"
+edge = [[0, -0.1, 0.05], [0, 0.03, 0.053], [0, 0.2, 0.058]]
+path = [{ time = 0.02, at = [-0.05, 0, 0] }, { time = 0.12, at = [0.15, 0, 0.01] }]
+)";
+
+const std::string gravity = "gravity = [0, 0, -9.81]\ndamping = 5\n";
+
+TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
+    Simulation simulation(scenario_of(soft_cube + slanting_blade + dynamics(0.15, gravity)));
+    run(simulation);
+    EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+    const auto& edits = simulation.ledger().edits();
+    ASSERT_GT(edits.size(), 2u);
+    EXPECT_EQ(edits.back().after.components, 2);
+    EXPECT_LE(simulation.ledger().mass_error(), 1e-13);
+
+    double area = 0.0;
+    const Account* last = &simulation.ledger().initial();
+    for (const EditRecord& edit : edits) {
+        SCOPED_TRACE(testing::Message() << "at " << edit.time);
+        const physics::Totals &before = edit.before.totals, &after = edit.after.totals;
+        EXPECT_EQ(edit.before.nodes, last->nodes);
+        EXPECT_EQ(edit.before.stable_step, last->stable_step);
+        last = &edit.after;
+        EXPECT_EQ(edit.after.elements, edit.before.elements + edit.elements_added);
+        EXPECT_EQ(edit.after.nodes, edit.before.nodes + edit.nodes_added);
+        EXPECT_LE(edit.nodes_duplicated, edit.nodes_added);
+        EXPECT_LE(edit.elements_split, edit.elements_crossed);
+        EXPECT_EQ(edit.elements_split > 0, std::isfinite(edit.min_altitude_ratio));
+        EXPECT_EQ(edit.mass_removed, 0.0);
+        EXPECT_NEAR(after.mass, before.mass, 1e-13 * before.mass);
+        EXPECT_NEAR(after.rest_volume, before.rest_volume, 1e-12 * before.rest_volume);
+        EXPECT_NEAR(after.elastic_energy, before.elastic_energy, 1e-10 * before.elastic_energy);
+        EXPECT_LE(after.kinetic_energy, before.kinetic_energy * (1.0 + 1e-12));
+        EXPECT_LE((after.momentum - before.momentum).norm(), 1e-13 * before.mass);
+        EXPECT_LE((after.centre_of_mass - before.centre_of_mass).norm(), 1e-13);
+        // The promise of the splitter: half of what the body had.
+        EXPECT_GE(edit.after.stable_step, 0.5 * simulation.ledger().initial().stable_step);
+        area += edit.cut_area;
+    }
+    // The section of the cube, with what roughness snapping gives it.
+    EXPECT_GT(area, 0.0099);
+    EXPECT_LT(area, 0.014);
+}
+
+TEST(SplittingBlade, OfTheSameScenarioEndsInTheSameBits) {
+    const Scenario scenario = scenario_of(soft_cube + slanting_blade + dynamics(0.15, gravity));
+    Simulation one(scenario), other(scenario);
+    run(one);
+    run(other);
+    ASSERT_EQ(one.mesh().node_capacity(), other.mesh().node_capacity());
+    for (std::size_t n = 0; n < one.mesh().node_capacity(); ++n)
+        ASSERT_EQ(one.model().positions()[n], other.model().positions()[n]);
+}
+
+// Both are in the body at once, and divide elements that the other is in.
+TEST(SplittingBlade, MayCrossAnother) {
+    const std::string upright_blade = R"(
+[[tool]]
+kind = "blade"
+name = "other"
+edge = [[0.052, 0, -0.1], [0.049, 0, 0.2]]
+path = [{ time = 0.02, at = [0, -0.04, 0] }, { time = 0.13, at = [0, 0.14, 0] }]
+)";
+    Simulation simulation(scenario_of(soft_cube + slanting_blade + upright_blade + dynamics(0.15)));
+    run(simulation);
+    EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+    EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+}
+
+TEST(SplittingBlade, GoesOnWhereItLeftOffWhenItDrawsBack) {
+    // Half way in, out again, and then right through.
+    Simulation simulation(scenario_of(soft_cube + dynamics(0.3) + R"(
+[[tool]]
+kind = "blade"
+edge = [[0, -0.1, 0.051], [0, 0.2, 0.054]]
+path = [
+    { time = 0.00, at = [-0.02, 0, 0] }, { time = 0.06, at = [0.05, 0, 0] },
+    { time = 0.12, at = [-0.02, 0, 0] }, { time = 0.26, at = [0.12, 0, 0] },
+]
+)"));
+    run(simulation);
+    EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+    EXPECT_EQ(simulation.ledger().edits().back().after.components, 2);
+}
+
+TEST(Cut, AlongAPlaneComesAtItsTime) {
+    Simulation simulation(scenario_of(soft_cube + dynamics(0.05) + R"(
+[[tool]]
+kind = "cut"
+time = 0.0234
+snap = 0
+plane = { point = [0.05, 0.05, 0.052], normal = [0.1, -0.2, 1] }
+)"));
+    run(simulation);
+    ASSERT_EQ(simulation.ledger().edits().size(), 1u);
+    const EditRecord& edit = simulation.ledger().edits()[0];
+    EXPECT_GE(edit.time, 0.0234);
+    EXPECT_LE(edit.time, 0.0334);
+    EXPECT_EQ(edit.after.components, 2);
+    const double slant = 1.0 / Vec3(0.1, -0.2, 1).normalized().z();
+    EXPECT_NEAR(edit.cut_area, 0.01 * slant, 1e-8);
+}
+
+TEST(Cut, AlongAClosedSurfaceFreesItsInside) {
+    const RunFolder folder;
+    std::ofstream(folder / "octahedron.obj")
+        << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+           "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+    // A cube about the origin, so that the surface lies in its middle.
+    const std::string cube = R"(
+[mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [4, 4, 4], origin = [-0.05, -0.05, -0.05] }
+[[material]]
+density = 1000
+young = 1000
+poisson = 0.4
+)";
+    Simulation simulation(folder.scenario(cube + dynamics(0.02) + R"(
+[[tool]]
+kind = "cut"
+time = 0
+surface = "octahedron.obj"
+scale = 0.0371
+snap = 0
+)"));
+    run(simulation);
+    ASSERT_EQ(simulation.ledger().edits().size(), 1u);
+    EXPECT_EQ(simulation.ledger().edits()[0].after.components, 2);
+    const double face = std::sqrt(3.0) / 2.0 * 0.0371 * 0.0371;
+    EXPECT_NEAR(simulation.ledger().edits()[0].cut_area, 8.0 * face, 0.03 * 8.0 * face);
+}
+
+}  // namespace
+}  // namespace incise::sim
