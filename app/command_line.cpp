@@ -7,8 +7,10 @@
 #include <memory>
 #include <string_view>
 
+#include "app/cut_tools.h"
 #include "app/verbs.h"
 #include "io/mesh_writer.h"
+#include "io/number_format.h"
 #include "sim/table_reader.h"
 #include "topology/error.h"
 
@@ -18,8 +20,9 @@ namespace {
 
 using Action = std::function<int()>;
 
-constexpr std::string_view verbs[] = {"run", "check", "info", "convert", "materials", "render"};
-constexpr std::string_view planned_verbs[] = {"cut", "mesh", "bench"};
+constexpr std::string_view verbs[] = {"run",     "check",     "info",  "cut",
+                                      "convert", "materials", "render"};
+constexpr std::string_view planned_verbs[] = {"mesh", "bench"};
 
 constexpr const char* description =
     "Incise deforms and cuts soft tissue. Units are SI throughout: metres, kilograms, seconds,\n"
@@ -31,6 +34,8 @@ constexpr const char* footer =
     "  incise run liver.toml                             simulate it; frames go to liver.out\n"
     "  incise run liver.toml --set material[0].young=2e3 the same with one number changed\n"
     "  incise info liver.vtu --json                      size, regions and quality of a mesh\n"
+    "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
+    "                                                    a cut without dynamics\n"
     "  incise convert liver.msh liver.vtu                from one format to another\n"
     "  incise render liver.out --out liver.png           a picture of the last frame\n"
     "\n"
@@ -103,6 +108,66 @@ void declare_info(CLI::App& app, Action& action) {
     verb->callback([options, &action] { action = [options] { return info(*options); }; });
 }
 
+constexpr const char* cut_footer =
+    "The tools act at rest, one after the other, on what those before left. Planes, surfaces and\n"
+    "sweeps part the body where they pass. Points of a blade's edge have ; between, poses have |\n"
+    "between; all poses have the same number of points. From pose to pose each segment of the\n"
+    "edge sweeps two triangles: give more poses where it twists.\n"
+    "\n"
+    "Mode split divides tetrahedra along the cut, with --snap 0 exactly on it, but then into the\n"
+    "thinnest slivers. Mode separate divides nothing: it opens existing faces next to the cut,\n"
+    "those between elements whose centres it parts, so the cut follows the faces of the mesh.\n"
+    "\n"
+    "What is reported: cut_area is that of one side of the opened faces. surface_distance is the\n"
+    "largest distance of their nodes from the surface that was given, also relative to the mean\n"
+    "length of the edges before. stable_step_ratio is geometric: what the shape of the tetrahedra\n"
+    "does to the stable step of a body of one material. microseconds_per_crossed_element is the\n"
+    "time of the splits alone, without reading, measuring and writing. Where there is nothing to\n"
+    "measure, JSON has null.\n"
+    "\n"
+    "Examples:\n"
+    "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
+    "  incise cut liver.vtu --out core.vtu --surface tumour.stl --json -\n"
+    "  incise cut block.vtu --out slit.vtu --snap 0.1 \\\n"
+    "      --sweep \"0,-1,2; 0,1,2 | 0,-1,0.5; 0,1,0.5\" --remove-sphere 0.5,0,1,0.2";
+
+void declare_cut(CLI::App& app, Action& action) {
+    auto options = std::make_shared<CutOptions>();
+    auto* verb = app.add_subcommand("cut", "Cut a mesh at rest, without dynamics");
+    verb->add_option("MESH", options->mesh, "Mesh file")->required()->type_name("PATH");
+    verb->add_option("--out", options->out, "Mesh file to write; replaced if it is there")
+        ->required()
+        ->type_name("PATH");
+    verb->add_option("--json", options->json,
+                     "Write what was done as JSON to a file, or with - to stdout, instead of a "
+                     "table")
+        ->type_name("PATH");
+    verb->add_option("--mode", options->mode,
+                     "split, or separate (default: split, unless the mesh has other cells than "
+                     "tetrahedra)")
+        ->type_name("MODE");
+    verb->add_option("--snap", options->snap,
+                     "Mode split: a node nearer to the cut than this share of an edge counts as on "
+                     "it, from 0 to below 0.5 (default: " +
+                         io::format_number(cutting::default_snap) + ")")
+        ->type_name("SHARE");
+    verb->add_option("--region-array", options->region_array,
+                     "Cell array of VTK files that holds the regions")
+        ->capture_default_str();
+    for (const CutToolOption& tool : cut_tool_options())
+        verb->add_option_function<std::string>(
+                tool.name,
+                [options, name = tool.name](const std::string& text) {
+                    options->tools.push_back({name, text});
+                },
+                tool.meaning)
+            ->type_name(tool.form)
+            ->trigger_on_parse()  // at each occurrence: the order between options counts
+            ->group("Tools, applied in the order given, each any number of times");
+    verb->footer("Formats to write: " + written_formats() + "\n" + cut_footer);
+    verb->callback([options, &action] { action = [options] { return cut(*options); }; });
+}
+
 void declare_convert(CLI::App& app, Action& action) {
     auto options = std::make_shared<ConvertOptions>();
     auto* verb = app.add_subcommand("convert", "Write a mesh in the format of the new name");
@@ -162,6 +227,7 @@ int dispatch(int argc, const char* const* argv) {
     declare_run(app, action);
     declare_check(app, action);
     declare_info(app, action);
+    declare_cut(app, action);
     declare_convert(app, action);
     declare_materials(app, action);
     declare_render(app, action);

@@ -50,6 +50,20 @@ struct ConvertOptions {
 };
 int convert(const ConvertOptions& options);
 
+/// An option that adds a tool, as it was given.
+struct CutToolArgument {
+    std::string option, text;
+};
+struct CutOptions {
+    std::filesystem::path mesh, out;
+    std::vector<CutToolArgument> tools;         ///< in the order of the command line
+    std::optional<std::filesystem::path> json;  ///< "-": standard output
+    std::string mode;                           ///< empty: the mesh's usual one
+    std::string snap;                           ///< empty: cutting::default_snap
+    std::string region_array = "region";
+};
+int cut(const CutOptions& options);
+
 struct MaterialsOptions {
     std::string name;  ///< empty: all
     bool json = false;

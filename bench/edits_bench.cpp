@@ -4,6 +4,9 @@
 #include <benchmark/benchmark.h>
 
 #include "bodies.h"
+#include "cutting/splitter.h"
+#include "cutting/step_length.h"
+#include "cutting/swept_edge.h"
 #include "topology/mesh_edit.h"
 
 namespace incise::bench {
@@ -43,6 +46,12 @@ void measure(benchmark::State& state, Edit edit) {
     set_rate(state);
 }
 
+Eigen::AlignedBox3d mesh_box(const topology::Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : mesh.rest_positions()) box.extend(x);
+    return box;
+}
+
 void remove(benchmark::State& state) {
     measure(state,
             [](const topology::Mesh&, topology::MeshEdit& edit, ElementId e) { edit.remove(e); });
@@ -59,6 +68,54 @@ void open(benchmark::State& state) {
     });
 }
 BENCHMARK(open)->Arg(20'000)->Arg(100'000)->Arg(500'000);
+
+/// A blade goes half way through the body in 20 steps, across no ready-made plane; per element that
+/// it crosses, with the search for them, and body and boxes following.
+void split(benchmark::State& state) {
+    constexpr int num_steps = 20;
+    topology::Mesh mesh = make_cube(state.range(0));
+    physics::Model model(mesh, make_material(physics::NeoHookean{2000, 6000}));
+    cutting::ElementBoxes boxes(mesh, model.positions());
+    const double snap = cutting::default_snap;
+    const cutting::SplitOptions options{
+        snap, cutting::min_step_lengths(snap, {{0, cutting::step_length(mesh)}})};
+    const Vec3 low = mesh_box(mesh).min(), size = mesh_box(mesh).sizes();
+    const auto edge = [&](int step) {
+        const double x = -0.01 + 0.51 * step / num_steps;
+        const auto at = [&](double y, double z) -> Vec3 {
+            return low + size.cwiseProduct(Vec3(x, y, z + 0.21 * x));
+        };
+        return std::vector<Vec3>{at(-0.1, 0.41), at(1.1, 0.52)};
+    };
+    double crossed = 0.0;
+    for (auto _ : state) {
+        cutting::CutFront front;
+        cutting::Scars scars;
+        std::vector<topology::ChangeSet> history;
+        for (int step = 0; step < num_steps; ++step) {
+            const cutting::TissueMotion tissue{mesh, model.positions(), model.positions(), &boxes};
+            auto done = cutting::split(mesh, tissue, cutting::SweptEdge(edge(step), edge(step + 1)),
+                                       front, options, &scars);
+            model.apply(done.changes);
+            boxes.follow(mesh, model.positions(), done.changes);
+            crossed += static_cast<double>(done.report.elements_crossed);
+            history.push_back(std::move(done.changes));
+        }
+        state.PauseTiming();
+        for (; !history.empty(); history.pop_back()) {
+            if (history.back().is_empty()) continue;
+            const auto back = topology::inverse(history.back());
+            topology::replay(mesh, back);
+            model.apply(back);
+            boxes.follow(mesh, model.positions(), back);
+        }
+        state.ResumeTiming();
+    }
+    state.counters["crossed"] = crossed / static_cast<double>(state.iterations());
+    state.counters["us/crossed"] = benchmark::Counter(
+        crossed * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(split)->Arg(20'000)->Arg(100'000)->Arg(500'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace incise::bench

@@ -70,13 +70,12 @@ std::vector<ElementId> covered_elements(const TissueMotion& tissue, const Carver
     swept = Box(swept.min() - margin, swept.max() + margin);
 
     std::vector<ElementId> covered;
-    for (std::size_t i = 0; i < tissue.mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!tissue.mesh.is_alive(e) || !swept.intersects(tissue.box(e))) continue;
+    const auto may_meet = [&](const Box& box) { return swept.intersects(box); };
+    tissue.for_each_near(may_meet, [&](ElementId e) {
         const Vec3 from = before.to_tool(TissueMotion::centre(tissue.mesh, e, tissue.before));
         const Vec3 to = after.to_tool(TissueMotion::centre(tissue.mesh, e, tissue.after));
         if (meets(shape, from, to)) covered.push_back(e);
-    }
+    });
     return covered;
 }
 

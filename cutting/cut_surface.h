@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "cutting/space_time.h"
@@ -24,6 +25,9 @@ class CutSurface {
     /// segment is always asked for in the same direction.
     virtual void append_crossings(const MovingPoint& a, const MovingPoint& b,
                                   std::vector<Crossing>& crossings) const = 0;
+    /// Distance of a point from the surface, m; not a number if the surface is flat near all
+    /// crossings, so that its planes tell.
+    virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
     /// Whether the border with which an earlier sweep ended, and this one begins, runs through the
     /// triangle.
     virtual bool starts_inside(const std::array<MovingPoint, 3>&) const { return false; }

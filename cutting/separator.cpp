@@ -106,10 +106,9 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
                            TissueMotion::centre(mesh, e, tissue.after)};
     };
     std::vector<FaceId> faces;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        // A crossed path has a crossed half, which lies in one of its two elements.
-        if (!mesh.is_alive(e) || !swept.intersects(tissue.box(e))) continue;
+    // A crossed path has a crossed half, which lies in one of its two elements.
+    const auto may_meet = [&](const Box& box) { return swept.intersects(box); };
+    tissue.for_each_near(may_meet, [&](ElementId e) {
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;
@@ -124,7 +123,7 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
                                 is_crossed(middle, centre(higher.element), before, after);
             if (is_odd) faces.push_back(lower);
         }
-    }
+    });
     std::sort(faces.begin(), faces.end());
     leave_no_crumbs(mesh, faces);
     return faces;

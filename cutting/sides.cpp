@@ -23,14 +23,14 @@ class Sides {
   public:
     Sides(const Mesh& mesh, const CutFront& front) : mesh_(mesh), front_(front) {}
 
-    std::vector<FaceId> parted_faces(const std::vector<ElementId>& touched) {
+    Parting parting(const std::vector<ElementId>& touched) {
         collect_faces(touched);
         place_elements_on_cut();
-        std::vector<FaceId> parted;
+        Parting result;
         for (const FaceId f : faces_)
-            if (is_parted(f)) parted.push_back(f);
-        keep_crumbs(parted);
-        return parted;
+            if (is_parted(f)) result.faces.push_back(f);
+        keep_crumbs(result);
+        return result;
     }
 
   private:
@@ -43,7 +43,7 @@ class Sides {
 
     void collect_faces(const std::vector<ElementId>& touched);
     void place_elements_on_cut();
-    void keep_crumbs(std::vector<FaceId>& parted);
+    void keep_crumbs(Parting& parting);
     bool collect_piece(ElementId start, std::vector<ElementId>& piece);
     bool is_crumb(const std::vector<ElementId>& piece) const;
     bool is_on_cut(FaceId f) const;
@@ -110,7 +110,8 @@ void Sides::place_elements_on_cut() {
     }
 }
 
-void Sides::keep_crumbs(std::vector<FaceId>& parted) {
+void Sides::keep_crumbs(Parting& parting) {
+    std::vector<FaceId>& parted = parting.faces;
     parted_ = &parted;
     std::unordered_set<std::int32_t> crumbs;
     std::vector<ElementId> piece;
@@ -118,6 +119,7 @@ void Sides::keep_crumbs(std::vector<FaceId>& parted) {
         for (const ElementId e : {f.element, mesh_.neighbor(f).element}) {
             if (crumbs.contains(e.value) || !collect_piece(e, piece) || !is_crumb(piece)) continue;
             for (const ElementId member : piece) crumbs.insert(member.value);
+            parting.crumbs.insert(parting.crumbs.end(), piece.begin(), piece.end());
         }
     std::erase_if(parted, [&](FaceId f) {
         return crumbs.contains(f.element.value) != crumbs.contains(mesh_.neighbor(f).element.value);
@@ -198,9 +200,9 @@ bool Sides::is_parted(FaceId f) const {
 
 }  // namespace
 
-std::vector<FaceId> parted_faces(const Mesh& mesh, const CutFront& front,
-                                 const std::vector<ElementId>& touched) {
-    return Sides(mesh, front).parted_faces(touched);
+Parting parted_faces(const Mesh& mesh, const CutFront& front,
+                     const std::vector<ElementId>& touched) {
+    return Sides(mesh, front).parting(touched);
 }
 
 }  // namespace incise::cutting

@@ -10,6 +10,12 @@
 
 namespace incise::cutting {
 
+/// What to open, and what stays joined all the same.
+struct Parting {
+    std::vector<topology::FaceId> faces;
+    std::vector<topology::ElementId> crumbs;
+};
+
 /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the cut
 /// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
 /// the cut ends, they do not agree yet.
@@ -20,7 +26,7 @@ namespace incise::cutting {
 /// the other side: they would be crumbs.
 ///
 /// @param touched  the elements to look at, and thereby their faces
-std::vector<topology::FaceId> parted_faces(const topology::Mesh& mesh, const CutFront& front,
-                                           const std::vector<topology::ElementId>& touched);
+Parting parted_faces(const topology::Mesh& mesh, const CutFront& front,
+                     const std::vector<topology::ElementId>& touched);
 
 }  // namespace incise::cutting

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <queue>
 #include <string>
 #include <unordered_map>
@@ -57,32 +58,38 @@ struct EdgeHash {
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-             const SplitOptions& options)
+             const SplitOptions& options, Scars& scars)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
+          scars_(scars),
           options_(options),
           snap_(std::max(options.snap, smallest_snap)),
-          num_old_nodes_(mesh.node_capacity()),
-          edit_(mesh) {}
+          num_old_nodes_(mesh.node_capacity()) {}
 
     Split run() {
         find_crossed_edges();
+        if (touched_.empty()) {
+            leave_behind({});
+            return {};
+        }
+        edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
         for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
-        for (const FaceId f : parted_faces(mesh_, front_, touched_)) {
+        const Parting parting = parted_faces(mesh_, front_, touched_);
+        for (const ElementId e : parting.crumbs) scar(e);
+        for (const FaceId f : parting.faces) {
             report_.cut_area += topology::rest_area(mesh_, f);
             ++report_.faces_opened;
-            edit_.open(f);
+            edit_->open(f);
         }
-        Split result{edit_.commit(), report_};
+        Split result{edit_->commit(), report_};
         front_.follow(result.changes);
-        front_.forget_unless([&](NodeId n, double reach) {
-            return surface_.ends_near(final_position(n, result.changes), reach_of_front * reach);
-        });
+        scars_.follow(result.changes);
+        leave_behind(result.changes);
         return result;
     }
 
@@ -113,6 +120,12 @@ class Splitter {
         return new_points_[n.index() - num_old_nodes_];
     }
 
+    void leave_behind(const topology::ChangeSet& changes) {
+        front_.forget_unless([&](NodeId n, double reach) {
+            return surface_.ends_near(final_position(n, changes), reach_of_front * reach);
+        });
+    }
+
     /// Of a copy, where its source is.
     Vec3 final_position(NodeId n, const topology::ChangeSet& changes) const {
         if (n.index() >= num_old_nodes_ + new_points_.size()) {
@@ -134,11 +147,14 @@ class Splitter {
     Passages passages(const Edge& edge, ElementId element) const;
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
+    bool is_near(NodeId n, double share, double length) const;
+    void scar(ElementId e);
+    void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
     void divide_next();
     bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const;
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
-    void divide(const Edge& edge, ElementId element, double place);
+    NodeId divide(const Edge& edge, ElementId element, double place);
     void inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring);
     void snap_to(NodeId n, double reach);
 
@@ -146,10 +162,11 @@ class Splitter {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     CutFront& front_;
+    Scars& scars_;
     const SplitOptions& options_;
     const double snap_;
     const std::size_t num_old_nodes_;
-    MeshEdit edit_;
+    std::optional<MeshEdit> edit_;  // from when there is something to do
 
     std::vector<MovingPoint> new_points_;
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
@@ -160,6 +177,18 @@ class Splitter {
     std::vector<ElementId> ring_;     // scratch
     SplitReport report_;
 };
+
+/// The element stays with the other side: so it is to be when the surface comes again.
+void Splitter::scar(ElementId e) {
+    const auto corners = mesh_.corners(e);
+    for (const NodeId n : corners)
+        for (const NodeId other : corners) {
+            if (n == other || front_.is_on(n)) continue;
+            const Edge edge = edge_between(n, other);
+            for (const Passage& passage : passages(edge, e))
+                scars_.add(n, (n == edge.a ? passage.from_a : passage.from_b) * rest_length(edge));
+        }
+}
 
 /// Normals go the other way than points: n . F dX = (F^T n) . dX, F the deformation gradient.
 Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
@@ -196,17 +225,25 @@ Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const
             const double size = normal.norm() * along.norm();
             if (size > 0.0) steepness = std::abs(normal.dot(along)) / size;
         }
-        passages.push_back(
-            {crossing.place, crossing.place * steepness, (1.0 - crossing.place) * steepness});
+        Passage passage{crossing.place, crossing.place * steepness,
+                        (1.0 - crossing.place) * steepness};
+        // Where the surface bends away its plane at the crossing would say too little.
+        const Vec3 a = point(edge.a)[1], b = point(edge.b)[1];
+        const double length = (b - a).norm(), at_a = surface_.distance(a) / length;
+        if (!std::isnan(at_a)) {
+            const double at_b = surface_.distance(b) / length;
+            passage.from_a = std::max(passage.from_a, std::min(at_a, passage.place));
+            passage.from_b = std::max(passage.from_b, std::min(at_b, 1.0 - passage.place));
+        }
+        passages.push_back(passage);
     }
     return passages;
 }
 
 void Splitter::find_crossed_edges() {
     std::vector<std::pair<Edge, ElementId>> edges;
-    for (std::size_t i = 0; i < mesh_.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh_.is_alive(e) || !surface_.may_meet(tissue_.box(e))) continue;
+    const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
+    tissue_.for_each_near(may_meet, [&](ElementId e) {
         const auto corners = mesh_.corners(e);
         const topology::CellTraits& t = traits(mesh_.kind(e));
         for (int k = 0; k < t.num_edges; ++k) {
@@ -215,7 +252,7 @@ void Splitter::find_crossed_edges() {
                                             corners[static_cast<std::size_t>(q)]),
                                e);
         }
-    }
+    });
     std::sort(edges.begin(), edges.end());
 
     struct Found {
@@ -246,8 +283,10 @@ void Splitter::find_crossed_edges() {
 
     // Which nodes are near comes first: it decides about all edges at them.
     for (const Found& f : found) {
-        if (f.passages.front().from_a < snap_) snap_to(f.edge.a, rest_length(f.edge));
-        if (f.passages.back().from_b < snap_) snap_to(f.edge.b, rest_length(f.edge));
+        const double length = rest_length(f.edge);
+        const Passage &first = f.passages.front(), &last = f.passages.back();
+        if (is_near(f.edge.a, first.from_a, length)) snap_to(f.edge.a, length);
+        if (is_near(f.edge.b, last.from_b, length)) snap_to(f.edge.b, length);
     }
     for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
 }
@@ -257,6 +296,10 @@ void Splitter::snap_to(NodeId n, double reach) {
     front_.put_on(n, false, reach);
 }
 
+bool Splitter::is_near(NodeId n, double share, double length) const {
+    return share < snap_ || scars_.may_hold(n, share * length);
+}
+
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
 bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
     auto begin = passages.begin(), end = passages.end();
@@ -264,10 +307,11 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
     if (begin != end && front_.is_near(edge.b)) --end;
     const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
     if (is_on_a && is_on_b) return false;  // between them there is nothing but rounding
-    for (; begin != end && begin->from_a < snap_; ++begin)
-        if (!is_on_a) snap_to(edge.a, rest_length(edge));
-    for (; begin != end && (end - 1)->from_b < snap_; --end)
-        if (!is_on_b) snap_to(edge.b, rest_length(edge));
+    const double length = rest_length(edge);
+    for (; begin != end && is_near(edge.a, begin->from_a, length); ++begin)
+        if (!is_on_a) snap_to(edge.a, length);
+    for (; begin != end && is_near(edge.b, (end - 1)->from_b, length); --end)
+        if (!is_on_b) snap_to(edge.b, length);
     while (begin != end && is_on_a && begin->place < bend) ++begin;
     while (begin != end && is_on_b && (end - 1)->place > 1.0 - bend) --end;
     if (begin == end) return false;
@@ -276,13 +320,25 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
 }
 
 void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
-    const bool is_odd = passages.size() % 2 == 1;
     Passages left = passages;
     if (is_to_be_divided(edge, left)) {
         queue_.push({rest_length(edge), edge});
         pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
-    } else if (is_odd) {
-        toggled_.push_back(edge);
+    } else {
+        settle(edge, passages);
+    }
+}
+
+/// The edge is not divided: what passes through it counts as at its ends.
+void Splitter::settle(const Edge& edge, const Passages& passages) {
+    if (passages.size() % 2 == 1) toggled_.push_back(edge);
+    const double length = rest_length(edge);
+    for (const Passage& passage : passages) {
+        const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
+        if (is_on_a && (!is_on_b || passage.from_a <= passage.from_b))
+            scars_.add(edge.a, passage.from_a * length);
+        else if (is_on_b)
+            scars_.add(edge.b, passage.from_b * length);
     }
 }
 
@@ -292,18 +348,19 @@ void Splitter::divide_next() {
     const auto place = pending_.find(edge);
     Pending pending = std::move(place->second);
     pending_.erase(place);
-    const bool is_odd = pending.passages.size() % 2 == 1;
     Passages left = pending.passages;
     if (is_to_be_divided(edge, left)) {
         const Passage& passage = left[left.size() / 2];
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
-            divide(edge, pending.element, t);
+            const double moved = std::abs(t - passage.place) * (passage.from_a + passage.from_b);
+            const double distance = moved * rest_length(edge);
+            scars_.add(divide(edge, pending.element, t), distance);
             return;
         }
         snap_to(passage.place < 0.5 ? edge.a : edge.b, rest_length(edge));
     }
-    if (is_odd) toggled_.push_back(edge);
+    settle(edge, pending.passages);
 }
 
 /// Whether the halves of all elements round the edge, divided there, are large enough.
@@ -338,10 +395,11 @@ double Splitter::place_to_divide(const Edge& edge, ElementId element, const Pass
     return is_fit(edge, ring_, moved) ? moved : -1.0;
 }
 
-void Splitter::divide(const Edge& edge, ElementId element, double t) {
+/// Returns the new node.
+NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
     const double reach = rest_length(edge);
     const MovingPoint from = point(edge.a), to = point(edge.b);
-    const MeshEdit::Bisection& halves = edit_.bisect(element, edge.a, edge.b, t);
+    const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
     const NodeId middle = halves.node;
     generations_.push_back(1 + std::max(generation(edge.a), generation(edge.b)));
     ++report_.edges_divided;
@@ -376,6 +434,7 @@ void Splitter::divide(const Edge& edge, ElementId element, double t) {
     ask(edge.a);
     ask(edge.b);
     for (const NodeId n : ring) ask(n);
+    return middle;
 }
 
 // What earlier sweeps crossed: the middle counts as on the side of the end b, so the edges round
@@ -399,8 +458,9 @@ void Splitter::inherit(const Edge& edge, NodeId middle, const std::vector<NodeId
 }  // namespace
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-            const SplitOptions& options) {
-    return Splitter(mesh, tissue, surface, front, options).run();
+            const SplitOptions& options, Scars* scars) {
+    Scars own;
+    return Splitter(mesh, tissue, surface, front, options, scars ? *scars : own).run();
 }
 
 }  // namespace incise::cutting

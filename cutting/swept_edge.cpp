@@ -9,11 +9,29 @@ namespace incise::cutting {
 SweptEdge::SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after) {
     for (std::size_t s = 0; s + 1 < before.size(); ++s) {
         segments_.push_back({{before[s], after[s]}, {before[s + 1], after[s + 1]}});
-        Box box(before[s]);
-        box.extend(after[s]).extend(before[s + 1]).extend(after[s + 1]);
-        boxes_.push_back(box);
-        box_.extend(box);
+        const Vec3 across = after[s + 1] - before[s], back = after[s] - before[s + 1];
+        Bounds bounds{Box(before[s]), across.cross(back), 0.0, 0.0};
+        bounds.low = bounds.high = bounds.normal.dot(before[s]);
+        for (const Vec3& x : {after[s], before[s + 1], after[s + 1]}) {
+            bounds.box.extend(x);
+            bounds.low = std::min(bounds.low, bounds.normal.dot(x));
+            bounds.high = std::max(bounds.high, bounds.normal.dot(x));
+        }
+        bounds_.push_back(bounds);
     }
+}
+
+bool SweptEdge::may_meet(const Box& box) const {
+    const Vec3 centre = box.center(), half = 0.5 * box.sizes();
+    for (const Bounds& bounds : bounds_) {
+        if (!bounds.box.intersects(box)) continue;
+        const Vec3 size = bounds.normal.cwiseAbs();
+        const double middle = bounds.normal.dot(centre);
+        // With more than what rounding could hide.
+        const double reach = size.dot(half) + 1e-12 * size.dot(centre.cwiseAbs() + half);
+        if (middle + reach >= bounds.low && middle - reach <= bounds.high) return true;
+    }
+    return false;
 }
 
 void SweptEdge::append_crossings(const MovingPoint& a, const MovingPoint& b,
@@ -21,7 +39,8 @@ void SweptEdge::append_crossings(const MovingPoint& a, const MovingPoint& b,
     Box path(a[0]);
     path.extend(a[1]).extend(b[0]).extend(b[1]);
     for (std::size_t s = 0; s < segments_.size(); ++s)
-        if (boxes_[s].intersects(path)) cutting::append_crossings({a, b}, segments_[s], crossings);
+        if (bounds_[s].box.intersects(path))
+            cutting::append_crossings({a, b}, segments_[s], crossings);
 }
 
 bool SweptEdge::starts_inside(const std::array<MovingPoint, 3>& triangle) const {

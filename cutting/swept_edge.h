@@ -14,16 +14,22 @@ class SweptEdge final : public CutSurface {
     /// The two have the same number of points, at least two.
     SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after);
 
-    bool may_meet(const Box& box) const override { return box_.intersects(box); }
+    bool may_meet(const Box& box) const override;
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
     bool starts_inside(const std::array<MovingPoint, 3>& triangle) const override;
     bool ends_near(const Vec3& x, double reach) const override;
 
   private:
+    /// What a segment sweeps lies in its box and between two planes across the normal.
+    struct Bounds {
+        Box box;
+        Vec3 normal;
+        double low, high;
+    };
+
     std::vector<MovingSegment> segments_;
-    std::vector<Box> boxes_;  // of the segments
-    Box box_;
+    std::vector<Bounds> bounds_;  // of the segments
 };
 
 }  // namespace incise::cutting

@@ -5,17 +5,33 @@
 #include <Eigen/Geometry>
 #include <span>
 
+#include "cutting/element_boxes.h"
 #include "topology/mesh.h"
 #include "topology/types.h"
 
 namespace incise::cutting {
 
-using Box = Eigen::AlignedBox3d;
-
 /// The body over one step: nodes move straight from `before` to `after` (m, by node id).
 struct TissueMotion {
     const topology::Mesh& mesh;
     std::span<const Vec3> before, after;
+    /// Find what is near without looking at the whole body; none: look at all of it.
+    const ElementBoxes* boxes = nullptr;
+
+    /// Calls visit(element), in ascending order, for the living elements for whose box, and for
+    /// every box round it, may_meet(box) holds.
+    template <class MayMeet, class Visit>
+    void for_each_near(MayMeet may_meet, Visit visit) const {
+        const auto look_at = [&](topology::ElementId e) {
+            if (may_meet(box(e))) visit(e);
+        };
+        if (boxes) {
+            boxes->for_each_near(mesh, may_meet, look_at);
+            return;
+        }
+        for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+            if (const topology::ElementId e(i); mesh.is_alive(e)) look_at(e);
+    }
 
     /// Mean of an element's corners.
     static Vec3 centre(const topology::Mesh& mesh, topology::ElementId e,

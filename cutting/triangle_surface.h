@@ -21,8 +21,8 @@ class TriangleSurface final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
-    /// Least distance of a point from the triangles, m; infinite without triangles.
-    double distance(const Vec3& x) const;
+    /// Infinite without triangles.
+    double distance(const Vec3& x) const override;
 
   private:
     struct Tree;

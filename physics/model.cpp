@@ -117,7 +117,8 @@ void Model::integrate(double time, double dt) {
     }
     external_work_ += work;
     dissipated_energy_ += dissipated_power * dt;
-    if (!is_finite || std::sqrt(largest_square) * dt > body_size_) explain_failure(dt);
+    largest_move_ = std::sqrt(largest_square) * dt;
+    if (!is_finite || largest_move_ > body_size_) explain_failure(dt);
 }
 
 void Model::explain_failure(double dt) const {

@@ -75,6 +75,9 @@ class Model {
     /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
     void apply(const topology::ChangeSet& changes);
 
+    /// How far the fastest node went in the last step, m.
+    double largest_move() const { return largest_move_; }
+
     /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
     double stable_step() const { return stable_step_.value(); }
 
@@ -139,7 +142,7 @@ class Model {
     Supports supports_;
     Loads loads_;
     std::vector<Vec3> reactions_;
-    double external_work_ = 0.0, dissipated_energy_ = 0.0;
+    double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
     std::map<NodeId, Merge> merges_;  // by the node that was absorbed
     std::vector<ElementId> star_;     // scratch
 };

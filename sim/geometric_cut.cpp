@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
-#include <tuple>
 
 #include "cutting/cut_plan.h"
 #include "cutting/plane.h"
@@ -32,10 +32,6 @@ using topology::NodeId;
 
 namespace {
 
-/// To which share of the mean edge length a sweep's surface is triangulated.
-constexpr double strip_accuracy = 1e-3;
-constexpr double max_strip_divisions = 64.0;
-
 template <class Do>
 void for_each_element(const Mesh& mesh, Do act) {
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
@@ -48,73 +44,90 @@ double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corner
     return topology::signed_volume(kind, {x.data(), corners.size()});
 }
 
-/// Of the polygon's projection on its own mean plane, which for triangles and flat ones is all.
-double area_of(const Mesh& mesh, FaceId f) {
-    const Vec3& origin = mesh.rest_position(mesh.face_corner(f, 0));
-    Vec3 sum = Vec3::Zero();
-    for (int p = 1; p + 1 < mesh.face_size(f); ++p)
-        sum += (mesh.rest_position(mesh.face_corner(f, p)) - origin)
-                   .cross(mesh.rest_position(mesh.face_corner(f, p + 1)) - origin);
-    return 0.5 * sum.norm();
+/// Of the whole body. Volumes are summed in more digits than they have, so that the volume error
+/// tells of the cuts and not of the sums.
+double volume_of(const Mesh& mesh) {
+    long double sum = 0.0;
+    for_each_element(mesh,
+                     [&](ElementId e) { sum += volume_of(mesh, mesh.kind(e), mesh.corners(e)); });
+    return static_cast<double>(sum);
 }
 
-/// The triangles on the cut that lie against another one: those that parted there.
-std::vector<FaceId> opened_faces(const Mesh& mesh, const CutFront& front) {
-    struct Placed {
-        std::array<Vec3, 3> corners;
-        FaceId face;
-    };
-    const auto order = [](const Vec3& a, const Vec3& b) {
-        return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
-    };
-    std::vector<Placed> placed;
-    for (const FaceId f : topology::boundary_faces(mesh)) {
-        if (mesh.face_size(f) != 3) continue;
-        Placed p{{}, f};
-        bool is_on = true;
-        for (int k = 0; k < 3; ++k) {
-            const NodeId n = mesh.face_corner(f, k);
-            is_on = is_on && front.is_on(n);
-            p.corners[static_cast<std::size_t>(k)] = mesh.rest_position(n);
-        }
-        if (!is_on) continue;
-        std::sort(p.corners.begin(), p.corners.end(), order);
-        placed.push_back(p);
+/// What has to be known of a mesh before it is split to tell which faces a split opened.
+class FacesBefore {
+  public:
+    explicit FacesBefore(const Mesh& mesh)
+        : rows_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
+        for_each_element(mesh, [&](ElementId e) {
+            if (mesh.kind(e) != CellKind::tetrahedron) return;
+            Row& row = rows_[e.index()];
+            for (std::size_t k = 0; k < 4; ++k) row.corners[k] = mesh.corners(e)[k];
+            for (int f = 0; f < 4; ++f)
+                row.joined |= (mesh.neighbor({e, f}).is_valid() ? 1u : 0u) << f;
+        });
     }
-    std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) {
-        return std::lexicographical_compare(a.corners.begin(), a.corners.end(), b.corners.begin(),
-                                            b.corners.end(), order);
-    });
-    std::vector<FaceId> opened;
-    for (std::size_t i = 0; i + 1 < placed.size(); ++i)
-        if (placed[i].corners == placed[i + 1].corners) opened.push_back(placed[i].face);
-    return opened;
-}
 
-/// What the edge sweeps: between two points of it and two poses, a grid on a bilinear patch, fine
-/// enough for triangles to follow the patch.
-topology::SurfaceData swept_surface(const SweepCut& sweep, double tolerance) {
+    /// Both sides of each face that the split has opened: those on the boundary that lie inside
+    /// an element of before, or in a face of one that was joined to another.
+    std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
+        std::vector<FaceId> opened;
+        for (const FaceId f : topology::boundary_faces(mesh)) {
+            if (mesh.kind(f.element) != CellKind::tetrahedron) continue;
+            ElementId root = f.element;
+            while (root.index() >= rows_.size())
+                root = changes.elements_added[root.index() - rows_.size()].parent;
+            const Row& row = rows_[root.index()];
+            unsigned on = 0;  // between which corners of before the face lies
+            for (int p = 0; p < 3; ++p) on |= support(mesh.face_corner(f, p), row, changes);
+            bool was_open = false;
+            for (int side = 0; side < 4; ++side)
+                was_open |= (on & ~corners_of(side)) == 0 && (row.joined >> side & 1u) == 0;
+            if (!was_open) opened.push_back(f);
+        }
+        return opened;
+    }
+
+  private:
+    struct Row {
+        std::array<NodeId, 4> corners;
+        unsigned joined = 0;  // a bit a face
+    };
+
+    static unsigned corners_of(int face) {
+        unsigned bits = 0;
+        for (const int k : topology::traits(CellKind::tetrahedron).face(face)) bits |= 1u << k;
+        return bits;
+    }
+
+    /// The corners between which the node was made, a bit each.
+    unsigned support(NodeId n, const Row& row, const topology::ChangeSet& changes) const {
+        unsigned bits = 0;
+        if (n.index() < num_nodes_) {
+            for (std::size_t k = 0; k < 4; ++k) bits |= (row.corners[k] == n ? 1u : 0u) << k;
+            return bits;
+        }
+        const topology::NodeRecord& record = changes.nodes_added[n.index() - num_nodes_];
+        for (int s = 0; s < record.num_sources; ++s)
+            bits |= support(record.sources[static_cast<std::size_t>(s)].node, row, changes);
+        return bits;
+    }
+
+    std::vector<Row> rows_;  // by element id
+    std::size_t num_nodes_;
+};
+
+/// What the edge sweeps, as space_time.h takes it: two triangles for each segment and two poses.
+topology::SurfaceData swept_surface(const SweepCut& sweep) {
     topology::SurfaceData surface;
     for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p)
         for (std::size_t s = 0; s + 1 < sweep.poses[p].size(); ++s) {
-            const Vec3 &a = sweep.poses[p][s], &b = sweep.poses[p][s + 1];
-            const Vec3 &c = sweep.poses[p + 1][s], &d = sweep.poses[p + 1][s + 1];
-            // A quadrilateral's middle is off its diagonals by a quarter of its twist.
-            const double twist = (a - b - c + d).norm() / 4.0;
-            const auto n = static_cast<std::int64_t>(
-                std::clamp(std::ceil(std::sqrt(twist / tolerance)), 1.0, max_strip_divisions));
-            const auto first = static_cast<std::int64_t>(surface.points.size());
-            for (std::int64_t i = 0; i <= n; ++i)
-                for (std::int64_t j = 0; j <= n; ++j) {
-                    const double u = static_cast<double>(i) / static_cast<double>(n);
-                    const double v = static_cast<double>(j) / static_cast<double>(n);
-                    surface.points.push_back((1.0 - u) * ((1.0 - v) * a + v * b) +
-                                             u * ((1.0 - v) * c + v * d));
-                    if (i == n || j == n) continue;
-                    const std::int64_t here = first + i * (n + 1) + j, next = here + n + 1;
-                    surface.triangles.push_back({here, here + 1, next + 1});
-                    surface.triangles.push_back({here, next + 1, next});
-                }
+            const auto a = static_cast<std::int64_t>(surface.points.size());
+            for (const std::size_t pose : {p, p + 1})
+                for (const std::size_t end : {s, s + 1})
+                    surface.points.push_back(sweep.poses[pose][end]);
+            const std::int64_t b = a + 1, a_after = a + 2, b_after = a + 3;
+            surface.triangles.push_back({a, b, b_after});
+            surface.triangles.push_back({a, b_after, a_after});
         }
     return surface;
 }
@@ -137,7 +150,7 @@ CutBody describe(const Mesh& mesh) {
     CutBody body;
     body.elements = mesh.num_elements();
     body.nodes = mesh.num_nodes();
-    body.volume = metrics.volume;
+    body.volume = volume_of(mesh);
     body.min_dihedral_angle = metrics.min_dihedral_angle;
     body.min_altitude = metrics.min_altitude;
     body.mean_edge_length = metrics.mean_edge_length;
@@ -150,11 +163,14 @@ CutBody describe(const Mesh& mesh) {
 std::vector<Piece> pieces_of(const Mesh& mesh) {
     const topology::Components components = topology::components(mesh);
     std::vector<Piece> pieces(static_cast<std::size_t>(components.count));
+    std::vector<long double> volumes(pieces.size(), 0.0);
     for_each_element(mesh, [&](ElementId e) {
-        Piece& piece = pieces[static_cast<std::size_t>(components.of_element[e.index()])];
-        piece.volume += volume_of(mesh, mesh.kind(e), mesh.corners(e));
-        ++piece.elements;
+        const auto p = static_cast<std::size_t>(components.of_element[e.index()]);
+        volumes[p] += volume_of(mesh, mesh.kind(e), mesh.corners(e));
+        ++pieces[p].elements;
     });
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        pieces[p].volume = static_cast<double>(volumes[p]);
     std::stable_sort(pieces.begin(), pieces.end(),
                      [](const Piece& a, const Piece& b) { return a.volume > b.volume; });
     return pieces;
@@ -178,11 +194,8 @@ void add(const CutCounts& counts, CutCounts& total) {
 
 class Cutter {
   public:
-    Cutter(Mesh& mesh, const GeometricCutOptions& options, const CutBody& before)
-        : mesh_(mesh),
-          mode_(options.mode),
-          split_options_{options.snap, {}},
-          strip_tolerance_(strip_accuracy * before.mean_edge_length) {
+    Cutter(Mesh& mesh, const GeometricCutOptions& options)
+        : mesh_(mesh), mode_(options.mode), split_options_{options.snap, {}} {
         if (mode_ != CutMode::split) return;
         std::map<int, double> lengths;
         const double length = cutting::step_length(mesh);
@@ -192,7 +205,7 @@ class Cutter {
 
     CutCounts apply(const CutTool& tool) {
         counts_ = {};
-        opened_.clear();
+        opened_nodes_.clear();
         std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
         return counts_;
     }
@@ -234,9 +247,8 @@ class Cutter {
                 open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
             }
         }
-        if (mode_ == CutMode::split) opened_ = opened_faces(mesh_, front);
         if (counts_.faces_opened == 0) return;
-        const cutting::TriangleSurface surface(swept_surface(sweep, strip_tolerance_));
+        const cutting::TriangleSurface surface(swept_surface(sweep));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 
@@ -246,29 +258,38 @@ class Cutter {
         const auto covered =
             cutting::covered_elements({mesh_, rest, rest}, removal.shape, pose, pose);
         const auto changes = cutting::execute({covered, {}}, mesh_);
+        scars_.follow(changes);
+        long double removed = 0.0;
         for (const topology::ElementRecord& record : changes.elements_removed)
-            counts_.volume_removed += volume_of(mesh_, record.kind, record.corners);
+            removed += volume_of(mesh_, record.kind, record.corners);
+        counts_.volume_removed = static_cast<double>(removed);
         book(changes);
     }
 
     void split(const cutting::CutSurface& surface) {
         CutFront front;
         split(surface, front);
-        opened_ = opened_faces(mesh_, front);
     }
 
     void split(const cutting::CutSurface& surface, CutFront& front) {
         // A copy: the split adds positions to those of the mesh.
         const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
         const TissueMotion tissue{mesh_, rest, rest};
+        const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
-        const cutting::Split result = cutting::split(mesh_, tissue, surface, front, split_options_);
+        const cutting::Split result =
+            cutting::split(mesh_, tissue, surface, front, split_options_, &scars_);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;
         counts_.nodes_snapped += result.report.nodes_snapped;
         counts_.faces_opened += result.report.faces_opened;
         counts_.cut_area += result.report.cut_area;
+        if (result.report.faces_opened > 0) {
+            const auto opened = faces.opened_by(result.changes, mesh_);
+            assert(opened.size() == 2 * result.report.faces_opened);
+            for (const FaceId f : opened) remember_nodes(f);
+        }
         book(result.changes);
     }
 
@@ -294,8 +315,8 @@ class Cutter {
         std::set<ElementId> crossed;
         for (const topology::FacePair& pair : changes.faces_opened) {
             crossed.insert({pair.a.element, pair.b.element});
-            opened_.push_back(pair.a);
-            counts_.cut_area += area_of(mesh_, pair.a);
+            remember_nodes(pair.a);
+            counts_.cut_area += topology::rest_area(mesh_, pair.a);
         }
         counts_.elements_crossed += crossed.size();
         counts_.faces_opened += changes.faces_opened.size();
@@ -310,24 +331,26 @@ class Cutter {
             counts_.nodes_duplicated += record.num_sources == 1;
     }
 
+    void remember_nodes(FaceId f) {
+        for (int p = 0; p < mesh_.face_size(f); ++p) opened_nodes_.insert(mesh_.face_corner(f, p));
+    }
+
     template <class Distance>
     void measure_distance(Distance distance) {
         if (counts_.faces_opened == 0) return;
-        std::set<NodeId> nodes;
-        for (const FaceId f : opened_)
-            for (int p = 0; p < mesh_.face_size(f); ++p) nodes.insert(mesh_.face_corner(f, p));
         double largest = 0.0;
-        for (const NodeId n : nodes) largest = std::max(largest, distance(mesh_.rest_position(n)));
+        for (const NodeId n : opened_nodes_)
+            largest = std::max(largest, distance(mesh_.rest_position(n)));
         counts_.surface_distance = largest;
     }
 
     Mesh& mesh_;
     const CutMode mode_;
     cutting::SplitOptions split_options_;
-    const double strip_tolerance_;
+    cutting::Scars scars_;  // of all splits so far
     // Of the tool at work.
     CutCounts counts_;
-    std::vector<FaceId> opened_;
+    std::set<NodeId> opened_nodes_;  // those of the faces that it opened
 };
 
 /// What to say of a tool that cut nothing, which is seldom what was meant.
@@ -337,18 +360,18 @@ std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts&
     text.precision(4);
     if (std::holds_alternative<ShapeRemoval>(tool.kind)) {
         if (counts.elements_removed > 0) return std::nullopt;
-        text << "removes nothing: it covers the centre of no element";
+        text << "removes nothing, it covers the centre of no element";
     } else {
         if (counts.faces_opened > 0) return std::nullopt;
         if (counts.elements_crossed > 0) {
-            text << "crosses " << counts.elements_crossed
+            text << "opens no face, though it crosses " << counts.elements_crossed
                  << (counts.elements_crossed == 1 ? " element" : " elements")
-                 << " and opens no face: it only grazes the body, or runs along an earlier cut";
+                 << ": it grazes the body, or runs along an earlier cut";
             return text.str();
         }
-        text << "cuts nothing: it passes between no two parts of the body";
+        text << "cuts nothing, it parts no two elements";
     }
-    text << ", which reached from " << body.box_min.transpose() << " to "
+    text << "; the body reached from " << body.box_min.transpose() << " to "
          << body.box_max.transpose() << " before the first tool";
     return text.str();
 }
@@ -396,7 +419,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options) {
     GeometricCutReport report;
     report.before = describe(mesh);
-    Cutter cutter(mesh, options, report.before);
+    Cutter cutter(mesh, options);
     for (const CutTool& tool : tools) {
         try {
             const CutCounts counts = cutter.apply(tool);

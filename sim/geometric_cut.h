@@ -25,7 +25,8 @@ struct PlaneCut {
 struct SurfaceCut {
     topology::SurfaceData surface;
 };
-/// A blade's edge, a polyline, that moves straight from pose to pose.
+/// A blade's edge, a polyline, that moves straight from pose to pose. Each of its segments sweeps
+/// two triangles then, which share the diagonal from its first point before to its second after.
 struct SweepCut {
     std::vector<std::vector<Vec3>> poses;  ///< two or more, each of as many points, two or more
 };
@@ -61,7 +62,7 @@ struct CutCounts {
     double volume_removed = 0.0;  ///< m3
     double split_seconds = 0.0;   ///< wall time of the splits, nothing else
     /// Largest distance of a node of the opened faces from the tool's surface, m. Nothing if no
-    /// face opened. A sweep's surface is triangulated to a thousandth of the mean edge length.
+    /// face opened.
     std::optional<double> surface_distance;
 };
 

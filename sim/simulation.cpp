@@ -45,7 +45,8 @@ Simulation::Simulation(const Scenario& scenario)
       mesh_(take_mesh(scenario.mesh, warnings_)),
       model_(mesh_, build_materials(scenario.materials, mesh_, warnings_),
              build_surroundings(scenario, mesh_)),
-      ledger_(model_) {
+      ledger_(model_),
+      boxes_(mesh_, model_.positions()) {
     const auto step_length = step_lengths(model_);
     for (const ToolSpec& spec : scenario.tools) tools_.emplace_back(spec, step_length, warnings_);
     step_limit();  // a fixed step that is too large is refused before anything is written
@@ -60,13 +61,16 @@ bool Simulation::is_finished() const { return time_ >= scenario_.dynamics.end_ti
 
 void Simulation::step() {
     const auto [from, to] = next_step();
-    previous_positions_.assign(model_.positions().begin(), model_.positions().end());
+    const bool any_tool = std::any_of(tools_.begin(), tools_.end(),
+                                      [&](const Tool& tool) { return tool.is_present(from, to); });
+    if (any_tool) previous_positions_.assign(model_.positions().begin(), model_.positions().end());
 
     model_.integrate(from, to - from);
 
     time_ = to;
     last_step_ = to - from;
     ++num_steps_;
+    boxes_.move(mesh_, model_.positions(), model_.largest_move());
     for (Tool& tool : tools_) cut(tool, from, to);
 
     model_.compute_forces(time_);
@@ -76,13 +80,16 @@ void Simulation::step() {
 
 void Simulation::cut(Tool& tool, double from, double to) {
     if (!tool.is_present(from, to)) return;
-    const Account before = ledger_.account();
-    const cutting::Split done = tool.cut(mesh_, previous_positions_, model_.positions(), from, to);
+    const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions(), &boxes_};
+    const cutting::Split done = tool.cut(mesh_, tissue, scars_, from, to);
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
+    const Account before = ledger_.account();  // the model has not followed yet
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
     topology::append_new_nodes(changes, previous_positions_);
+    if (done.report.elements_crossed == 0) scars_.follow(changes);  // else it has done so
+    boxes_.follow(mesh_, model_.positions(), changes);
     for (Tool& other : tools_)
         if (&other != &tool) other.follow(changes);
     const EditRecord& edit =

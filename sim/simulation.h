@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cutting/element_boxes.h"
 #include "physics/model.h"
 #include "sim/ledger.h"
 #include "sim/scenario.h"
@@ -68,6 +69,8 @@ class Simulation {
     physics::Model model_;
     Ledger ledger_;
     std::vector<Tool> tools_;
+    cutting::ElementBoxes boxes_;
+    cutting::Scars scars_;
     std::vector<Observer*> observers_;
 
     double time_ = 0.0;

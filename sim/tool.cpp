@@ -86,16 +86,17 @@ bool Tool::is_present(double from, double to) const {
     return to > first && from < last;
 }
 
-cutting::Split Tool::cut(topology::Mesh& mesh, std::span<const Vec3> before,
-                         std::span<const Vec3> after, double from, double to) {
+cutting::Split Tool::cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
+                         cutting::Scars& scars, double from, double to) {
     if (!is_present(from, to)) return {};
-    const cutting::TissueMotion tissue{mesh, before, after};
-    return std::visit([&](const auto& kind) { return cut_with(kind, mesh, tissue, from, to); },
-                      spec_.kind);
+    return std::visit(
+        [&](const auto& kind) { return cut_with(kind, mesh, tissue, scars, from, to); },
+        spec_.kind);
 }
 
 cutting::Split Tool::cut_with(const Carver& carver, topology::Mesh& mesh,
-                              const cutting::TissueMotion& tissue, double from, double to) {
+                              const cutting::TissueMotion& tissue, cutting::Scars&, double from,
+                              double to) {
     cutting::CutPlan plan;
     plan.elements_to_remove =
         cutting::covered_elements(tissue, rigid(carver), pose(from), pose(to));
@@ -110,19 +111,21 @@ std::vector<Vec3> Tool::edge_at(const Blade& blade, double time) const {
 }
 
 cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
-                              const cutting::TissueMotion& tissue, double from, double to) {
+                              const cutting::TissueMotion& tissue, cutting::Scars& scars,
+                              double from, double to) {
     const auto before = edge_at(blade, from), after = edge_at(blade, to);
     if (blade.mode == CutMode::split)
-        return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_);
+        return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_,
+                              &scars);
     cutting::CutPlan plan;
     plan.faces_to_open = cutting::faces_to_open(tissue, before, after);
     return carry_out(plan, mesh);
 }
 
 cutting::Split Tool::cut_with(const Cut&, topology::Mesh& mesh, const cutting::TissueMotion& tissue,
-                              double, double) {
+                              cutting::Scars& scars, double, double) {
     cutting::CutFront front;
-    return cutting::split(mesh, tissue, *surface_, front, options_);
+    return cutting::split(mesh, tissue, *surface_, front, options_, &scars);
 }
 
 }  // namespace incise::sim

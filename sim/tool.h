@@ -4,7 +4,6 @@
 
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -31,21 +30,24 @@ class Tool {
     /// tool with one key in the step that contains it. The first step contains its start too.
     bool is_present(double from, double to) const;
 
-    /// Cuts what it meets while it moves and the nodes move from `before` to `after` (m, by node
-    /// id) in [from, to]. Returns what it did, which is nothing if it is not there.
-    cutting::Split cut(topology::Mesh& mesh, std::span<const Vec3> before,
-                       std::span<const Vec3> after, double from, double to);
+    /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
+    /// did, which is nothing if it is not there.
+    cutting::Split cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
+                       cutting::Scars& scars, double from, double to);
 
     /// Its front keeps up with what another tool did.
     void follow(const topology::ChangeSet& changes) { front_.follow(changes); }
 
   private:
     cutting::Split cut_with(const Carver& carver, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, double from, double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
+                            double to);
     cutting::Split cut_with(const Blade& blade, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, double from, double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
+                            double to);
     cutting::Split cut_with(const Cut& cut, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, double from, double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
+                            double to);
     std::vector<Vec3> edge_at(const Blade& blade, double time) const;
 
     ToolSpec spec_;

@@ -2,23 +2,37 @@
 #include "topology/mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace incise::topology {
 
 namespace {
 
+/// By corner, a bit for each face that has it.
+using CornerFaces = std::array<std::uint8_t, max_corners>;
+
+constexpr CornerFaces corner_faces(const CellTraits& t) {
+    CornerFaces faces{};
+    for (int f = 0; f < t.num_faces; ++f)
+        for (const int corner : t.face(f))
+            faces[static_cast<std::size_t>(corner)] |= static_cast<std::uint8_t>(1 << f);
+    return faces;
+}
+
+constexpr std::array<CornerFaces, num_cell_kinds> faces_of_corner = {
+    corner_faces(cell_traits[0]), corner_faces(cell_traits[1]), corner_faces(cell_traits[2]),
+    corner_faces(cell_traits[3])};
+
 /// Calls visit(face) for each face of `e` that has the node `n` among its corners.
 template <class Visit>
 void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
-    const CellTraits& t = traits(mesh.kind(e));
-    const auto corners = mesh.corners(e);
-    for (int f = 0; f < t.num_faces; ++f)
-        for (const int corner : t.face(f))
-            if (corners[static_cast<std::size_t>(corner)] == n) {
-                visit(FaceId{e, f});
-                break;
-            }
+    const int corner = mesh.corner_of(e, n);
+    if (corner < 0) return;
+    const unsigned faces =
+        faces_of_corner[static_cast<std::size_t>(mesh.kind(e))][static_cast<std::size_t>(corner)];
+    for (int f = 0; f < max_faces; ++f)
+        if ((faces >> f) & 1u) visit(FaceId{e, f});
 }
 
 }  // namespace

@@ -1,20 +1,25 @@
 #!/usr/bin/env python3
-# Writes the closed surface of scenarios/kidney_biopsy.toml, as ASCII STL: a round rod along x with
-# a rounded tip at the origin.
+# Writes the closed surface of scenarios/kidney_biopsy.toml, as ASCII STL: a round rod against x with
+# a rounded tip.
 #   python3 biopsy_core.py > biopsy_core.stl
 # SPDX-License-Identifier: LGPL-3.0-or-later
 import math
 
-RADIUS, LENGTH = 0.004, 0.060  # m
+RADIUS, LENGTH = 0.004, 0.040  # m
+TIP = (-0.008, 0.0003, 0.0002)
 AROUND, TIP_RINGS = 32, 6
 
 
 def ring(x, radius):
     turns = [2 * math.pi * k / AROUND for k in range(AROUND)]
-    return [(x, radius * math.cos(t), radius * math.sin(t)) for t in turns]
+    return [point(x, radius * math.cos(t), radius * math.sin(t)) for t in turns]
 
 
-tip, far_end = (0.0, 0.0, 0.0), (LENGTH, 0.0, 0.0)
+def point(x, y, z):  # x from the tip on; a turn about z keeps the triangles facing outwards
+    return (TIP[0] - x, TIP[1] - y, TIP[2] + z)
+
+
+tip, far_end = point(0, 0, 0), point(LENGTH, 0, 0)
 rings = []
 for k in range(1, TIP_RINGS + 1):
     angle = 0.5 * math.pi * k / TIP_RINGS

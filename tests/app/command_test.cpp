@@ -1,20 +1,13 @@
 // The command as users and scripts meet it: exit statuses, messages, what goes to which stream.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "support/temporary_folder.h"
+#include "in_folder.h"
 
 namespace incise {
 namespace {
-
-struct Outcome {
-    int status = -1;
-    std::string out, err;
-};
 
 const std::string scenario = R"([mesh]
 box = { size = [1, 1, 1], cells = [2, 2, 2] }
@@ -39,34 +32,17 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(text.find(from), from.size(), to);
 }
 
-class Command : public testing::Test {
-  protected:
-    void write(const std::string& name, const std::string& text) {
-        std::ofstream(folder_ / name) << text;
-    }
-
-    /// Runs the program in the folder; the arguments are words of a shell.
-    Outcome run(const std::string& arguments, const std::string& program = INCISE_PROGRAM) {
-        const auto out = folder_ / "stdout", err = folder_ / "stderr";
-        const std::string line = "cd '" + folder_.path().string() + "' && '" + program + "' " +
-                                 arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
-        const int result = std::system(line.c_str());
-        return {WIFEXITED(result) ? WEXITSTATUS(result) : -1, support::read_text(out),
-                support::read_text(err)};
-    }
-
-    support::TemporaryFolder folder_;
-};
+using Command = test::InFolder;
 
 TEST_F(Command, TellsItsVersionAndHelp) {
     EXPECT_EQ(run("--version").out, "incise " INCISE_VERSION "\n");
     const auto help = run("--help");
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
-    for (const auto* word : {"run", "check", "info", "convert", "materials", "render",
+    for (const auto* word : {"run", "check", "info", "cut", "convert", "materials", "render",
                              "Examples:", "Exit status: 0 done"})
         EXPECT_NE(help.out.find(word), std::string::npos) << word;
-    for (const auto* verb : {"run", "check", "info", "convert", "materials"}) {
+    for (const auto* verb : {"run", "check", "info", "cut", "convert", "materials"}) {
         const auto of_verb = run(std::string(verb) + " --help");
         EXPECT_EQ(of_verb.status, 0) << verb;
         EXPECT_NE(of_verb.out.find(std::string("Usage: incise ") + verb), std::string::npos);
@@ -84,9 +60,9 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
     EXPECT_EQ(refused("").find("incise: a verb is missing:"), 0u);
     EXPECT_EQ(refused("inof a.vtu").find("incise: verb 'inof': is not known; did you mean 'info'?"),
               0u);
-    EXPECT_EQ(refused("cut a.vtu"),
-              "incise: this version has no verb 'cut' yet; there are: run, check, info, convert, "
-              "materials, render\n");
+    EXPECT_EQ(refused("bench a.vtu"),
+              "incise: this version has no verb 'bench' yet; there are: run, check, info, cut, "
+              "convert, materials, render\n");
     EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
     EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/element_boxes.h"
+
+namespace incise::cutting {
+
+using topology::ElementId;
+using topology::Mesh;
+
+ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) {
+    build(mesh, positions);
+}
+
+void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
+    margin_ = 0.0;
+    groups_.assign((mesh.element_capacity() + group_size - 1) / group_size, Box());
+    supergroups_.assign((groups_.size() + group_size - 1) / group_size, Box());
+    double sum = 0.0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        update_group(mesh, positions, g);
+        if (!groups_[g].isEmpty()) sum += groups_[g].sizes().maxCoeff();
+    }
+    // Boxes that have grown by this much let twice as many elements through, or a few times more.
+    if (!groups_.empty()) largest_margin_ = 0.25 * sum / static_cast<double>(groups_.size());
+}
+
+void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> positions, std::size_t g) {
+    Box box;
+    const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
+    for (std::size_t i = g * group_size; i < end; ++i)
+        if (const ElementId e(i); mesh.is_alive(e))
+            for (const topology::NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+    groups_[g] = box;
+    // Only ever larger, until all are made anew: a group may have lost elements.
+    supergroups_[g / group_size].extend(box);
+}
+
+void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, double distance) {
+    margin_ += distance;
+    if (margin_ <= largest_margin_) return;
+    build(mesh, positions);
+    margin_ = distance;  // they have to hold what was before the step too
+}
+
+void ElementBoxes::follow(const Mesh& mesh, std::span<const Vec3> positions,
+                          const topology::ChangeSet& changes) {
+    groups_.resize((mesh.element_capacity() + group_size - 1) / group_size);
+    supergroups_.resize((groups_.size() + group_size - 1) / group_size);
+    std::vector<std::size_t> touched;
+    for (const auto& record : changes.elements_added)
+        touched.push_back(record.id.index() / group_size);
+    for (const auto& record : changes.rewired)
+        touched.push_back(record.element.index() / group_size);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    // From the positions of now, which the margin covers from both sides.
+    for (const std::size_t g : touched)
+        if (g < groups_.size()) update_group(mesh, positions, g);
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,68 @@
+// Which elements are near a tool, without looking at all of them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+using Box = Eigen::AlignedBox3d;
+
+/// Boxes round groups of elements with neighbouring ids, which lie near each other, and round
+/// groups of groups. They stay right while the body moves, for they grow by as much as any node
+/// has moved; when they have grown too large they are made anew.
+class ElementBoxes {
+  public:
+    /// Cost: O(n).
+    ElementBoxes(const topology::Mesh& mesh, std::span<const Vec3> positions);
+
+    /// The body moves on: no node by more than `distance` (m), to `positions`.
+    /// Cost: now and then O(n).
+    void move(const topology::Mesh& mesh, std::span<const Vec3> positions, double distance);
+    /// Takes in what an edit has changed. Cost: proportional to the edit.
+    void follow(const topology::Mesh& mesh, std::span<const Vec3> positions,
+                const topology::ChangeSet& changes);
+
+    /// Calls visit(element) for the living elements, in ascending order, of all groups for which
+    /// may_meet(box) holds. The boxes hold the elements throughout the last motion.
+    template <class MayMeet, class Visit>
+    void for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const;
+
+  private:
+    static constexpr std::size_t group_size = 64;
+
+    void build(const topology::Mesh& mesh, std::span<const Vec3> positions);
+    void update_group(const topology::Mesh& mesh, std::span<const Vec3> positions, std::size_t g);
+    Box grown(const Box& box) const {
+        const Vec3 margin = Vec3::Constant(margin_);
+        return {box.min() - margin, box.max() + margin};
+    }
+
+    std::vector<Box> groups_;       // of elements
+    std::vector<Box> supergroups_;  // of groups
+    double margin_ = 0.0;           // by how much nodes may have moved since the boxes were made
+    double largest_margin_ = 0.0;   // beyond which they are made anew
+};
+
+template <class MayMeet, class Visit>
+void ElementBoxes::for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const {
+    for (std::size_t s = 0; s < supergroups_.size(); ++s) {
+        if (supergroups_[s].isEmpty() || !may_meet(grown(supergroups_[s]))) continue;
+        const std::size_t end_group = std::min(groups_.size(), (s + 1) * group_size);
+        for (std::size_t g = s * group_size; g < end_group; ++g) {
+            if (groups_[g].isEmpty() || !may_meet(grown(groups_[g]))) continue;
+            const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
+            for (std::size_t i = g * group_size; i < end; ++i)
+                if (const topology::ElementId e(i); mesh.is_alive(e)) visit(e);
+        }
+    }
+}
+
+}  // namespace incise::cutting
