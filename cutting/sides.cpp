@@ -17,19 +17,19 @@ using topology::NodeId;
 namespace {
 
 /// Groups of more elements are pieces, not crumbs.
-constexpr std::size_t largest_crumb = 32;
+constexpr std::size_t largest_crumb = 8;
 
 class Sides {
   public:
     Sides(const Mesh& mesh, const CutFront& front) : mesh_(mesh), front_(front) {}
 
-    Parting parting(const std::vector<ElementId>& touched) {
+    Parting parting(const std::vector<ElementId>& touched, bool has_crumbs) {
         collect_faces(touched);
         place_elements_on_cut();
         Parting result;
         for (const FaceId f : faces_)
             if (is_parted(f)) result.faces.push_back(f);
-        keep_crumbs(result);
+        if (has_crumbs) keep_crumbs(result);
         return result;
     }
 
@@ -43,6 +43,7 @@ class Sides {
 
     void collect_faces(const std::vector<ElementId>& touched);
     void place_elements_on_cut();
+    void place_with_corners(ElementId e);
     void keep_crumbs(Parting& parting);
     bool collect_piece(ElementId start, std::vector<ElementId>& piece);
     bool is_crumb(const std::vector<ElementId>& piece) const;
@@ -94,6 +95,9 @@ void Sides::place_elements_on_cut() {
         if (is_placed(from.element) && !is_placed(to.element))
             bonds.push({topology::rest_area(mesh_, from), from});
     };
+    for (const FaceId face : faces_)
+        for (const ElementId e : {face.element, mesh_.neighbor(face).element})
+            if (!is_placed(e)) place_with_corners(e);
     for (const FaceId face : faces_) {
         add(face, mesh_.neighbor(face));
         add(mesh_.neighbor(face), face);
@@ -108,6 +112,19 @@ void Sides::place_elements_on_cut() {
         for (int f = 0; f < 4; ++f)
             if (const FaceId next = mesh_.neighbor({e, f}); next.is_valid()) add({e, f}, next);
     }
+}
+
+/// Where its corners are that are near the cut, if they are all on one side of it.
+void Sides::place_with_corners(ElementId e) {
+    NodeId first;
+    for (const NodeId n : mesh_.corners(e)) {
+        if (!front_.is_near(n)) continue;
+        if (!first.is_valid())
+            first = n;
+        else if (front_.is_crossed(first, n))
+            return;
+    }
+    if (first.is_valid()) places_.emplace(e.value, Place{first, false});
 }
 
 void Sides::keep_crumbs(Parting& parting) {
@@ -200,9 +217,9 @@ bool Sides::is_parted(FaceId f) const {
 
 }  // namespace
 
-Parting parted_faces(const Mesh& mesh, const CutFront& front,
-                     const std::vector<ElementId>& touched) {
-    return Sides(mesh, front).parting(touched);
+Parting parted_faces(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
+                     bool keep_crumbs) {
+    return Sides(mesh, front).parting(touched, keep_crumbs);
 }
 
 }  // namespace incise::cutting

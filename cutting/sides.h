@@ -20,13 +20,14 @@ struct Parting {
 /// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
 /// the cut ends, they do not agree yet.
 ///
-/// An element is where its corner is that is not on the cut. One that has no such corner goes with
-/// the neighbour with which it shares the largest face, so that it does not come loose. Small
-/// groups that hang on the rest of their side by nodes only, which snapping may leave, stay with
-/// the other side: they would be crumbs.
+/// An element is where its corner is that is not on the cut. One that has no such corner is where
+/// its corners are that are near the cut, if these are all on one side; else it goes with the
+/// neighbour with which it shares the largest face. Small groups that hang on the rest of their
+/// side by nodes only, which snapping may leave, stay with the other side: they would be crumbs.
 ///
+/// @param keep_crumbs  whether there are crumbs: an exact cut leaves none
 /// @param touched  the elements to look at, and thereby their faces
 Parting parted_faces(const topology::Mesh& mesh, const CutFront& front,
-                     const std::vector<topology::ElementId>& touched);
+                     const std::vector<topology::ElementId>& touched, bool keep_crumbs);
 
 }  // namespace incise::cutting

@@ -79,7 +79,7 @@ class Splitter {
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
         for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
-        const Parting parting = parted_faces(mesh_, front_, touched_);
+        const Parting parting = parted_faces(mesh_, front_, touched_, options_.snap > 0.0);
         for (const ElementId e : parting.crumbs) scar(e);
         for (const FaceId f : parting.faces) {
             report_.cut_area += topology::rest_area(mesh_, f);
@@ -98,6 +98,7 @@ class Splitter {
     /// in units of the edge's length at rest.
     struct Passage {
         double place, from_a, from_b;
+        Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
     };
     using Passages = std::vector<Passage>;  // in ascending order of places
 
@@ -147,7 +148,8 @@ class Splitter {
     Passages passages(const Edge& edge, ElementId element) const;
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
-    bool is_near(NodeId n, double share, double length) const;
+    NearPlane plane_at(NodeId n, const Passage& passage) const;
+    bool is_near(NodeId n, double share, const Passage& passage) const;
     void scar(ElementId e);
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
@@ -185,8 +187,7 @@ void Splitter::scar(ElementId e) {
         for (const NodeId other : corners) {
             if (n == other || front_.is_on(n)) continue;
             const Edge edge = edge_between(n, other);
-            for (const Passage& passage : passages(edge, e))
-                scars_.add(n, (n == edge.a ? passage.from_a : passage.from_b) * rest_length(edge));
+            for (const Passage& passage : passages(edge, e)) scars_.add(n, plane_at(n, passage));
         }
 }
 
@@ -225,10 +226,11 @@ Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const
             const double size = normal.norm() * along.norm();
             if (size > 0.0) steepness = std::abs(normal.dot(along)) / size;
         }
-        Passage passage{crossing.place, crossing.place * steepness,
-                        (1.0 - crossing.place) * steepness};
-        // Where the surface bends away its plane at the crossing would say too little.
         const Vec3 a = point(edge.a)[1], b = point(edge.b)[1];
+        Passage passage{crossing.place, crossing.place * steepness,
+                        (1.0 - crossing.place) * steepness, a + crossing.place * (b - a),
+                        crossing.normal.normalized()};
+        // Where the surface bends away its plane at the crossing would say too little.
         const double length = (b - a).norm(), at_a = surface_.distance(a) / length;
         if (!std::isnan(at_a)) {
             const double at_b = surface_.distance(b) / length;
@@ -285,8 +287,8 @@ void Splitter::find_crossed_edges() {
     for (const Found& f : found) {
         const double length = rest_length(f.edge);
         const Passage &first = f.passages.front(), &last = f.passages.back();
-        if (is_near(f.edge.a, first.from_a, length)) snap_to(f.edge.a, length);
-        if (is_near(f.edge.b, last.from_b, length)) snap_to(f.edge.b, length);
+        if (is_near(f.edge.a, first.from_a, first)) snap_to(f.edge.a, length);
+        if (is_near(f.edge.b, last.from_b, last)) snap_to(f.edge.b, length);
     }
     for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
 }
@@ -296,8 +298,15 @@ void Splitter::snap_to(NodeId n, double reach) {
     front_.put_on(n, false, reach);
 }
 
-bool Splitter::is_near(NodeId n, double share, double length) const {
-    return share < snap_ || scars_.may_hold(n, share * length);
+NearPlane Splitter::plane_at(NodeId n, const Passage& passage) const {
+    return {passage.normal, passage.normal.dot(point(n)[1] - passage.point)};
+}
+
+/// Whether a passage at this share of an edge from the node counts as at the node.
+bool Splitter::is_near(NodeId n, double share, const Passage& passage) const {
+    if (share < snap_) return true;
+    const double size = (point(n)[1] - passage.point).norm();
+    return scars_.has(n, plane_at(n, passage), size);
 }
 
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
@@ -308,9 +317,9 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
     const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
     if (is_on_a && is_on_b) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
-    for (; begin != end && is_near(edge.a, begin->from_a, length); ++begin)
+    for (; begin != end && is_near(edge.a, begin->from_a, *begin); ++begin)
         if (!is_on_a) snap_to(edge.a, length);
-    for (; begin != end && is_near(edge.b, (end - 1)->from_b, length); --end)
+    for (; begin != end && is_near(edge.b, (end - 1)->from_b, *(end - 1)); --end)
         if (!is_on_b) snap_to(edge.b, length);
     while (begin != end && is_on_a && begin->place < bend) ++begin;
     while (begin != end && is_on_b && (end - 1)->place > 1.0 - bend) --end;
@@ -332,13 +341,9 @@ void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
 /// The edge is not divided: what passes through it counts as at its ends.
 void Splitter::settle(const Edge& edge, const Passages& passages) {
     if (passages.size() % 2 == 1) toggled_.push_back(edge);
-    const double length = rest_length(edge);
     for (const Passage& passage : passages) {
-        const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
-        if (is_on_a && (!is_on_b || passage.from_a <= passage.from_b))
-            scars_.add(edge.a, passage.from_a * length);
-        else if (is_on_b)
-            scars_.add(edge.b, passage.from_b * length);
+        if (front_.is_on(edge.a)) scars_.add(edge.a, plane_at(edge.a, passage));
+        if (front_.is_on(edge.b)) scars_.add(edge.b, plane_at(edge.b, passage));
     }
 }
 
@@ -353,9 +358,8 @@ void Splitter::divide_next() {
         const Passage& passage = left[left.size() / 2];
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
-            const double moved = std::abs(t - passage.place) * (passage.from_a + passage.from_b);
-            const double distance = moved * rest_length(edge);
-            scars_.add(divide(edge, pending.element, t), distance);
+            const NodeId middle = divide(edge, pending.element, t);
+            scars_.add(middle, plane_at(middle, passage));
             return;
         }
         snap_to(passage.place < 0.5 ? edge.a : edge.b, rest_length(edge));

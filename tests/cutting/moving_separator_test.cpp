@@ -95,8 +95,8 @@ TEST(Separator, PartsTissueThatMovesHoweverItMoves) {
                 const auto [bottom, top] =
                     held_elements(body, [&](const Vec3& X) { return calm(X) == 0.0; });
                 ASSERT_TRUE(bottom.is_valid() && top.is_valid());
-                const Plane plane({box.center().x(), box.center().y(), low + 0.5 * height},
-                                  {0.03, -0.02, 1});
+                const BladePlane plane({box.center().x(), box.center().y(), low + 0.5 * height},
+                                       {0.03, -0.02, 1});
                 constexpr int num_steps = 20;
                 const double reach = 50 * size;  // however far the tissue is thrown
                 const auto edge = [&](int i) {
@@ -125,7 +125,7 @@ TEST(Separator, PartsTissueThatRunsIntoAStillOrRetreatingBlade) {
                 Body body(family.data);
                 const auto box = body.box();
                 const double size = box.diagonal().norm();
-                const Plane plane(box.center(), {0.1, 0.3, 1});
+                const BladePlane plane(box.center(), {0.1, 0.3, 1});
                 const auto edge = [&](double t) {
                     return plane.edge(3 * size, size * (1.0 + blade_speed * t));
                 };

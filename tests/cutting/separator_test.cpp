@@ -31,7 +31,7 @@ TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
             Body body(family.data);
             const auto box = body.box();
             const double size = box.diagonal().norm();
-            const Plane plane(box.center() + random.vector(0.1 * size), random.vector(1));
+            const BladePlane plane(box.center() + random.vector(0.1 * size), random.vector(1));
             std::vector<bool> above;
             for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e)
                 above.push_back(plane.height(body.centre(ElementId(e))) > 0.0);
@@ -116,8 +116,8 @@ Vec3 passage(const Body& body, const topology::FacePair& pair) {
 
 /// How often the path of a face, from centre to centre, passes through the rectangle of `plane`
 /// over |along u| < reach, from < along v < to; by rounded arithmetic, in tissue at rest.
-int crossings(const Body& body, const topology::FacePair& pair, const Plane& plane, double reach,
-              double from, double to) {
+int crossings(const Body& body, const topology::FacePair& pair, const BladePlane& plane,
+              double reach, double from, double to) {
     const Vec3 middle = passage(body, pair);
     int count = 0;
     for (const Vec3& end : {body.centre(pair.a.element), body.centre(pair.b.element)}) {
@@ -153,7 +153,7 @@ TEST(Separator, APartialSweepOpensWhatItPassedAndPartsNothing) {
             Body body(family.data);
             const auto box = body.box();
             const double size = box.diagonal().norm();
-            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            const BladePlane plane(box.center() + random.vector(0.05 * size), random.vector(1));
             // Half through, over the whole width; or a stab that is narrower than the body.
             const double reach = seed % 2 == 0 ? 2 * size : 0.2 * size;
             std::set<topology::FacePair> expected;
@@ -201,7 +201,7 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
                 for (const auto& edge : edges_of(uncut, f)) on_surface.insert(edge);
             const auto box = body.box();
             const double size = box.diagonal().norm();
-            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            const BladePlane plane(box.center() + random.vector(0.05 * size), random.vector(1));
             const Edge last = plane.edge(2 * size, 0.0);
             body.step(plane.edge(2 * size, -size), last);
 
@@ -260,7 +260,7 @@ TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
             Body large(family.data), small(family.data);
             const auto box = large.box();
             const double size = box.diagonal().norm();
-            const Plane plane(box.center() + random.vector(0.05 * size), random.vector(1));
+            const BladePlane plane(box.center() + random.vector(0.05 * size), random.vector(1));
             const double end = seed % 2 == 0 ? size : 0.1 * size;
             large.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 1);
             small.sweep(plane.edge(2 * size, -size), plane.edge(2 * size, end), 97);
@@ -326,7 +326,7 @@ TEST(Separator, AnEdgeFoldedOntoItselfOpensNothing) {
         Body body(family.data);
         const auto box = body.box();
         const double size = box.diagonal().norm();
-        const Plane plane(box.center(), {3, 1, 2});
+        const BladePlane plane(box.center(), {3, 1, 2});
         const auto folded = [&](double along) {
             Edge edge = plane.edge(2 * size, along);
             edge.push_back(edge.front());
@@ -350,7 +350,7 @@ TEST(Separator, ABladeOutsideOpensNothing) {
                 normal[axis] = side;
                 Vec3 point = box.center();
                 point[axis] += side * (0.5 * box.sizes()[axis] + 1e-9 * size);
-                const Plane plane(point, normal);
+                const BladePlane plane(point, normal);
                 body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, 2 * size));
                 // Into the body's box, but short of it.
                 body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, -size));

@@ -109,10 +109,10 @@ class Body {
 };
 
 /// A plane, and in it a rectangle about `point` that reaches by `reach` to all sides.
-struct Plane {
+struct BladePlane {
     Vec3 point, normal, u, v;
 
-    Plane(const Vec3& p, const Vec3& n) : point(p), normal(n.normalized()) {
+    BladePlane(const Vec3& p, const Vec3& n) : point(p), normal(n.normalized()) {
         u = normal.unitOrthogonal();
         v = normal.cross(u);
     }

@@ -1,0 +1,151 @@
+// What a cut remembers of its front, and of where it has been.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/cut_front.h"
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "cutting/scars.h"
+#include "support/mesh_families.h"
+
+namespace incise::cutting {
+namespace {
+
+using test::Random;
+using topology::ChangeSet;
+using topology::NodeId;
+
+NodeId node(std::size_t i) { return NodeId(i); }
+
+/// A record that says so: one node is a copy, the other is between two.
+ChangeSet additions(std::initializer_list<std::pair<std::size_t, std::size_t>> copies) {
+    ChangeSet changes;
+    for (const auto& [id, source] : copies) {
+        topology::NodeRecord record;
+        record.id = node(id);
+        record.sources[0] = {node(source), 1.0};
+        record.num_sources = 1;
+        changes.nodes_added.push_back(record);
+    }
+    return changes;
+}
+
+TEST(CutFront, KnowsItsNodes) {
+    CutFront front;
+    EXPECT_TRUE(front.is_empty());
+    front.put_on(node(3), true, 0.5);
+    front.put_on(node(5), false, 0.5);
+    EXPECT_EQ(front.size(), 2u);
+    EXPECT_TRUE(front.is_on(node(3)) && front.is_on(node(5)));
+    EXPECT_FALSE(front.is_on(node(4)));
+    EXPECT_FALSE(front.is_near(node(3)));  // but on it
+    EXPECT_TRUE(front.is_near(node(5)));
+    EXPECT_FALSE(front.is_near(node(4)));
+    // What is on it exactly stays so; the reach is the larger one.
+    front.put_on(node(3), false, 2.0);
+    EXPECT_FALSE(front.is_near(node(3)));
+    EXPECT_EQ(front.size(), 2u);
+    std::map<NodeId, double> reaches;
+    front.forget_unless([&](NodeId n, double reach) {
+        reaches[n] = reach;
+        return true;
+    });
+    EXPECT_EQ(reaches, (std::map<NodeId, double>{{node(3), 2.0}, {node(5), 0.5}}));
+}
+
+TEST(CutFront, TogglesEdgesWhicheverWayTheyAreAskedFor) {
+    // Against a plain set of pairs.
+    std::set<std::pair<std::size_t, std::size_t>> crossed;
+    CutFront front;
+    Random random(3);
+    for (int i = 0; i < 3000; ++i) {
+        const std::size_t a = random.below(12);
+        const std::size_t b = (a + 1 + random.below(11)) % 12;
+        front.toggle(node(a), node(b));
+        const auto pair = std::minmax(a, b);
+        if (!crossed.erase(pair)) crossed.insert(pair);
+        const std::size_t p = random.below(12), q = random.below(12);
+        const bool expected = crossed.contains(std::minmax(p, q));
+        ASSERT_EQ(front.is_crossed(node(p), node(q)), expected);
+        ASSERT_EQ(front.is_crossed(node(q), node(p)), expected);
+    }
+}
+
+TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
+    CutFront front;
+    front.put_on(node(1), true, 1.0);
+    front.put_on(node(2), false, 1.0);
+    front.toggle(node(1), node(7));
+    front.toggle(node(2), node(8));
+    front.toggle(node(2), node(7));
+    ChangeSet changes = additions({{20, 1}, {21, 2}, {22, 9}});
+    topology::NodeRecord between;
+    between.id = node(23);
+    between.num_sources = 2;
+    between.sources = {{{node(1), 0.5}, {node(2), 0.5}}};
+    changes.nodes_added.push_back(between);
+    front.follow(changes);
+
+    EXPECT_TRUE(front.is_on(node(20)) && !front.is_near(node(20)));
+    EXPECT_TRUE(front.is_on(node(21)) && front.is_near(node(21)));
+    EXPECT_FALSE(front.is_on(node(22)));
+    EXPECT_FALSE(front.is_on(node(23)));  // whoever makes a node says that it is on the cut
+    EXPECT_TRUE(front.is_crossed(node(20), node(7)));
+    EXPECT_TRUE(front.is_crossed(node(21), node(8)));
+    EXPECT_TRUE(front.is_crossed(node(21), node(7)));
+    EXPECT_FALSE(front.is_crossed(node(20), node(8)));
+    EXPECT_FALSE(front.is_crossed(node(22), node(7)));
+    EXPECT_TRUE(front.is_crossed(node(1), node(7)));  // as before
+
+    CutFront empty;
+    empty.follow(changes);
+    EXPECT_TRUE(empty.is_empty());
+}
+
+TEST(CutFront, ForgetsWhatIsLeftBehind) {
+    CutFront front;
+    for (const std::size_t n : {1u, 2u, 3u})
+        front.put_on(node(n), true, 0.1 * static_cast<double>(n));
+    front.toggle(node(1), node(7));  // an edge to a node that is not on the cut
+    front.toggle(node(1), node(2));  // one to a node that is
+    front.toggle(node(3), node(7));
+    front.forget_unless([](NodeId, double reach) { return reach > 0.15; });
+    EXPECT_FALSE(front.is_on(node(1)));
+    EXPECT_TRUE(front.is_on(node(2)) && front.is_on(node(3)));
+    EXPECT_FALSE(front.is_crossed(node(1), node(7)));
+    EXPECT_TRUE(front.is_crossed(node(1), node(2)));  // the other end still needs it
+    EXPECT_TRUE(front.is_crossed(node(3), node(7)));
+    front.forget_unless([](NodeId, double) { return false; });
+    EXPECT_TRUE(front.is_empty());
+    for (const auto& [a, b] : {std::pair(1, 2), {1, 7}, {3, 7}})
+        EXPECT_FALSE(
+            front.is_crossed(node(static_cast<std::size_t>(a)), node(static_cast<std::size_t>(b))));
+}
+
+TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
+    Scars scars;
+    const NodeId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
+    scars.add(n, {Vec3::UnitZ(), 0.2});
+    scars.add(n, {Vec3::UnitX(), -0.1});
+    EXPECT_TRUE(scars.has(n, {Vec3::UnitZ(), 0.2}, 1.0));
+    EXPECT_TRUE(scars.has(n, {Vec3(-Vec3::UnitZ()), -0.2}, 1.0));  // from the other side
+    EXPECT_TRUE(scars.has(n, {Vec3::UnitX(), -0.1 + 1e-9}, 1.0));
+    EXPECT_FALSE(scars.has(n, {Vec3::UnitZ(), 0.19}, 1.0));
+    EXPECT_FALSE(scars.has(n, {Vec3::UnitZ(), -0.2}, 1.0));
+    EXPECT_FALSE(scars.has(n, {Vec3(0.0, 0.01, 1.0).normalized(), 0.2}, 1.0));
+    EXPECT_FALSE(scars.has(other, {Vec3::UnitZ(), 0.2}, 1.0));
+    topology::ChangeSet changes;
+    topology::NodeRecord record{copy, Vec3::Zero(), {}, 1};
+    record.sources[0] = {n, 1.0};
+    changes.nodes_added.push_back(record);
+    scars.follow(changes);
+    EXPECT_TRUE(scars.has(copy, {Vec3::UnitX(), -0.1}, 1.0));
+    EXPECT_FALSE(scars.has(copy, {Vec3::UnitX(), 0.1}, 1.0));
+}
+
+}  // namespace
+}  // namespace incise::cutting

@@ -1,0 +1,325 @@
+// Thousands of random programs of cuts, with a moving body that follows each of them: what must
+// hold after every cut, whatever it was.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cut_programs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <string_view>
+#include <variant>
+
+#include "io/mesh_reader.h"
+#include "physics/model.h"
+#include "physics/test_materials.h"
+#include "topology/validate.h"
+
+namespace incise::cutting {
+namespace {
+
+using physics::Model;
+using test::Random;
+using topology::ChangeSet;
+using topology::ElementId;
+using topology::Mesh;
+using topology::MeshData;
+using topology::NodeId;
+
+/// Each law of the tests, in a region of its own.
+physics::MaterialTable all_materials() {
+    physics::MaterialTable table;
+    for (const auto& named : physics::test_laws()) {
+        const std::size_t i = table.materials.size();
+        table.of_region[static_cast<int>(i)] = i;
+        table.materials.push_back(
+            {900.0 + 37.0 * static_cast<double>(i), physics::HyperElasticLinks{named.law}});
+    }
+    return table;
+}
+
+/// Elastic energy of an element by its deformation gradient, J. The kernels see the squares of
+/// edges, by which they lose digits with the fourth power of an element's slenderness, and at snap
+/// 0 elements are as slender as chance will have it.
+double energy(const Model& model, const physics::MaterialTable& table, ElementId e) {
+    const Mesh& mesh = model.mesh();
+    const auto corners = mesh.corners(e);
+    Eigen::Matrix3d rest, current;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto c = static_cast<Eigen::Index>(k);
+        rest.col(c) = mesh.rest_position(corners[k + 1]) - mesh.rest_position(corners[0]);
+        current.col(c) =
+            model.positions()[corners[k + 1].index()] - model.positions()[corners[0].index()];
+    }
+    const Eigen::Matrix3d F = current * rest.inverse();
+    const Eigen::Matrix3d twice_E = F.transpose() * F - Eigen::Matrix3d::Identity();
+    const physics::LinkStrain strain{twice_E.trace(), twice_E.squaredNorm(), F.determinant()};
+    const auto& material = table.materials[table.of_region.at(mesh.region(e))];
+    const auto& links = std::get<physics::HyperElasticLinks>(material.method);
+    const auto density = [&](const auto& law) {
+        return law.response(strain, links.inversion_threshold).w;
+    };
+    return std::visit(density, links.law) * element_volume(mesh, e, mesh.rest_positions());
+}
+
+/// Sums over the body, and the sums of absolute values that tell their rounding.
+struct Balance {
+    physics::Totals totals;
+    Vec3 moment = Vec3::Zero();  // of mass
+    double elastic_energy = 0.0;
+    double momentum_scale = 0.0, moment_scale = 0.0, elastic_scale = 0.0;
+
+    Balance(const Model& model, const physics::MaterialTable& table) : totals(model.totals()) {
+        for (std::size_t n = 0; n < model.masses().size(); ++n) {
+            const double m = model.masses()[n];
+            moment += m * model.positions()[n];
+            moment_scale += m * model.positions()[n].norm();
+            momentum_scale += m * model.velocities()[n].norm();
+        }
+        for (std::size_t i = 0; i < model.mesh().element_capacity(); ++i) {
+            const double w = energy(model, table, ElementId(i));
+            elastic_energy += w;
+            elastic_scale += std::abs(w);
+        }
+    }
+};
+
+/// What a model is that must not depend on how it came about.
+struct Figures {
+    std::vector<double> masses, energies;
+    std::vector<Vec3> forces;
+    double stable_step;
+    bool operator==(const Figures&) const = default;
+
+    explicit Figures(Model& model) : stable_step(model.stable_step()) {
+        model.compute_forces(0.0);
+        masses.assign(model.masses().begin(), model.masses().end());
+        forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
+        for (std::size_t e = 0; e < model.mesh().element_capacity(); ++e)
+            energies.push_back(model.element_result(ElementId(e)).energy);
+    }
+};
+
+/// A body in motion through which a program of cuts goes.
+class Patient {
+  public:
+    Patient(const MeshData& data, std::uint64_t seed)
+        : random_(seed),
+          table_(all_materials()),
+          mesh_(Mesh::build(with_all_materials(data)).mesh),
+          model_(mesh_, table_),
+          rest_volume_(rest_volume(mesh_)) {
+        constexpr std::array<double, 3> snaps = {0.0, 0.1, 0.25};
+        const double snap = snaps[random_.below(3)];
+        options_ = random_.below(2) == 0 ? guarded(mesh_, snap) : SplitOptions{snap, {}};
+        Box box;
+        for (const Vec3& X : mesh_.rest_positions()) box.extend(X);
+        size_ = box.diagonal().norm();
+        if (random_.below(2) == 0) deform(0.5);
+        is_at_rest_ = false;
+        if (std::equal(mesh_.rest_positions().begin(), mesh_.rest_positions().end(),
+                       model_.positions().begin()))
+            is_at_rest_ = true;
+    }
+
+    std::string describe() const {
+        return "snap " + std::to_string(options_.snap) +
+               (options_.min_step_length.empty() ? "" : ", guarded") +
+               (is_at_rest_ ? ", at rest" : ", deformed");
+    }
+
+    /// @param is_convex  the body at rest
+    void run(bool is_convex) {
+        const std::size_t num_cuts = 1 + random_.below(3);
+        for (std::size_t i = 0; i < num_cuts && !testing::Test::HasFailure(); ++i) {
+            const RandomCut cut = random_cut(living_positions(), random_);
+            SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
+            carry_out(cut);
+            if (cut.kind == CutKind::plane) expect_parted(cut);
+            if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
+                expect_halves(cut);
+            if (i == 0 && cut.kind == CutKind::plane) expect_nothing_more(cut);
+        }
+    }
+
+  private:
+    static MeshData with_all_materials(MeshData data) {
+        const auto num_materials = static_cast<int>(physics::test_laws().size());
+        for (std::size_t c = 0; c < data.num_cells(); ++c)
+            data.regions[c] = static_cast<int>(c) % num_materials;
+        return data;
+    }
+
+    std::vector<Vec3> living_positions() const {
+        std::vector<Vec3> positions;
+        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n)
+            if (mesh_.is_alive(NodeId(n))) positions.push_back(model_.positions()[n]);
+        return positions;
+    }
+
+    /// Moves the body smoothly, and gives it some velocity.
+    void deform(double strain) {
+        const SmoothField displacement(strain, size_, random_), motion(1.0, size_, random_);
+        std::vector<Vec3> x, v;
+        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n) {
+            const Vec3& X = mesh_.rest_position(NodeId(n));
+            x.push_back(model_.positions()[n] + displacement.at(X));
+            v.push_back(motion.at(X) + random_.vector(0.1 * size_));
+        }
+        model_.set_state(x, v, 0.0);
+    }
+
+    void carry_out(const RandomCut& cut) {
+        CutFront front;
+        for (const auto& surface : cut.stroke) {
+            const std::vector<Vec3> before(model_.positions().begin(), model_.positions().end());
+            if (!is_at_rest_) deform(0.02);
+            cut_and_follow(*surface, front, before);
+        }
+    }
+
+    Split cut_and_follow(const CutSurface& surface, CutFront& front,
+                         const std::vector<Vec3>& positions_before) {
+        const Balance before(model_, table_);
+        const Split done = split(mesh_, {mesh_, positions_before, model_.positions()}, surface,
+                                 front, options_, &scars_);
+        model_.apply(done.changes);
+        if (!done.changes.is_empty()) check(before);
+        return done;
+    }
+
+    void check(const Balance& before) {
+        ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
+        EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
+
+        const Balance after(model_, table_);
+        const physics::Totals &a = before.totals, &b = after.totals;
+        EXPECT_NEAR(b.mass, a.mass, 1e-12 * a.mass);
+        EXPECT_NEAR(b.rest_volume, a.rest_volume, 1e-12 * a.rest_volume);
+        EXPECT_LE((after.moment - before.moment).norm(), 1e-12 * before.moment_scale);
+        EXPECT_LE((b.momentum - a.momentum).norm(), 1e-12 * before.momentum_scale);
+        // At rest there is nothing but rounding.
+        const double scale = before.elastic_scale + 1e-6 * model_.stiffness_energy();
+        EXPECT_NEAR(after.elastic_energy, before.elastic_energy, 1e-10 * scale);
+        if (options_.snap > 0.0) {
+            EXPECT_NEAR(b.elastic_energy, a.elastic_energy, 1e-10 * scale);
+        }
+        EXPECT_LE(b.kinetic_energy, a.kinetic_energy * (1.0 + 1e-12));
+
+        Model fresh(mesh_, table_);
+        fresh.set_state(model_.positions(), model_.velocities(), 0.0);
+        EXPECT_EQ(Figures(model_), Figures(fresh));
+    }
+
+    /// A node may be off the surface by this share of an edge: at rest; where the body is strained,
+    /// what is near at rest may be farther. The guard may have to count the nearer end of an edge
+    /// as on the surface.
+    double how_far_off() const { return options_.snap > 0.0 ? 0.5 : 0.0; }
+
+    /// No piece is on both sides of a plane, whatever the body was: but for what is snapped.
+    void expect_parted(const RandomCut& cut) const {
+        const double off = how_far_off() * longest_edge(mesh_, model_.positions());
+        const auto pieces = topology::components(mesh_);
+        const auto num_pieces = static_cast<std::size_t>(pieces.count);
+        std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
+        for (std::size_t e = 0; e < mesh_.element_capacity(); ++e) {
+            const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
+            for (const NodeId n : mesh_.corners(ElementId(e))) {
+                const Vec3 from = model_.positions()[n.index()] - cut.point;
+                const double height = from.dot(cut.normal.normalized());
+                highest[piece] = std::max(highest[piece], height);
+                lowest[piece] = std::min(lowest[piece], height);
+            }
+        }
+        for (std::size_t piece = 0; piece < num_pieces; ++piece)
+            EXPECT_LE(std::min(highest[piece], -lowest[piece]), off + 1e-6 * size_);
+    }
+
+    /// A convex body at rest is in two; each is as large as the plane leaves it, but for what is
+    /// snapped.
+    void expect_halves(const RandomCut& cut) const {
+        const double off = how_far_off() * longest_edge(mesh_, mesh_.rest_positions());
+        const auto volume = [&](double height, int side) {
+            return volume_above(mesh_, mesh_.rest_positions(),
+                                cut.point + height * cut.normal.normalized(), side * cut.normal);
+        };
+        // Next to nothing on one side may be nothing.
+        const double room = 1e-6 * rest_volume_;
+        if (volume(off, 1) < room || volume(-off, -1) < room) return;
+        const auto volumes = piece_volumes(mesh_);
+        ASSERT_EQ(volumes.size(), 2u);
+        EXPECT_GE(volumes[0], std::max(volume(off, 1), volume(-off, -1)) - 1e-6 * room);
+        EXPECT_LE(volumes[0], std::max(volume(-off, 1), volume(off, -1)) + 1e-6 * room);
+    }
+
+    void expect_nothing_more(const RandomCut& cut) {
+        CutFront front;
+        const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
+        const Split again = cut_and_follow(*cut.stroke.front(), front, still);
+        EXPECT_TRUE(again.changes.is_empty());
+    }
+
+    Random random_;
+    physics::MaterialTable table_;
+    Mesh mesh_;
+    Model model_;
+    double rest_volume_, size_;
+    SplitOptions options_;
+    Scars scars_;
+    bool is_at_rest_ = true;
+};
+
+struct Programs {
+    std::string_view body;
+    std::uint64_t count;
+    bool is_convex;
+};
+void PrintTo(const Programs& p, std::ostream* out) { *out << p.count << " on " << p.body; }
+
+constexpr Programs all_programs[] = {{"one tetrahedron", 500, true}, {"two by a face", 400, false},
+                                     {"two by an edge", 300, false}, {"cube", 250, true},
+                                     {"ring", 250, false},           {"ball", 250, true},
+                                     {"organ", 60, false},           {"liver.vtu", 6, false},
+                                     {"kidney.vtu", 6, false}};
+static_assert(std::accumulate(std::begin(all_programs), std::end(all_programs), std::uint64_t{0},
+                              [](std::uint64_t sum, const Programs& p) { return sum + p.count; }) >=
+              2'000);
+
+MeshData body(std::string_view name) {
+    for (const auto* family : test::tetrahedral_families())
+        if (family->name == name) return family->data;
+    return io::read_mesh(std::string(INCISE_DATA_DIR) + "/" + std::string(name)).mesh;
+}
+
+class CutPrograms : public testing::TestWithParam<Programs> {};
+
+TEST_P(CutPrograms, KeepTheMeshValidAndTheBodyInBalance) {
+    const MeshData data = body(GetParam().body);
+    for (std::uint64_t seed = 0; seed < GetParam().count; ++seed) {
+        Patient patient(data, seed);
+        SCOPED_TRACE(std::string(GetParam().body) + ", seed " + std::to_string(seed) + ", " +
+                     patient.describe());
+        patient.run(GetParam().is_convex);
+        if (HasFailure()) return;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(OnBodies, CutPrograms, testing::ValuesIn(all_programs),
+                         [](const auto& programs) {
+                             std::string name(programs.param.body);
+                             std::replace_if(
+                                 name.begin(), name.end(),
+                                 [](char c) { return c == ' ' || c == '.'; }, '_');
+                             return name;
+                         });
+
+TEST(CutPrograms, AreRunOnEveryFamilyOfTetrahedra) {
+    EXPECT_EQ(test::tetrahedral_families().size() + 2, std::size(all_programs))
+        << "add the new one above";
+}
+
+}  // namespace
+}  // namespace incise::cutting

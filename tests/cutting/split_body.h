@@ -1,0 +1,86 @@
+// Bodies that are split, the surfaces along which they are, and plain geometry to judge by.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cutting/splitter.h"
+#include "topology/mesh.h"
+#include "topology/mesh_data.h"
+#include "topology/surface_data.h"
+
+namespace incise::cutting {
+
+/// What one cut consists of: a surface, or those that a blade sweeps step by step.
+using Stroke = std::vector<std::unique_ptr<CutSurface>>;
+using Polyline = std::vector<Vec3>;
+Stroke sweep(const Polyline& from, const Polyline& to, int num_steps);
+
+/// A mesh whose nodes are moved about, and split. Every cut is followed by the checks of a mesh.
+class SplitBody {
+  public:
+    explicit SplitBody(const topology::MeshData& data);
+
+    /// The nodes go to `moved` (m, by node id) meanwhile.
+    Split cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
+              const std::vector<Vec3>& moved);
+    /// A cut for itself through tissue that is still.
+    Split cut(const CutSurface& surface, const SplitOptions& options = {0.0, {}});
+
+    /// What the parts of a stroke did, one after the other.
+    std::vector<Split> cut(const Stroke& stroke, const SplitOptions& options = {0.0, {}});
+
+    Box box() const;  ///< of the present positions
+
+    topology::Mesh mesh;
+    std::vector<Vec3> positions;  ///< by node id, m
+    Scars scars;                  // of all cuts so far
+};
+
+SplitReport sum(const std::vector<Split>& parts);
+
+/// The limits that go with a snap in a body of one material: step_length.h.
+SplitOptions guarded(const topology::Mesh& mesh, double snap);
+
+/// Positions after an edit: new nodes are where its record says.
+std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes);
+
+/// Of a tetrahedron, m3.
+double element_volume(const topology::Mesh& mesh, topology::ElementId e,
+                      std::span<const Vec3> positions);
+/// At rest, the largest first, m3.
+std::vector<double> piece_volumes(const topology::Mesh& mesh);
+double rest_volume(const topology::Mesh& mesh);
+/// Volume of a body of tetrahedra on the side of the plane to which the normal points; each is
+/// clipped for itself.
+double volume_above(const topology::Mesh& mesh, std::span<const Vec3> positions, const Vec3& point,
+                    const Vec3& normal);
+
+double longest_edge(const topology::Mesh& mesh, std::span<const Vec3> positions);
+
+/// Both sides of each face that cuts have opened: faces of the boundary at the same place at rest.
+/// Only those sides that have not been divided differently since.
+std::vector<topology::FacePair> cut_faces(const topology::Mesh& mesh);
+/// Nodes at cut faces, without those that only pairs of one and the same node meet at: sides of
+/// the cut that are still joined there.
+struct NodesOfCut {
+    std::vector<topology::NodeId> parted;  ///< both of each pair
+    std::vector<topology::NodeId> front;   ///< the same on both sides
+};
+NodesOfCut nodes_of_cut(const topology::Mesh& mesh);
+
+/// A sphere of 20 * 4^n triangles with their corners on it.
+topology::SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions);
+/// Twelve triangles.
+topology::SurfaceData box_surface(const Box& box);
+/// A rectangle about `centre` from -u - v to u + v in n x n squares, raised by height(s, t), s and
+/// t from -1 to 1.
+topology::SurfaceData sheet(const Vec3& centre, const Vec3& u, const Vec3& v, int n,
+                            const std::function<Vec3(double, double)>& height);
+/// Of a closed surface, m3.
+double enclosed_volume(const topology::SurfaceData& surface);
+
+}  // namespace incise::cutting

@@ -1,0 +1,249 @@
+// Splitting along triangulated surfaces: closed ones free their inside, open ones end in the body.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "cutting/triangle_surface.h"
+#include "split_body.h"
+#include "support/mesh_families.h"
+#include "support/mesh_snapshot.h"
+
+namespace incise::cutting {
+namespace {
+
+using test::Random;
+using topology::Mesh;
+using topology::NodeId;
+using topology::SurfaceData;
+
+/// Largest distance of an opened face's node from the surface, where the body is now.
+double distance_of_cut(const SplitBody& body, const TriangleSurface& surface) {
+    double largest = 0.0;
+    for (const auto& pair : cut_faces(body.mesh))
+        for (int p = 0; p < 3; ++p)
+            largest = std::max(
+                largest,
+                surface.distance(body.positions[body.mesh.face_corner(pair.a, p).index()]));
+    return largest;
+}
+
+double cut_area(const SplitBody& body) {
+    double area = 0.0;
+    for (const auto& pair : cut_faces(body.mesh)) area += topology::rest_area(body.mesh, pair.a);
+    return area;
+}
+
+struct NamedSurface {
+    std::string name;
+    SurfaceData surface;
+};
+
+/// Convex, and well inside the unit cube.
+std::vector<NamedSurface> closed_surfaces(Random& random) {
+    const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
+    Box box(centre);
+    box.extend(centre - Vec3(0.31, 0.27, 0.24)).extend(centre + Vec3(0.22, 0.33, 0.26));
+    SurfaceData turned = box_surface(box);
+    const auto turn = Eigen::AngleAxisd(random.uniform(0.1, 1.0), random.vector(1).normalized());
+    for (Vec3& x : turned.points) x = centre + 0.8 * (turn * (x - centre));
+    return {{"sphere", icosphere(centre, 0.34, 2)},
+            {"icosahedron", icosphere(centre, 0.37, 0)},
+            {"box", box_surface(box)},
+            {"turned box", turned}};
+}
+
+TEST(SplitAlongSurface, AClosedOneFreesItsInside) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        Random random(seed);
+        for (const auto& [name, data] : closed_surfaces(random)) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            SplitBody body(test::jittered_cube(6, 0.2, seed));
+            const double edge = longest_edge(body.mesh, body.positions);
+            const TriangleSurface surface(data);
+            const Split done = body.cut(surface);
+
+            // All corners of the opened faces are on the surface, which is convex: so they
+            // enclose less, and what they miss is what chords of elements cut off.
+            EXPECT_LE(distance_of_cut(body, surface), 1e-14);
+            const auto volumes = piece_volumes(body.mesh);
+            ASSERT_EQ(volumes.size(), 2u);
+            EXPECT_NEAR(volumes[0] + volumes[1], 1.0, 1e-12);
+            const double inside = enclosed_volume(data);
+            EXPECT_LE(volumes[1], inside * (1.0 + 1e-12));
+            EXPECT_GE(volumes[1], inside - 0.25 * edge * cut_area(body));
+            EXPECT_EQ(cut_faces(body.mesh).size(), done.report.faces_opened);
+            EXPECT_TRUE(nodes_of_cut(body.mesh).front.empty());
+        }
+    }
+}
+
+TEST(SplitAlongSurface, AClosedOneFreesItsInsideWithSnapping) {
+    for (const double snap : {0.1, 0.2, 0.25})
+        for (const bool is_guarded : {false, true})
+            for (std::uint64_t seed = 0; seed < 4; ++seed) {
+                Random random(seed);
+                for (const auto& [name, data] : closed_surfaces(random)) {
+                    SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", snap " +
+                                 std::to_string(snap) + (is_guarded ? ", guarded" : ""));
+                    SplitBody body(test::jittered_cube(6, 0.2, seed));
+                    const double edge = longest_edge(body.mesh, body.positions);
+                    const auto options =
+                        is_guarded ? guarded(body.mesh, snap) : SplitOptions{snap, {}};
+                    const TriangleSurface surface(data);
+                    body.cut(surface, options);
+                    const double off = (is_guarded ? 0.5 : snap) * edge;
+                    EXPECT_LE(distance_of_cut(body, surface), off);
+                    const auto volumes = piece_volumes(body.mesh);
+                    ASSERT_EQ(volumes.size(), 2u);
+                    EXPECT_NEAR(volumes[0] + volumes[1], 1.0, 1e-12);
+                    EXPECT_NEAR(volumes[1], enclosed_volume(data),
+                                (off + 0.25 * edge) * cut_area(body));
+                }
+            }
+}
+
+TEST(SplitAlongSurface, WhatASphereFreesConvergesToItsVolume) {
+    const SurfaceData sphere = icosphere({0.51, 0.48, 0.53}, 0.35, 3);
+    std::map<int, double> missing;
+    for (const int n : {4, 8, 12}) {
+        SplitBody body(test::jittered_cube(n, 0.2, 3));
+        body.cut(TriangleSurface(sphere));
+        const auto volumes = piece_volumes(body.mesh);
+        ASSERT_EQ(volumes.size(), 2u);
+        missing[n] = 1.0 - volumes[1] / enclosed_volume(sphere);
+        EXPECT_GT(missing[n], 0.0);
+    }
+    // With the square of the size of elements.
+    EXPECT_LT(missing[8], missing[4] / 3.0);
+    EXPECT_LT(missing[12], missing[4] / 6.5);
+    EXPECT_LT(missing[12], 0.02);
+}
+
+TEST(SplitAlongSurface, AClosedOneThatReachesOutOfTheBodyFreesWhatItHolds) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        SplitBody body(test::jittered_cube(6, 0.2, seed));
+        const Vec3 corner(seed % 2 ? 1.0 : 0.0, seed % 3 ? 1.0 : 0.0, seed > 2 ? 1.0 : 0.0);
+        const double radius = random.uniform(0.45, 0.7);
+        const SurfaceData sphere = icosphere(corner + random.vector(0.02), radius, 2);
+        body.cut(TriangleSurface(sphere));
+        const auto volumes = piece_volumes(body.mesh);
+        ASSERT_EQ(volumes.size(), 2u);
+        EXPECT_NEAR(volumes[1], enclosed_volume(sphere) / 8.0, 0.12 * volumes[1]);
+        // Right round the body, or far from it, it cuts nothing.
+        EXPECT_TRUE(body.cut(TriangleSurface(icosphere(corner, 3.0, 1))).changes.is_empty());
+        EXPECT_TRUE(body.cut(TriangleSurface(icosphere({9, 0, 0}, 3.0, 1))).changes.is_empty());
+    }
+}
+
+TEST(SplitAlongSurface, AWavySheetThroughTheBodyPartsItWhereverTheTissueIs) {
+    for (const auto* family : test::tetrahedral_families()) {
+        if (family->name != "cube" && family->name != "ball" && family->name != "organ") continue;
+        for (const double snap : {0.0, 0.2})
+            for (std::uint64_t seed = 0; seed < 8; ++seed) {
+                SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
+                             std::to_string(seed));
+                Random random(seed);
+                SplitBody body(family->data);
+                if (seed % 2 == 1) {
+                    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+                    for (int c = 0; c < 3; ++c) F.col(c) += random.vector(0.3);
+                    for (Vec3& x : body.positions) x = F * x;
+                }
+                const double size = body.box().diagonal().norm();
+                const Vec3 normal = random.vector(1.0).normalized();
+                const Vec3 u = size * normal.unitOrthogonal(), v = normal.cross(u);
+                const double phase = random.uniform(0.0, 6.0);
+                const SurfaceData data =
+                    sheet(body.box().center(), u, v, 24, [&](double s, double t) -> Vec3 {
+                        return 0.05 * size * std::sin(5.0 * s + 3.0 * t + phase) * normal;
+                    });
+                const TriangleSurface surface(data);
+                const double off = snap * longest_edge(body.mesh, body.positions);
+                body.cut(surface, {snap, {}});
+                EXPECT_LE(distance_of_cut(body, surface), off + 1e-14 * size);
+                EXPECT_EQ(topology::components(body.mesh).count, 2);
+            }
+    }
+}
+
+/// The ends of edges that only one opened face has, but for those on the outside of the unit cube:
+/// where a cut ends inside. By rest positions.
+std::set<std::array<double, 3>> rim_of_cut(const Mesh& mesh) {
+    using Point = std::array<double, 3>;
+    const auto is_outside = [](const Vec3& x) {
+        return (x.array() == 0.0).any() || (x.array() == 1.0).any();
+    };
+    std::map<std::pair<Point, Point>, std::pair<int, bool>> edges;
+    for (const auto& pair : cut_faces(mesh))
+        for (int p = 0; p < 3; ++p) {
+            const Vec3& x = mesh.rest_position(mesh.face_corner(pair.a, p));
+            const Vec3& y = mesh.rest_position(mesh.face_corner(pair.a, (p + 1) % 3));
+            const Point a = {x.x(), x.y(), x.z()}, b = {y.x(), y.y(), y.z()};
+            auto& [count, may_be_outside] = edges[std::minmax(a, b)];
+            ++count;
+            may_be_outside = is_outside(x) && is_outside(y);
+        }
+    std::set<Point> rim;
+    for (const auto& [ends, edge] : edges) {
+        if (edge.first != 1 || edge.second) continue;
+        rim.insert(ends.first);
+        rim.insert(ends.second);
+    }
+    return rim;
+}
+
+TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        SplitBody body(test::jittered_cube(8, 0.2, seed));
+        const double edge = longest_edge(body.mesh, body.positions);
+        // A patch in the middle of the body, or half a cut.
+        const Vec3 normal = (Vec3(0, 0, 1) + random.vector(0.2)).normalized();
+        const Vec3 u = normal.cross(Vec3(0, 1, 0)), v = normal.cross(u);
+        const bool is_patch = seed % 2 == 0;
+        const Vec3 centre(is_patch ? 0.5 : 0.0, 0.5, 0.5);
+        const double reach = is_patch ? 0.35 : 2.0;
+        const SurfaceData data =
+            sheet(centre, (is_patch ? 0.35 : 0.6) * u, reach * v, 8,
+                  [&](double s, double t) { return Vec3(0.03 * std::sin(4.0 * s + t) * normal); });
+        const TriangleSurface surface(data);
+        const Split done = body.cut(surface);
+
+        EXPECT_EQ(topology::components(body.mesh).count, 1);
+        EXPECT_GT(done.report.faces_opened, 20u);
+        EXPECT_EQ(cut_faces(body.mesh).size(), done.report.faces_opened);
+        EXPECT_LE(distance_of_cut(body, surface), 1e-14);
+        // It ends within one element of the surface's border: what is opened is less than the
+        // surface in the body, by less than that.
+        if (is_patch) {
+            const double whole = 0.7 * 0.7, least = std::pow(0.7 - 2.0 * edge, 2);
+            EXPECT_LE(done.report.cut_area, whole * 1.05);  // for its waves
+            EXPECT_GE(done.report.cut_area, least);
+        } else {
+            EXPECT_LE(done.report.cut_area, 0.6 * 1.1);
+            EXPECT_GE(done.report.cut_area, (0.6 - edge) * 0.9);
+        }
+        // Nodes at the rim are one for both sides; all others were copied.
+        const auto nodes = nodes_of_cut(body.mesh);
+        std::set<std::array<double, 3>> front;
+        for (const NodeId node : nodes.front) {
+            const Vec3& x = body.mesh.rest_position(node);
+            front.insert({x.x(), x.y(), x.z()});
+        }
+        EXPECT_EQ(front, rim_of_cut(body.mesh));
+        EXPECT_GT(nodes.parted.size(), 0u);
+        std::size_t num_copies = 0;
+        for (const auto& record : done.changes.nodes_added) num_copies += record.num_sources == 1;
+        EXPECT_EQ(nodes.parted.size(), 2 * num_copies);
+    }
+}
+
+}  // namespace
+}  // namespace incise::cutting

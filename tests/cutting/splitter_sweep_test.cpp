@@ -1,0 +1,271 @@
+// Splitting by a blade: the same cut however many steps it takes, in tissue that is still or moves.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cutting/swept_edge.h"
+#include "split_body.h"
+#include "support/mesh_families.h"
+#include "support/mesh_snapshot.h"
+
+namespace incise::cutting {
+namespace {
+
+using test::MeshSnapshot;
+using test::Random;
+using topology::NodeId;
+
+/// A bent edge that sweeps in a plane, right through the body or to a share of the way.
+struct BladePath {
+    Vec3 point, normal;
+    Polyline from, to;
+
+    BladePath(const Box& box, Random& random, double share = 1.0) {
+        const double size = box.diagonal().norm();
+        point = box.center() + random.vector(0.05 * size);
+        normal = random.vector(1.0).normalized();
+        const Vec3 u = 1.5 * size * normal.unitOrthogonal(), v = normal.cross(u);
+        for (const double s : {-1.0, 0.1, 1.0}) {
+            const double ahead = random.uniform(-0.1, 0.1);
+            from.push_back(point + s * u + (ahead - 1.0) * v);
+            to.push_back(point + s * u + (ahead - 1.0 + 2.0 * share) * v);
+        }
+    }
+};
+
+/// What a cut has come to, told by counts.
+struct Outcome {
+    std::size_t num_elements, num_nodes, num_opened, num_cut_faces;
+    int num_pieces;
+    bool operator==(const Outcome&) const = default;
+    friend void PrintTo(const Outcome& o, std::ostream* out) {
+        *out << o.num_elements << " elements, " << o.num_nodes << " nodes, " << o.num_opened
+             << " faces opened, " << o.num_cut_faces << " now, " << o.num_pieces << " pieces";
+    }
+};
+Outcome outcome(const SplitBody& body, const std::vector<Split>& parts) {
+    return {body.mesh.num_elements(), body.mesh.num_nodes(), sum(parts).faces_opened,
+            cut_faces(body.mesh).size(), topology::components(body.mesh).count};
+}
+
+TEST(SplitByBlade, RightThroughInManyStepsIsAsInOneStep) {
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            std::vector<double> volumes;
+            Outcome expected{};
+            for (const int num_steps : {1, 2, 7, 60}) {
+                SCOPED_TRACE(testing::Message()
+                             << family->name << ", seed " << seed << ", " << num_steps << " steps");
+                Random random(seed);
+                SplitBody body(family->data);
+                const BladePath path(body.box(), random);
+                const auto parts = body.cut(sweep(path.from, path.to, num_steps));
+                if (num_steps == 1) {
+                    expected = outcome(body, parts);
+                    volumes = piece_volumes(body.mesh);
+                    continue;
+                }
+                EXPECT_EQ(outcome(body, parts), expected);
+                const auto now = piece_volumes(body.mesh);
+                ASSERT_EQ(now.size(), volumes.size());
+                for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], volumes[i], 1e-9);
+            }
+        }
+}
+
+// Where it stops on its way, elements at the front are cut in part. Into how many parts depends on
+// the order of their edges, which is that of their lengths in each step; which edges does not.
+TEST(SplitByBlade, PartOfTheWayInManyStepsDividesTheEdgesOfOneStep) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double share : {0.4, 0.5})
+            for (std::uint64_t seed = 0; seed < 3; ++seed) {
+                std::size_t num_divided = 0, num_opened = 0, num_pieces = 0;
+                double area = 0.0;
+                for (const int num_steps : {1, 2, 7, 60}) {
+                    SCOPED_TRACE(testing::Message()
+                                 << family->name << ", seed " << seed << ", " << share
+                                 << " of the way in " << num_steps << " steps");
+                    Random random(seed);
+                    SplitBody body(family->data);
+                    const BladePath path(body.box(), random, share);
+                    const auto report = sum(body.cut(sweep(path.from, path.to, num_steps)));
+                    const auto pieces = piece_volumes(body.mesh).size();
+                    if (num_steps == 1) {
+                        num_divided = report.edges_divided;
+                        num_opened = report.faces_opened;
+                        num_pieces = pieces;
+                        area = report.cut_area;
+                        continue;
+                    }
+                    EXPECT_EQ(report.edges_divided, num_divided);
+                    EXPECT_EQ(pieces, num_pieces);
+                    // A few faces at the front may be open already, or not yet.
+                    const double room = std::sqrt(static_cast<double>(num_opened)) + 1.0;
+                    EXPECT_NEAR(static_cast<double>(report.faces_opened),
+                                static_cast<double>(num_opened), room);
+                    if (num_opened > 10) {
+                        EXPECT_NEAR(report.cut_area, area, 0.25 * area);
+                    }
+                }
+            }
+}
+
+TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
+    for (const auto* family : test::tetrahedral_families()) {
+        if (family->name != "cube" && family->name != "ball") continue;
+        for (const double snap : {0.0, 0.1, 0.2})
+            for (const int num_steps : {1, 5, 30})
+                for (std::uint64_t seed = 0; seed < 4; ++seed) {
+                    SCOPED_TRACE(testing::Message()
+                                 << family->name << ", snap " << snap << ", seed " << seed << ", "
+                                 << num_steps << " steps");
+                    Random random(seed);
+                    SplitBody body(family->data);
+                    const BladePath path(body.box(), random);
+                    const double off = snap * longest_edge(body.mesh, body.positions);
+                    const auto volume = [&](double height, int side) {
+                        return volume_above(body.mesh, body.positions,
+                                            path.point + height * path.normal, side * path.normal);
+                    };
+                    const double rest = rest_volume(body.mesh);
+                    const double least = std::max(volume(off, 1), volume(-off, -1)) - 1e-9 * rest;
+                    const double most = std::max(volume(-off, 1), volume(off, -1)) + 1e-9 * rest;
+                    body.cut(sweep(path.from, path.to, num_steps), {snap, {}});
+                    const auto volumes = piece_volumes(body.mesh);
+                    ASSERT_EQ(volumes.size(), 2u);
+                    EXPECT_GE(volumes[0], least);
+                    EXPECT_LE(volumes[0], most);
+                    EXPECT_NEAR(volumes[0] + volumes[1], rest, 1e-12 * rest);
+                }
+    }
+}
+
+TEST(SplitByBlade, TheWayBackAndTheSameStrokeAgainChangeNothing) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double share : {1.0, 0.5})
+            for (const int num_steps : {1, 6})
+                for (std::uint64_t seed = 0; seed < 3; ++seed) {
+                    SCOPED_TRACE(testing::Message()
+                                 << family->name << ", seed " << seed << ", " << share
+                                 << " of the way in " << num_steps << " steps");
+                    Random random(seed);
+                    SplitBody body(family->data);
+                    const BladePath path(body.box(), random, share);
+                    CutFront front;
+                    for (const auto& part : sweep(path.from, path.to, num_steps))
+                        body.cut(*part, front, {0.0, {}}, body.positions);
+                    const MeshSnapshot once(body.mesh);
+                    for (const auto& part : sweep(path.to, path.from, num_steps))
+                        body.cut(*part, front, {0.0, {}}, body.positions);
+                    EXPECT_EQ(MeshSnapshot(body.mesh), once);
+                    body.cut(sweep(path.from, path.to, num_steps));
+                    EXPECT_EQ(MeshSnapshot(body.mesh), once);
+                }
+}
+
+// At any time, what is open is what the blade has left behind, but for one element at the front.
+TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
+    for (const double snap : {0.0, 0.2})
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
+            SplitBody body(test::jittered_cube(8, 0.2, seed));
+            const double edge = longest_edge(body.mesh, body.positions);
+            CutFront front;
+            constexpr int num_steps = 50;
+            double area = 0.0;
+            std::size_t largest = 0;
+            for (int i = 0; i < num_steps; ++i) {
+                const double from = -0.1 + 1.2 * i / num_steps, to = from + 1.2 / num_steps;
+                const SweptEdge step({{0.53, -1, from}, {0.53, 2, from}},
+                                     {{0.53, -1, to}, {0.53, 2, to}});
+                area += body.cut(step, front, {snap, {}}, body.positions).report.cut_area;
+                const double passed = std::clamp(to, 0.0, 1.0);
+                // Nodes that are snapped make the sheet uneven.
+                EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + snap * edge));
+                EXPECT_GE(area, passed - (1.0 + snap) * edge);
+                for (const NodeId n : nodes_of_cut(body.mesh).front) {
+                    const double z = body.positions[n.index()].z();
+                    EXPECT_GE(z, to - (1.0 + snap) * edge);
+                    EXPECT_LE(z, to + snap * edge + 1e-12);
+                }
+                largest = std::max(largest, front.size());
+            }
+            EXPECT_EQ(topology::components(body.mesh).count, 2);
+            EXPECT_LT(largest, body.mesh.num_nodes() / 2);
+        }
+}
+
+/// Tissue that turns and waves; the blade's edge waves besides. t from 0 to 1.
+struct MovingCut {
+    Box box;
+    double size, strength;
+    Vec3 normal, u, v;
+
+    MovingCut(const Box& b, Random& random, double by)
+        : box(b), size(b.diagonal().norm()), strength(by) {
+        normal = random.vector(1.0).normalized();
+        u = normal.unitOrthogonal();
+        v = normal.cross(u);
+    }
+    Vec3 position(const Vec3& X, double t) const {
+        const Vec3 r = (X - box.center()) / size;
+        const double s = strength * std::sin(9.0 * t);
+        return X + 0.1 * size * s * Vec3(r.y() + 0.3 * std::sin(4.0 * r.z()), -r.x(), 0.3 * r.z());
+    }
+    Polyline edge(double t) const {
+        Polyline points;
+        for (int i = 0; i <= 3; ++i)
+            points.push_back(box.center() +
+                             size * ((i - 1.5) * u + (2.0 * t - 1.0) * v +
+                                     0.05 * strength * std::sin(6.0 * t + 2.0 * i) * normal));
+        return points;
+    }
+    std::vector<double> volumes(const topology::MeshData& data, int num_steps,
+                                const SplitOptions& options) const {
+        SplitBody body(data);
+        CutFront front;
+        for (Vec3& x : body.positions) x = position(x, 0.0);
+        for (int i = 0; i < num_steps; ++i) {
+            const double t0 = static_cast<double>(i) / num_steps;
+            const double t1 = static_cast<double>(i + 1) / num_steps;
+            std::vector<Vec3> moved;
+            for (std::size_t n = 0; n < body.mesh.node_capacity(); ++n)
+                moved.push_back(position(body.mesh.rest_position(NodeId(n)), t1));
+            body.cut(SweptEdge(edge(t0), edge(t1)), front, options, moved);
+        }
+        return piece_volumes(body.mesh);
+    }
+};
+
+TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
+    for (const double strength : {0.3, 1.0})
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            Random random(seed);
+            const auto data = test::jittered_cube(6, 0.2, seed);
+            const MovingCut cut(SplitBody(data).box(), random, strength);
+            const auto converged = cut.volumes(data, 240, {0.0, {}});
+            ASSERT_EQ(converged.size(), 2u);
+            double coarse = 0.0, fine = 0.0;
+            for (const int num_steps : {2, 7, 15, 30, 60, 120}) {
+                SCOPED_TRACE(testing::Message() << "strength " << strength << ", seed " << seed
+                                                << ", " << num_steps << " steps");
+                for (const double snap : {0.0, 0.2}) {
+                    const auto volumes = cut.volumes(data, num_steps, {snap, {}});
+                    ASSERT_EQ(volumes.size(), 2u) << "snap " << snap;
+                    EXPECT_NEAR(volumes[0] + volumes[1], 1.0, 1e-12);
+                    if (snap > 0.0) continue;
+                    const double error = std::abs(volumes[0] - converged[0]);
+                    if (num_steps == 7) coarse = error;
+                    if (num_steps == 120) fine = error;
+                }
+            }
+            EXPECT_LT(fine, 2e-3);
+            EXPECT_LT(fine, 0.2 * coarse + 1e-4);
+        }
+}
+
+}  // namespace
+}  // namespace incise::cutting

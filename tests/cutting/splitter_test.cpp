@@ -1,0 +1,356 @@
+// Splitting along planes in general position: against the volumes of plain geometry, and what an
+// edit has to say of itself.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/splitter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "cutting/plane.h"
+#include "cutting/step_length.h"
+#include "split_body.h"
+#include "support/mesh_families.h"
+#include "support/mesh_snapshot.h"
+#include "topology/error.h"
+#include "topology/mesh_edit.h"
+#include "topology/validate.h"
+
+namespace incise::cutting {
+namespace {
+
+using test::MeshSnapshot;
+using test::Random;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::MeshData;
+using topology::NodeId;
+
+constexpr int num_seeds = 12;
+
+std::vector<const test::MeshFamily*> convex_families() {
+    std::vector<const test::MeshFamily*> families;
+    for (const auto* family : test::tetrahedral_families())
+        if (family->name == "one tetrahedron" || family->name == "cube" || family->name == "ball")
+            families.push_back(family);
+    return families;
+}
+
+/// A plane that passes well through the body.
+struct Halves {
+    Vec3 point, normal;
+
+    Halves(std::span<const Vec3> positions, Random& random) {
+        Vec3 mean = Vec3::Zero();
+        for (const Vec3& x : positions) mean += x / static_cast<double>(positions.size());
+        point = 0.6 * mean + 0.4 * positions[random.below(positions.size())] + random.vector(0.01);
+        do normal = random.vector(3.0);
+        while (normal.norm() < 0.3);
+    }
+    Plane plane() const { return {point, normal}; }
+    double height(const Vec3& x) const { return (x - point).dot(normal.normalized()); }
+    Vec3 raised(double by) const { return point + by * normal.normalized(); }
+};
+
+/// Volumes of the pieces above and below, which there must be two of.
+std::pair<double, double> volumes_of_halves(const SplitBody& body, const Halves& halves) {
+    const auto pieces = topology::components(body.mesh);
+    EXPECT_EQ(pieces.count, 2);
+    // The piece with the highest node is the one above.
+    double highest = -std::numeric_limits<double>::infinity();
+    int upper = 0;
+    std::array<double, 2> volumes{};
+    for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i) {
+        for (const NodeId n : body.mesh.corners(ElementId(i))) {
+            const double height = halves.height(body.positions[n.index()]);
+            if (height <= highest) continue;
+            highest = height;
+            upper = pieces.of_element[i];
+        }
+        volumes.at(static_cast<std::size_t>(pieces.of_element[i])) +=
+            element_volume(body.mesh, ElementId(i), body.positions);
+    }
+    return {volumes.at(static_cast<std::size_t>(upper)),
+            volumes.at(static_cast<std::size_t>(1 - upper))};
+}
+
+// At rest, and stretched and sheared by a linear map, which leaves convex bodies convex.
+TEST(Split, AlongAPlaneWithoutSnappingLeavesTheTwoHalves) {
+    for (const auto* family : convex_families())
+        for (std::uint64_t seed = 0; seed < 2 * num_seeds; ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            Random random(seed);
+            SplitBody body(family->data);
+            Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+            if (seed >= num_seeds)
+                for (int c = 0; c < 3; ++c) F.col(c) += random.vector(0.3);
+            for (Vec3& x : body.positions) x = F * x;
+            const Halves halves(body.positions, random);
+            const double above =
+                volume_above(body.mesh, body.positions, halves.point, halves.normal);
+            const double below =
+                volume_above(body.mesh, body.positions, halves.point, -halves.normal);
+            const double rest = rest_volume(body.mesh);
+
+            const Split done = body.cut(halves.plane());
+            const auto [upper, lower] = volumes_of_halves(body, halves);
+            EXPECT_NEAR(upper, above, 1e-9 * above);
+            EXPECT_NEAR(lower, below, 1e-9 * below);
+            EXPECT_NEAR(rest_volume(body.mesh), rest, 1e-12 * rest);
+
+            const double size = body.box().diagonal().norm();
+            const auto faces = cut_faces(body.mesh);
+            EXPECT_EQ(faces.size(), done.report.faces_opened);
+            double area = 0.0;
+            for (const auto& pair : faces) {
+                area += topology::rest_area(body.mesh, pair.a);
+                for (int p = 0; p < 3; ++p)
+                    EXPECT_LE(std::abs(halves.height(
+                                  body.positions[body.mesh.face_corner(pair.a, p).index()])),
+                              1e-14 * size);
+            }
+            EXPECT_NEAR(done.report.cut_area, area, 1e-12 * area);
+            EXPECT_EQ(done.report.nodes_snapped, 0u);
+            EXPECT_TRUE(nodes_of_cut(body.mesh).front.empty());
+        }
+}
+
+TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
+    for (const auto* family : convex_families())
+        for (const double snap : {0.05, 0.1, 0.2, 0.3})
+            for (const bool is_guarded : {false, true})
+                for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+                    SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) +
+                                 (is_guarded ? ", guarded" : "") + ", seed " +
+                                 std::to_string(seed));
+                    Random random(seed);
+                    SplitBody body(family->data);
+                    const Halves halves(body.positions, random);
+                    // The guard may have to count the nearer end of an edge as on the plane.
+                    const double off =
+                        (is_guarded ? 0.5 : snap) * longest_edge(body.mesh, body.positions);
+                    const auto volume = [&](double height, int side) {
+                        return volume_above(body.mesh, body.positions, halves.raised(height),
+                                            side * halves.normal);
+                    };
+                    const double least_above = volume(off, 1), most_above = volume(-off, 1);
+                    const double least_below = volume(-off, -1), most_below = volume(off, -1);
+                    const double rest = rest_volume(body.mesh);
+
+                    const auto options =
+                        is_guarded ? guarded(body.mesh, snap) : SplitOptions{snap, {}};
+                    const Split done = body.cut(halves.plane(), options);
+                    EXPECT_NEAR(rest_volume(body.mesh), rest, 1e-12 * rest);
+                    for (const auto& pair : cut_faces(body.mesh))
+                        for (int p = 0; p < 3; ++p) {
+                            const NodeId n = body.mesh.face_corner(pair.a, p);
+                            EXPECT_LE(std::abs(halves.height(body.positions[n.index()])), off);
+                        }
+                    if (least_above == 0.0 || least_below == 0.0) continue;  // all is near
+                    const auto [upper, lower] = volumes_of_halves(body, halves);
+                    EXPECT_GE(upper, least_above - 1e-12 * rest);
+                    EXPECT_LE(upper, most_above + 1e-12 * rest);
+                    EXPECT_GE(lower, least_below - 1e-12 * rest);
+                    EXPECT_LE(lower, most_below + 1e-12 * rest);
+                    EXPECT_EQ(done.report.faces_opened, cut_faces(body.mesh).size());
+                }
+}
+
+TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double snap : {0.0, 0.05, 0.1, 0.2, 0.3})
+            for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+                SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
+                             std::to_string(seed));
+                Random random(seed);
+                SplitBody body(family->data);
+                const Halves halves(body.positions, random);
+                body.cut(halves.plane(), {snap, {}});
+                const MeshSnapshot once(body.mesh);
+                const Split again = body.cut(halves.plane(), {snap, {}});
+                EXPECT_TRUE(again.changes.is_empty());
+                EXPECT_EQ(again.report.edges_divided, 0u);
+                EXPECT_EQ(again.report.faces_opened, 0u);
+                EXPECT_EQ(MeshSnapshot(body.mesh), once);
+            }
+}
+
+TEST(Split, AlongTwoCrossingPlanesLeavesFourPieces) {
+    for (const double snap : {0.0, 0.1, 0.25})
+        for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+            SCOPED_TRACE("snap " + std::to_string(snap) + ", seed " + std::to_string(seed));
+            Random random(seed);
+            SplitBody body(test::jittered_cube(5, 0.2, seed));
+            const double off = snap * longest_edge(body.mesh, body.positions);
+            const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 n = random.vector(1.0).normalized();
+            const std::array<Vec3, 2> normals = {n, n.unitOrthogonal()};
+            for (const Vec3& normal : normals) body.cut(Plane(centre, normal), {snap, {}});
+
+            // One piece on each pair of sides, and on each side of a plane two of the right sum.
+            const auto pieces = topology::components(body.mesh);
+            ASSERT_EQ(pieces.count, 4);
+            std::array<Vec3, 4> moments;
+            moments.fill(Vec3::Zero());
+            std::array<double, 4> volumes{};
+            for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i) {
+                const auto piece = static_cast<std::size_t>(pieces.of_element[i]);
+                const double volume = element_volume(body.mesh, ElementId(i), body.positions);
+                volumes[piece] += volume;
+                moments[piece] +=
+                    volume * TissueMotion::centre(body.mesh, ElementId(i), body.positions);
+            }
+            std::set<std::pair<bool, bool>> sides;
+            std::array<double, 2> above{};
+            for (std::size_t piece = 0; piece < 4; ++piece) {
+                std::array<bool, 2> is_above{};
+                for (std::size_t k = 0; k < 2; ++k) {
+                    is_above[k] = normals[k].dot(moments[piece] - volumes[piece] * centre) > 0.0;
+                    if (is_above[k]) above[k] += volumes[piece];
+                }
+                sides.emplace(is_above[0], is_above[1]);
+            }
+            EXPECT_EQ(sides.size(), 4u);
+            for (std::size_t k = 0; k < 2; ++k) {
+                const auto volume = [&](double height) {
+                    return volume_above(body.mesh, body.positions, centre + height * normals[k],
+                                        normals[k]);
+                };
+                EXPECT_GE(above[k], volume(off) - 1e-9);
+                EXPECT_LE(above[k], volume(-off) + 1e-9);
+            }
+        }
+}
+
+TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
+    for (const auto& family : test::mesh_families()) {
+        if (family.name != "hexahedra" && family.name != "mixed") continue;
+        for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+            Random random(seed);
+            Mesh mesh = Mesh::build(family.data).mesh;
+            const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
+            // Through the first element, which is a hexahedron.
+            Vec3 centre = TissueMotion::centre(mesh, ElementId(0), x);
+            for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+                if (mesh.kind(ElementId(i)) == topology::CellKind::hexahedron)
+                    centre = TissueMotion::centre(mesh, ElementId(i), x);
+            const MeshSnapshot before(mesh);
+            CutFront front;
+            try {
+                split(mesh, {mesh, x, x}, Plane(centre, random.vector(1.0)), front, {0.1, {}});
+                ADD_FAILURE() << "it was split";
+            } catch (const InputError& error) {
+                EXPECT_NE(std::string(error.what()).find("separate"), std::string::npos);
+            }
+            EXPECT_EQ(MeshSnapshot(mesh), before);
+            EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
+            EXPECT_TRUE(front.is_empty());
+        }
+    }
+    // Elements that are not crossed may be what they like.
+    Mesh mesh = Mesh::build(test::mesh_families().back().data).mesh;
+    const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
+    CutFront front;
+    EXPECT_TRUE(split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1, {}})
+                    .changes.is_empty());
+}
+
+TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double snap : {0.0, 0.2})
+            for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+                SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
+                             std::to_string(seed));
+                Random random(seed);
+                MeshData data = family->data;
+                for (int& region : data.regions) region = static_cast<int>(random.below(3));
+                SplitBody body(data);
+                for (int cut = 0; cut < 2; ++cut) {
+                    const MeshSnapshot before(body.mesh);
+                    const Split done = body.cut(Halves(body.positions, random).plane(), {snap, {}});
+                    const auto& changes = done.changes;
+                    std::size_t num_divisions = 0;
+                    for (const auto& record : changes.nodes_added) {
+                        Vec3 x = Vec3::Zero();
+                        double sum = 0.0;
+                        ASSERT_TRUE(record.num_sources == 1 || record.num_sources == 2);
+                        for (std::size_t s = 0; s < static_cast<std::size_t>(record.num_sources);
+                             ++s) {
+                            const auto& source = record.sources[s];
+                            EXPECT_LT(source.node, record.id);
+                            x += source.weight * body.mesh.rest_position(source.node);
+                            sum += source.weight;
+                            if (record.num_sources == 2) {
+                                EXPECT_TRUE(source.weight > 0.0 && source.weight < 1.0);
+                            }
+                        }
+                        EXPECT_NEAR(sum, 1.0, 1e-15);
+                        EXPECT_EQ(record.rest_position, body.mesh.rest_position(record.id));
+                        EXPECT_LE((record.rest_position - x).norm(), 1e-15 * (1.0 + x.norm()));
+                        num_divisions += record.num_sources == 2;
+                    }
+                    EXPECT_EQ(num_divisions, done.report.edges_divided);
+                    EXPECT_TRUE(changes.nodes_removed.empty());
+                    EXPECT_TRUE(changes.elements_removed.empty());
+                    for (const auto& record : changes.elements_added) {
+                        EXPECT_LT(record.parent, record.id);
+                        EXPECT_EQ(record.region, body.mesh.region(record.parent));
+                        EXPECT_EQ(record.region, body.mesh.region(record.id));
+                    }
+                    // Undone and redone by the record alone.
+                    const MeshSnapshot after(body.mesh);
+                    replay(body.mesh, inverse(changes));
+                    EXPECT_EQ(MeshSnapshot(body.mesh), before);
+                    EXPECT_EQ(topology::validate(body.mesh), std::vector<std::string>{});
+                    replay(body.mesh, changes);
+                    EXPECT_EQ(MeshSnapshot(body.mesh), after);
+                }
+            }
+}
+
+// What a step length is worth to the whole body's stable step: tests of physics.
+TEST(Split, NeverDividesAnElementBelowTheLimit) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double snap : {0.05, 0.1, 0.2, 0.3})
+            for (std::uint64_t seed = 0; seed < 3; ++seed) {
+                SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
+                             std::to_string(seed));
+                Random random(seed);
+                SplitBody body(family->data);
+                const SplitOptions options = guarded(body.mesh, snap);
+                const double limit = options.min_step_length.at(0);
+                ASSERT_GT(limit, 0.0);
+                const auto own = [&](ElementId e) {
+                    std::array<Vec3, 4> x;
+                    for (std::size_t k = 0; k < 4; ++k)
+                        x[k] = body.mesh.rest_position(body.mesh.corners(e)[k]);
+                    return own_step_length(x);
+                };
+                std::vector<double> first;
+                for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i)
+                    first.push_back(own(ElementId(i)));
+                std::size_t num_divided = 0;
+                for (int cut = 0; cut < 8; ++cut)
+                    num_divided += body.cut(Halves(body.positions, random).plane(), options)
+                                       .report.edges_divided;
+                for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i) {
+                    const bool is_first = i < first.size() && own(ElementId(i)) == first[i];
+                    if (!is_first) {
+                        EXPECT_GE(own(ElementId(i)), limit);
+                    }
+                }
+                if (family->name == "cube" || family->name == "ball") {
+                    EXPECT_GT(num_divided, 0u);
+                }
+                EXPECT_GE(step_length(body.mesh),
+                          std::min(limit, *std::min_element(first.begin(), first.end())));
+            }
+}
+
+}  // namespace
+}  // namespace incise::cutting
