@@ -114,9 +114,8 @@ std::pair<NodeId, NodeId> longest_edge(const Mesh& mesh, ElementId e) {
 bool is_among_tetrahedra(const Mesh& mesh, NodeId n) {
     std::vector<ElementId> star;
     mesh.star(n, star);
-    return std::all_of(star.begin(), star.end(), [&](ElementId e) {
-        return mesh.kind(e) == CellKind::tetrahedron;
-    });
+    return std::all_of(star.begin(), star.end(),
+                       [&](ElementId e) { return mesh.kind(e) == CellKind::tetrahedron; });
 }
 
 // Pairs of boundary faces at the same rest positions: what an opened face left.

@@ -47,8 +47,8 @@ class Random {
     std::mt19937_64 engine_;
 };
 
-/// One random transaction: removals, openings, closings, edges divided or a mixture of them, near each other or
-/// scattered, small or large. Empty when the mesh has nothing left to edit.
+/// One random transaction: removals, openings, closings, edges divided or a mixture of them, near
+/// each other or scattered, small or large. Empty when the mesh has nothing left to edit.
 topology::ChangeSet random_edit(topology::Mesh& mesh, Random& random);
 
 }  // namespace incise::test
