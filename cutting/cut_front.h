@@ -32,6 +32,12 @@ class CutFront {
         return place != nodes_.end() && !place->second.is_exact;
     }
 
+    /// Size of the elements at a node on the cut, m; 0 for others.
+    double reach(topology::NodeId n) const {
+        const auto place = nodes_.find(n.value);
+        return place != nodes_.end() ? place->second.reach : 0.0;
+    }
+
     bool is_crossed(topology::NodeId a, topology::NodeId b) const;
     void toggle(topology::NodeId a, topology::NodeId b);
 

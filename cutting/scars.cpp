@@ -8,35 +8,40 @@ namespace incise::cutting {
 
 namespace {
 
-constexpr double rounding = 1e-6;
-
-bool is_same(const NearPlane& a, const NearPlane& b, double size) {
+bool is_same(const Scar& a, const Scar& b, double size) {
     const double turn = a.normal.dot(b.normal);  // a surface may be given from either side
-    return a.normal.cross(b.normal).norm() <= rounding &&
-           std::abs(a.height - std::copysign(1.0, turn) * b.height) <= rounding * size;
+    const double height_a = a.normal.dot(a.to_surface), height_b = b.normal.dot(b.to_surface);
+    return a.normal.cross(b.normal).norm() <= Scars::rounding &&
+           std::abs(height_a - std::copysign(1.0, turn) * height_b) <= Scars::rounding * size;
 }
 
 }  // namespace
 
-void Scars::add(topology::NodeId n, const NearPlane& plane) {
-    if (!has(n, plane, std::abs(plane.height))) planes_[n.value].push_back(plane);
+void Scars::add(topology::NodeId n, const Scar& scar) {
+    if (!has(n, scar, scar.to_surface.norm())) scars_[n.value].push_back(scar);
 }
 
-bool Scars::has(topology::NodeId n, const NearPlane& plane, double size) const {
-    const auto place = planes_.find(n.value);
-    return place != planes_.end() &&
-           std::any_of(place->second.begin(), place->second.end(),
-                       [&](const NearPlane& known) { return is_same(known, plane, size); });
+bool Scars::has(topology::NodeId n, const Scar& scar, double size) const {
+    const auto known = of(n);
+    return std::any_of(known.begin(), known.end(),
+                       [&](const Scar& other) { return is_same(other, scar, size); });
+}
+
+std::span<const Scar> Scars::of(topology::NodeId n) const {
+    const auto place = scars_.find(n.value);
+    return place == scars_.end() ? std::span<const Scar>{} : std::span<const Scar>(place->second);
 }
 
 void Scars::follow(const topology::ChangeSet& changes) {
-    if (planes_.empty()) return;
     for (const topology::NodeRecord& record : changes.nodes_added) {
-        if (record.num_sources != 1) continue;
-        const auto place = planes_.find(record.sources[0].node.value);
-        if (place != planes_.end())
-            planes_.insert_or_assign(record.id.value, std::vector<NearPlane>(place->second));
+        if (record.num_sources != 1 || scars_.empty()) continue;
+        const auto place = scars_.find(record.sources[0].node.value);
+        if (place != scars_.end())
+            scars_.insert_or_assign(record.id.value, std::vector<Scar>(place->second));
     }
+    for (const topology::ElementRecord& record : changes.elements_added)
+        if (!crumbs_.empty() && record.parent.is_valid() && is_crumb(record.parent))
+            add_crumb(record.id);
 }
 
 }  // namespace incise::cutting

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "topology/change_set.h"
@@ -10,10 +12,11 @@
 
 namespace incise::cutting {
 
-/// A plane that passes by a node: that of a surface where it crosses an edge at the node.
-struct NearPlane {
-    Vec3 normal;    ///< of unit length
-    double height;  ///< of the node above it, m
+/// A node that counted as lying on a cut, and where that passed by it.
+struct Scar {
+    Vec3 normal;      ///< of the cut, of unit length
+    Vec3 to_surface;  ///< from the node to where the cut passed through an edge, m
+    bool is_exact;    ///< the node was made there
 };
 
 /// Nodes that counted as lying on a cut, and where it really was. A cut that passes by at the same
@@ -22,14 +25,26 @@ struct NearPlane {
 /// once the body has moved, nothing is at the same place.
 class Scars {
   public:
-    void add(topology::NodeId n, const NearPlane& plane);
+    void add(topology::NodeId n, const Scar& scar);
+    /// Whether a cut that passes by the node as `scar` says is there again.
     /// @param size  of the elements there, m, which rounding is measured by
-    bool has(topology::NodeId n, const NearPlane& plane, double size) const;
-    /// Copies of a node are what it is.
+    bool has(topology::NodeId n, const Scar& scar, double size) const;
+    std::span<const Scar> of(topology::NodeId n) const;
+    bool is_empty() const { return scars_.empty(); }
+
+    /// The element stayed with the other side of its cut, as there was too little of it.
+    void add_crumb(topology::ElementId e) { crumbs_.insert(e.value); }
+    bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e.value); }
+
+    /// Copies of a node, and parts of an element, are what it is.
     void follow(const topology::ChangeSet& changes);
 
+    /// In units of the size of elements: nearer than this is the same place.
+    static constexpr double rounding = 1e-6;
+
   private:
-    std::unordered_map<std::int32_t, std::vector<NearPlane>> planes_;
+    std::unordered_map<std::int32_t, std::vector<Scar>> scars_;
+    std::unordered_set<std::int32_t> crumbs_;
 };
 
 }  // namespace incise::cutting

@@ -16,12 +16,22 @@ using topology::NodeId;
 
 namespace {
 
-/// Groups of more elements are pieces, not crumbs.
-constexpr std::size_t largest_crumb = 8;
+/// Groups of more volume than this share of the cube of the edges there are pieces, not crumbs:
+/// less than two elements have before they are divided.
+constexpr double largest_crumb = 0.1;
+
+double rest_volume(const Mesh& mesh, ElementId e) {
+    const auto corners = mesh.corners(e);
+    const auto edge = [&](std::size_t k) -> Vec3 {
+        return mesh.rest_position(corners[k]) - mesh.rest_position(corners[0]);
+    };
+    return std::abs(edge(1).dot(edge(2).cross(edge(3)))) / 6.0;
+}
 
 class Sides {
   public:
-    Sides(const Mesh& mesh, const CutFront& front) : mesh_(mesh), front_(front) {}
+    Sides(const Mesh& mesh, const CutFront& front, const Scars& scars)
+        : mesh_(mesh), front_(front), scars_(scars) {}
 
     Parting parting(const std::vector<ElementId>& touched, bool has_crumbs) {
         collect_faces(touched);
@@ -55,6 +65,7 @@ class Sides {
 
     const Mesh& mesh_;
     const CutFront& front_;
+    const Scars& scars_;
     std::vector<FaceId> faces_;  // joined, on the cut, from their lower side
     std::unordered_map<std::int32_t, Place> places_;
     std::unordered_set<std::int32_t> large_;  // elements of large pieces
@@ -146,9 +157,12 @@ void Sides::keep_crumbs(Parting& parting) {
 /// What hangs together with `start` once the faces are open; false if that is much.
 bool Sides::collect_piece(ElementId start, std::vector<ElementId>& piece) {
     piece.assign(1, start);
+    double volume = 0.0, edge = 0.0;
     for (std::size_t next = 0; next < piece.size(); ++next) {
         const ElementId e = piece[next];
-        if (large_.contains(e.value) || piece.size() > largest_crumb) {
+        if (!scars_.is_crumb(e)) volume += rest_volume(mesh_, e);
+        for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.reach(n));
+        if (large_.contains(e.value) || volume > largest_crumb * edge * edge * edge) {
             for (const ElementId member : piece) large_.insert(member.value);
             return false;
         }
@@ -165,6 +179,8 @@ bool Sides::collect_piece(ElementId start, std::vector<ElementId>& piece) {
 }
 
 bool Sides::is_crumb(const std::vector<ElementId>& piece) const {
+    if (std::any_of(piece.begin(), piece.end(), [&](ElementId e) { return scars_.is_crumb(e); }))
+        return true;  // along an earlier cut
     std::vector<ElementId> star;
     for (const ElementId e : piece) {
         if (mesh_.kind(e) != CellKind::tetrahedron || !is_placed(e)) return false;
@@ -217,9 +233,9 @@ bool Sides::is_parted(FaceId f) const {
 
 }  // namespace
 
-Parting parted_faces(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
-                     bool keep_crumbs) {
-    return Sides(mesh, front).parting(touched, keep_crumbs);
+Parting parted_faces(const Mesh& mesh, const CutFront& front, const Scars& scars,
+                     const std::vector<ElementId>& touched, bool keep_crumbs) {
+    return Sides(mesh, front, scars).parting(touched, keep_crumbs);
 }
 
 }  // namespace incise::cutting

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cutting/cut_front.h"
+#include "cutting/scars.h"
 #include "topology/mesh.h"
 #include "topology/types.h"
 
@@ -27,7 +28,7 @@ struct Parting {
 ///
 /// @param keep_crumbs  whether there are crumbs: an exact cut leaves none
 /// @param touched  the elements to look at, and thereby their faces
-Parting parted_faces(const topology::Mesh& mesh, const CutFront& front,
+Parting parted_faces(const topology::Mesh& mesh, const CutFront& front, const Scars& scars,
                      const std::vector<topology::ElementId>& touched, bool keep_crumbs);
 
 }  // namespace incise::cutting

@@ -79,8 +79,7 @@ class Splitter {
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
         for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
-        const Parting parting = parted_faces(mesh_, front_, touched_, options_.snap > 0.0);
-        for (const ElementId e : parting.crumbs) scar(e);
+        const Parting parting = parted_faces(mesh_, front_, scars_, touched_, options_.snap > 0.0);
         for (const FaceId f : parting.faces) {
             report_.cut_area += topology::rest_area(mesh_, f);
             ++report_.faces_opened;
@@ -89,6 +88,7 @@ class Splitter {
         Split result{edit_->commit(), report_};
         front_.follow(result.changes);
         scars_.follow(result.changes);
+        for (const ElementId e : parting.crumbs) scars_.add_crumb(e);
         leave_behind(result.changes);
         return result;
     }
@@ -148,9 +148,8 @@ class Splitter {
     Passages passages(const Edge& edge, ElementId element) const;
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
-    NearPlane plane_at(NodeId n, const Passage& passage) const;
+    Scar scar_at(NodeId n, const Passage& passage) const;
     bool is_near(NodeId n, double share, const Passage& passage) const;
-    void scar(ElementId e);
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
     void divide_next();
@@ -158,7 +157,9 @@ class Splitter {
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place);
     void inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring);
+    void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void snap_to(NodeId n, double reach);
+    void recognize(const std::vector<std::pair<Edge, ElementId>>& edges);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -179,17 +180,6 @@ class Splitter {
     std::vector<ElementId> ring_;     // scratch
     SplitReport report_;
 };
-
-/// The element stays with the other side: so it is to be when the surface comes again.
-void Splitter::scar(ElementId e) {
-    const auto corners = mesh_.corners(e);
-    for (const NodeId n : corners)
-        for (const NodeId other : corners) {
-            if (n == other || front_.is_on(n)) continue;
-            const Edge edge = edge_between(n, other);
-            for (const Passage& passage : passages(edge, e)) scars_.add(n, plane_at(n, passage));
-        }
-}
 
 /// Normals go the other way than points: n . F dX = (F^T n) . dX, F the deformation gradient.
 Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
@@ -284,6 +274,7 @@ void Splitter::find_crossed_edges() {
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
     // Which nodes are near comes first: it decides about all edges at them.
+    if (!found.empty()) recognize(edges);
     for (const Found& f : found) {
         const double length = rest_length(f.edge);
         const Passage &first = f.passages.front(), &last = f.passages.back();
@@ -293,20 +284,51 @@ void Splitter::find_crossed_edges() {
     for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
 }
 
+/// Nodes that counted as on an earlier cut do so again where this one passes through the same
+/// place, even if it crosses none of their edges.
+void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
+    if (scars_.is_empty()) return;
+    std::vector<Crossing> crossings;
+    const auto is_there = [&](NodeId n, const Scar& scar, double length) {
+        const MovingPoint x = point(n);
+        const Vec3 short_way = Scars::rounding * length * scar.normal;
+        const MovingPoint from{x[0] + scar.to_surface - short_way,
+                               x[1] + scar.to_surface - short_way};
+        const MovingPoint to{x[0] + scar.to_surface + short_way,
+                             x[1] + scar.to_surface + short_way};
+        crossings.clear();
+        surface_.append_crossings(from, to, crossings);
+        return crossings.size() % 2 == 1;
+    };
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Edge& edge = edges[i].first;
+        if (i > 0 && edges[i - 1].first == edge) continue;
+        for (const NodeId n : {edge.a, edge.b}) {
+            if (front_.is_on(n)) continue;
+            const double length = rest_length(edge);
+            for (const Scar& scar : scars_.of(n))
+                if (is_there(n, scar, length)) {
+                    front_.put_on(n, scar.is_exact, length);
+                    break;
+                }
+        }
+    }
+}
+
 void Splitter::snap_to(NodeId n, double reach) {
     if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
     front_.put_on(n, false, reach);
 }
 
-NearPlane Splitter::plane_at(NodeId n, const Passage& passage) const {
-    return {passage.normal, passage.normal.dot(point(n)[1] - passage.point)};
+Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
+    return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n)};
 }
 
 /// Whether a passage at this share of an edge from the node counts as at the node.
 bool Splitter::is_near(NodeId n, double share, const Passage& passage) const {
     if (share < snap_) return true;
     const double size = (point(n)[1] - passage.point).norm();
-    return scars_.has(n, plane_at(n, passage), size);
+    return scars_.has(n, scar_at(n, passage), size);
 }
 
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
@@ -342,8 +364,14 @@ void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
 void Splitter::settle(const Edge& edge, const Passages& passages) {
     if (passages.size() % 2 == 1) toggled_.push_back(edge);
     for (const Passage& passage : passages) {
-        if (front_.is_on(edge.a)) scars_.add(edge.a, plane_at(edge.a, passage));
-        if (front_.is_on(edge.b)) scars_.add(edge.b, plane_at(edge.b, passage));
+        const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
+        const auto is_of = [&](double share, bool is_at_other, double other_share) {
+            return share < snap_ || !is_at_other || share <= other_share;
+        };
+        if (is_at_a && is_of(passage.from_a, is_at_b, passage.from_b))
+            scars_.add(edge.a, scar_at(edge.a, passage));
+        if (is_at_b && is_of(passage.from_b, is_at_a, passage.from_a))
+            scars_.add(edge.b, scar_at(edge.b, passage));
     }
 }
 
@@ -359,7 +387,7 @@ void Splitter::divide_next() {
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
             const NodeId middle = divide(edge, pending.element, t);
-            scars_.add(middle, plane_at(middle, passage));
+            scars_.add(middle, scar_at(middle, passage));
             return;
         }
         snap_to(passage.place < 0.5 ? edge.a : edge.b, rest_length(edge));
@@ -424,6 +452,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
     inherit(edge, middle, ring);
+    inherit_scars(edge.a, edge.b, middle);
+    inherit_scars(edge.b, edge.a, middle);
     front_.put_on(middle, true, reach);
 
     const auto ask = [&](NodeId other) {
@@ -457,6 +487,25 @@ void Splitter::inherit(const Edge& edge, NodeId middle, const std::vector<NodeId
     if (!is_crossed) return;
     front_.toggle(edge.a, edge.b);
     front_.toggle(edge.a, middle);
+}
+
+/// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by
+/// both ends, it passes by the middle.
+void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
+    const auto known = scars_.of(from);
+    if (known.empty()) return;
+    const Vec3 edge = point(to)[1] - point(from)[1], half = point(middle)[1] - point(from)[1];
+    for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
+        const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
+        if (place < 1.0 && place * edge.norm() > half.norm()) {
+            scars_.add(middle, {scar.normal, place * edge - half, false});
+            continue;
+        }
+        const Scar at_end{scar.normal, scar.to_surface - edge, false};
+        if (!scars_.has(to, at_end, edge.norm())) continue;
+        scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
+        scars_.add(middle, scar);
+    }
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 
 using test::Random;
 using topology::ChangeSet;
+using topology::ElementId;
 using topology::NodeId;
 
 NodeId node(std::size_t i) { return NodeId(i); }
@@ -126,25 +127,44 @@ TEST(CutFront, ForgetsWhatIsLeftBehind) {
             front.is_crossed(node(static_cast<std::size_t>(a)), node(static_cast<std::size_t>(b))));
 }
 
+/// Of a cut that passed by the node at this distance along the normal.
+Scar scar(const Vec3& normal, double distance) { return {normal, distance * normal, false}; }
+
 TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     Scars scars;
+    const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
     const NodeId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
-    scars.add(n, {Vec3::UnitZ(), 0.2});
-    scars.add(n, {Vec3::UnitX(), -0.1});
-    EXPECT_TRUE(scars.has(n, {Vec3::UnitZ(), 0.2}, 1.0));
-    EXPECT_TRUE(scars.has(n, {Vec3(-Vec3::UnitZ()), -0.2}, 1.0));  // from the other side
-    EXPECT_TRUE(scars.has(n, {Vec3::UnitX(), -0.1 + 1e-9}, 1.0));
-    EXPECT_FALSE(scars.has(n, {Vec3::UnitZ(), 0.19}, 1.0));
-    EXPECT_FALSE(scars.has(n, {Vec3::UnitZ(), -0.2}, 1.0));
-    EXPECT_FALSE(scars.has(n, {Vec3(0.0, 0.01, 1.0).normalized(), 0.2}, 1.0));
-    EXPECT_FALSE(scars.has(other, {Vec3::UnitZ(), 0.2}, 1.0));
+    scars.add(n, scar(z, 0.2));
+    scars.add(n, scar(x, -0.1));
+    EXPECT_TRUE(scars.has(n, scar(z, 0.2), 1.0));
+    EXPECT_TRUE(scars.has(n, scar(-z, -0.2), 1.0));                   // from the other side
+    EXPECT_TRUE(scars.has(n, {z, Vec3(0.5, 0.3, 0.2), false}, 1.0));  // elsewhere in its plane
+    EXPECT_TRUE(scars.has(n, scar(x, -0.1 + 1e-9), 1.0));
+    EXPECT_FALSE(scars.has(n, scar(z, 0.19), 1.0));
+    EXPECT_FALSE(scars.has(n, scar(z, -0.2), 1.0));
+    EXPECT_FALSE(scars.has(n, scar(Vec3(0.0, 0.01, 1.0).normalized(), 0.2), 1.0));
+    EXPECT_FALSE(scars.has(other, scar(z, 0.2), 1.0));
     topology::ChangeSet changes;
     topology::NodeRecord record{copy, Vec3::Zero(), {}, 1};
     record.sources[0] = {n, 1.0};
     changes.nodes_added.push_back(record);
     scars.follow(changes);
-    EXPECT_TRUE(scars.has(copy, {Vec3::UnitX(), -0.1}, 1.0));
-    EXPECT_FALSE(scars.has(copy, {Vec3::UnitX(), 0.1}, 1.0));
+    EXPECT_TRUE(scars.has(copy, scar(x, -0.1), 1.0));
+    EXPECT_FALSE(scars.has(copy, scar(x, 0.1), 1.0));
+}
+
+TEST(Scars, PartsOfACrumbAreCrumbs) {
+    Scars scars;
+    const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});
+    scars.add_crumb(whole);
+    topology::ChangeSet changes;
+    changes.elements_added.push_back({part, topology::CellKind::tetrahedron, 0, whole, {}});
+    changes.elements_added.push_back(
+        {other, topology::CellKind::tetrahedron, 0, ElementId(std::size_t{4}), {}});
+    scars.follow(changes);
+    EXPECT_TRUE(scars.is_crumb(whole));
+    EXPECT_TRUE(scars.is_crumb(part));
+    EXPECT_FALSE(scars.is_crumb(other));
 }
 
 }  // namespace

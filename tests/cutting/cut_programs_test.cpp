@@ -103,11 +103,17 @@ struct Figures {
     }
 };
 
+/// Curved cuts that were made twice, and how often there was something left to do.
+struct Repeats {
+    int count = 0, changes = 0;
+};
+
 /// A body in motion through which a program of cuts goes.
 class Patient {
   public:
-    Patient(const MeshData& data, std::uint64_t seed)
-        : random_(seed),
+    Patient(const MeshData& data, std::uint64_t seed, Repeats& repeats)
+        : repeats_(repeats),
+          random_(seed),
           table_(all_materials()),
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
@@ -141,7 +147,7 @@ class Patient {
             if (cut.kind == CutKind::plane) expect_parted(cut);
             if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
                 expect_halves(cut);
-            if (i == 0 && cut.kind == CutKind::plane) expect_nothing_more(cut);
+            if (cut.kind != CutKind::blade) repeat(cut);
         }
     }
 
@@ -255,13 +261,20 @@ class Patient {
         EXPECT_LE(volumes[0], std::max(volume(-off, 1), volume(off, -1)) + 1e-6 * room);
     }
 
-    void expect_nothing_more(const RandomCut& cut) {
+    /// The same cut at the same place has nothing more to do.
+    void repeat(const RandomCut& cut) {
         CutFront front;
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
         const Split again = cut_and_follow(*cut.stroke.front(), front, still);
-        EXPECT_TRUE(again.changes.is_empty());
+        if (cut.kind == CutKind::plane) {
+            EXPECT_TRUE(again.changes.is_empty());
+        } else {
+            ++repeats_.count;
+            if (!again.changes.is_empty()) ++repeats_.changes;
+        }
     }
 
+    Repeats& repeats_;
     Random random_;
     physics::MaterialTable table_;
     Mesh mesh_;
@@ -298,13 +311,16 @@ class CutPrograms : public testing::TestWithParam<Programs> {};
 
 TEST_P(CutPrograms, KeepTheMeshValidAndTheBodyInBalance) {
     const MeshData data = body(GetParam().body);
+    Repeats repeats;
     for (std::uint64_t seed = 0; seed < GetParam().count; ++seed) {
-        Patient patient(data, seed);
+        Patient patient(data, seed, repeats);
         SCOPED_TRACE(std::string(GetParam().body) + ", seed " + std::to_string(seed) + ", " +
                      patient.describe());
         patient.run(GetParam().is_convex);
         if (HasFailure()) return;
     }
+    // Corners of a surface may touch an element that has no room for them: rarely.
+    EXPECT_LE(repeats.changes, 1 + repeats.count / 25) << "of " << repeats.count;
 }
 
 INSTANTIATE_TEST_SUITE_P(OnBodies, CutPrograms, testing::ValuesIn(all_programs),
