@@ -19,6 +19,7 @@ std::vector<const MaterialModel*> all_models() {
     std::vector<const MaterialModel*> models;
     for (const auto& law : sim::laws()) models.push_back(&law);
     models.push_back(&sim::mass_spring_model());
+    models.push_back(&sim::hybmss_model());
     return models;
 }
 
@@ -34,7 +35,9 @@ std::vector<const sim::ParameterInfo*> parameters_of(const MaterialModel& model)
     return rows;
 }
 
-bool is_law(const MaterialModel& model) { return &model != &sim::mass_spring_model(); }
+bool is_law(const MaterialModel& model) {
+    return &model != &sim::mass_spring_model() && &model != &sim::hybmss_model();
+}
 
 std::string scenario_line(const MaterialModel& model) {
     return (is_law(model) ? "law = \"" : "method = \"") + std::string(model.key) + "\"";

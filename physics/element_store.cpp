@@ -2,10 +2,13 @@
 #include "physics/element_store.h"
 
 #include "physics/heml_kernel.h"
+#include "physics/hybmss_kernel.h"
 #include "physics/mass_spring_kernel.h"
 #include "topology/error.h"
 
 namespace incise::physics {
+
+using topology::CellKind;
 
 namespace {
 
@@ -13,6 +16,8 @@ std::unique_ptr<ElementBlock> make_block(const Material& material) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
         return std::make_unique<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
                                                                material.density);
+    if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
+        return std::make_unique<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid}, material.density);
     const auto& links = std::get<HyperElasticLinks>(material.method);
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<ElementBlock> {
@@ -21,6 +26,20 @@ std::unique_ptr<ElementBlock> make_block(const Material& material) {
                                                          material.density);
         },
         links.law);
+}
+
+/// What to do where a material's method is not for this kind of cell.
+std::string remedy(CellKind kind) {
+    switch (kind) {
+        case CellKind::tetrahedron:
+            return "; the method hybmss needs hexahedra: give the region a material with method = "
+                   "\"heml\"";
+        case CellKind::hexahedron:
+            return "; the methods heml and mass-spring need tetrahedra: give the region a material "
+                   "with method = \"hybmss\"";
+        default:
+            return ", for which no method has forces; use tetrahedra or hexahedra";
+    }
 }
 
 }  // namespace
@@ -38,9 +57,18 @@ void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
     if (!table_.of_region.contains(mesh.region(e)))
         throw InputError(name + " has region " + std::to_string(mesh.region(e)) +
                          ", for which there is no material; add one, or one without regions");
-    if (mesh.kind(e) != topology::CellKind::tetrahedron)
-        throw InputError(name + " is a " + traits(mesh.kind(e)).name +
-                         "; the methods heml and mass-spring need tetrahedra");
+    const Material& material = table_.materials[table_.of_region.at(mesh.region(e))];
+    const auto* hybrid = std::get_if<HybridSprings>(&material.method);
+    const CellKind kind = mesh.kind(e),
+                   wanted = hybrid ? CellKind::hexahedron : CellKind::tetrahedron;
+    if (kind != wanted)
+        throw InputError(name + ", of region " + std::to_string(mesh.region(e)) + ", is a " +
+                         traits(kind).name + remedy(kind));
+    if (!hybrid) return;
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        corners[k] = mesh.rest_position(mesh.corners(e)[k]);
+    if (const auto reason = why_no_cell(*hybrid, corners)) throw InputError(name + " " + *reason);
 }
 
 std::size_t ElementStore::block_index(ElementId e, int region) const {

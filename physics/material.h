@@ -23,9 +23,18 @@ struct MassSprings {
     double young;  ///< Pa
 };
 
+/// The hybrid mass-spring system on hexahedra that are boxes: springs of shear modulus G, which by
+/// themselves have Poisson's ratio 1/4, and kappa/2 (V'/V - 1)^2 per rest volume.
+struct HybridSprings {
+    double shear_modulus;   ///< G, Pa
+    double volume_modulus;  ///< kappa = K - 5/3 G, Pa; negative for Poisson's ratios below 1/4
+    /// A = k_f / k_c, face over inner diagonals; 0: none in the faces, infinite: none inside.
+    double stiffness_ratio = 1.0;
+};
+
 struct Material {
     double density = 0.0;  ///< kg/m3
-    std::variant<HyperElasticLinks, MassSprings> method;
+    std::variant<HyperElasticLinks, MassSprings, HybridSprings> method;
 };
 
 }  // namespace incise::physics

@@ -35,7 +35,8 @@ Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surrounding
       masses_(mesh.node_capacity(), 0.0),
       supports_(mesh, std::move(surroundings.supports)),
       loads_({}, loaded_body()),
-      reactions_(supports_.size(), Vec3::Zero()) {
+      reactions_(supports_.size(), Vec3::Zero()),
+      reaction_moments_(supports_.size(), Vec3::Zero()) {
     resize(mesh.node_capacity());
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(std::move(surroundings.loads), loaded_body());
@@ -82,6 +83,7 @@ void Model::compute_forces(double time) {
 
 void Model::integrate(double time, double dt) {
     std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
+    std::fill(reaction_moments_.begin(), reaction_moments_.end(), Vec3::Zero());
     const double slowing = 1.0 / (1.0 + damping_ * dt);
     double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;
     bool is_finite = true;
@@ -100,7 +102,10 @@ void Model::integrate(double time, double dt) {
                 v_new[c] = (x_new[c] - x[c]) / dt;
                 const double reaction =
                     mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
-                reactions_[static_cast<std::size_t>(s)][c] += reaction;
+                const auto support = static_cast<std::size_t>(s);
+                reactions_[support][c] += reaction;
+                reaction_moments_[support] +=
+                    (x_new - supports_.point(support)).cross(reaction * Vec3::Unit(c));
                 // At the mean velocity: a support that sets off at once gives the node just the
                 // kinetic energy that it then has.
                 work += reaction * (x_new[c] - x[c]) -
@@ -322,6 +327,26 @@ double Model::min_volume_ratio() const {
         lowest = std::min(lowest, block.min_volume_ratio(positions_));
     });
     return lowest;
+}
+
+double Model::volume_change() const {
+    double now = 0.0, at_rest = 0.0;
+    elements_.for_each_block([&](const ElementBlock& block) {
+        for (const ElementId e : block.elements()) {
+            const ElementResult result = block.result(e, positions_);
+            now += result.volume * result.volume_ratio;
+            at_rest += result.volume;
+        }
+    });
+    return now / at_rest - 1.0;
+}
+
+double Model::max_displacement() const {
+    double largest = 0.0;
+    for (std::size_t n = 0; n < masses_.size(); ++n)
+        if (masses_[n] > 0.0)  // alive
+            largest = std::max(largest, (positions_[n] - mesh_.rest_positions()[n]).norm());
+    return largest;
 }
 
 }  // namespace incise::physics

@@ -94,6 +94,10 @@ class Model {
 
     Totals totals() const;
     double min_volume_ratio() const;
+    /// Present volume over that at rest, less 1. Not a number without elements.
+    double volume_change() const;
+    /// Of the node that is farthest from where it is at rest, m.
+    double max_displacement() const;
     ElementResult element_result(ElementId e) const {
         return elements_.block_of(mesh_, e).result(e, positions_);
     }
@@ -109,6 +113,8 @@ class Model {
     const std::string& support_name(std::size_t i) const { return supports_.name(i); }
     /// Force of support `i` on the body during the last step, N.
     const Vec3& reaction(std::size_t i) const { return reactions_[i]; }
+    /// Moment of that force about the support's point, N m.
+    const Vec3& reaction_moment(std::size_t i) const { return reaction_moments_[i]; }
 
     const topology::Mesh& mesh() const { return mesh_; }
 
@@ -141,7 +147,7 @@ class Model {
     StableStep stable_step_;
     Supports supports_;
     Loads loads_;
-    std::vector<Vec3> reactions_;
+    std::vector<Vec3> reactions_, reaction_moments_;
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
     std::map<NodeId, Merge> merges_;  // by the node that was absorbed
     std::vector<ElementId> star_;     // scratch

@@ -38,6 +38,8 @@ class Supports {
 
     std::size_t size() const { return supports_.size(); }
     const std::string& name(std::size_t i) const { return supports_[i].name; }
+    /// What its nodes turn about, m.
+    const Vec3& point(std::size_t i) const { return supports_[i].point; }
 
     /// The support of each component of node `n`, -1 for a free one; null for a free node.
     const std::array<int, 3>* of_node(std::size_t n) const {

@@ -59,11 +59,20 @@ physics::Material build_material(const MaterialSpec& spec) {
     const ElasticConstants constants = resolve(spec.method, spec.law, spec.parameters);
     physics::Material material;
     material.density = spec.density;
-    if (spec.method == Method::mass_spring)
-        material.method = physics::MassSprings{constants.young()};
-    else
-        material.method =
-            physics::HyperElasticLinks{build_law(spec, constants), spec.inversion_threshold};
+    switch (spec.method) {
+        case Method::mass_spring:
+            material.method = physics::MassSprings{constants.young()};
+            break;
+        case Method::hybmss:
+            material.method = physics::HybridSprings{
+                constants.mu, spec.correction_forces ? constants.lambda - constants.mu : 0.0,
+                spec.stiffness_ratio};
+            break;
+        case Method::heml:
+            material.method =
+                physics::HyperElasticLinks{build_law(spec, constants), spec.inversion_threshold};
+            break;
+    }
     return material;
 }
 

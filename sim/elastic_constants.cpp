@@ -43,7 +43,7 @@ double rest_lambda(const ElasticParameters& p, double mu) {
     return 2.0 * mu * *p[poisson] / (1.0 - 2.0 * *p[poisson]);
 }
 
-void check_admissible(const MaterialModel& model, Law law, const ElasticConstants& k) {
+void check_admissible(const MaterialModel& model, bool is_linear, const ElasticConstants& k) {
     const auto refuse = [&](const std::string& what) {
         throw InputError(std::string(model.key) + ": " + what);
     };
@@ -51,7 +51,7 @@ void check_admissible(const MaterialModel& model, Law law, const ElasticConstant
         refuse("the bulk modulus lambda + 2 mu / 3 is " + format_number(k.bulk_modulus()) +
                ", but must be above 0: raise lame_lambda, which must be above " +
                format_number(-2.0 * k.mu / 3.0));
-    if (law == Law::saint_venant_kirchhoff) return;
+    if (is_linear) return;
     if (!(k.lambda >= 0.0))
         refuse("Lame's lambda is " + format_number(k.lambda) +
                " at rest, but this law needs at least 0: Poisson's ratio must not be negative");
@@ -74,13 +74,14 @@ ElasticConstants resolve(Method method, Law law, const ElasticParameters& given)
     }
     constants.mu = shear_modulus(given);
     constants.lambda = rest_lambda(given, constants.mu);
-    if (law != Law::saint_venant_kirchhoff) {
+    const bool is_linear = method == Method::hybmss || law == Law::saint_venant_kirchhoff;
+    if (!is_linear) {
         constants.c2 = given[Parameter::c2].value_or(0.0);
         constants.c1 = constants.mu / 2.0 - constants.c2;
         if (given[Parameter::c1]) constants.c1 = *given[Parameter::c1];  // to the last bit
         constants.law_lambda = constants.lambda - 4.0 * constants.c2;
     }
-    check_admissible(model, law, constants);
+    check_admissible(model, is_linear, constants);
     return constants;
 }
 

@@ -14,6 +14,7 @@ std::string Limits::text() const {
         if (!text.empty()) text += " and ";
         text += (includes_high ? "at most " : "below ") + io::format_number(high);
     }
+    if (std::isinf(high) && includes_high) text += (text.empty() ? "a number or inf" : ", or inf");
     return text.empty() ? "a finite number" : text;
 }
 

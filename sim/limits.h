@@ -7,7 +7,8 @@
 
 namespace incise::sim {
 
-/// An interval of allowed values, with or without its ends.
+/// An interval of allowed values, with or without its ends; infinity only if it is an end that is
+/// included.
 struct Limits {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();

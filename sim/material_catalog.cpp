@@ -57,7 +57,7 @@ const std::array<MaterialModel, 3>& law_table() {
     return table;
 }
 
-constexpr std::array<std::string_view, 2> method_table = {"heml", "mass-spring"};
+constexpr std::array<std::string_view, 3> method_table = {"heml", "mass-spring", "hybmss"};
 
 }  // namespace
 
@@ -85,8 +85,34 @@ const MaterialModel& mass_spring_model() {
     return table;
 }
 
+const MaterialModel& hybmss_model() {
+    static const MaterialModel table = {
+        "hybmss",
+        "Hybrid mass-spring system on hexahedra: springs and a term of volume",
+        "W = sum over springs of k/2 (l - L)^2 + kappa V/2 (V'/V - 1)^2 a cell, kappa = K - 5 G / "
+        "3",
+        {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
+        "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
+        "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.7 to 1; "
+        "strains of some 10 %, nearly incompressible tissue too. stiffness_ratio = inf for bodies "
+        "that are cut or stand beside other elements.",
+        "Below a Poisson's ratio of 1/4 kappa is negative and tension is lost at large strain: at "
+        "a "
+        "stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2. Without face diagonals "
+        "(stiffness_ratio = 0) bodies wrinkle under any load. Inverted cells may stay inverted."};
+    return table;
+}
+
 const MaterialModel& model(Method method, Law law) {
-    return method == Method::mass_spring ? mass_spring_model() : model(law);
+    switch (method) {
+        case Method::mass_spring:
+            return mass_spring_model();
+        case Method::hybmss:
+            return hybmss_model();
+        case Method::heml:
+            break;
+    }
+    return model(law);
 }
 
 std::span<const std::string_view> method_names() { return method_table; }

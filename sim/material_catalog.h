@@ -1,6 +1,6 @@
 // Methods, laws and elastic parameters that a scenario can name: the one place that lists them.
 // The reader checks scenarios against it and `incise materials` prints it.
-// Source of laws and methods: HEML 2015 (laws), derived in docs/theory.md.
+// Source of laws and methods: HEML 2015, HybMSS 2020, derived in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace incise::sim {
 
-enum class Method : std::uint8_t { heml, mass_spring };
+enum class Method : std::uint8_t { heml, mass_spring, hybmss };
 
 enum class Law : std::uint8_t { saint_venant_kirchhoff, neo_hookean, mooney_rivlin };
 
@@ -54,7 +54,7 @@ struct ElasticParameters {
 /// Parameters that together determine a material.
 using ParameterSet = std::vector<Parameter>;
 
-/// What takes parameters: a law of HEML, or the mass-spring method.
+/// What takes parameters: a law of HEML, or a method without laws.
 struct MaterialModel {
     std::string_view key;
     std::string_view title;
@@ -72,6 +72,7 @@ const ParameterInfo& info(Parameter parameter);
 std::span<const MaterialModel> laws();
 const MaterialModel& model(Law law);
 const MaterialModel& mass_spring_model();
+const MaterialModel& hybmss_model();
 
 /// The model that a material of this method and law follows.
 const MaterialModel& model(Method method, Law law);

@@ -3,9 +3,11 @@
 
 namespace incise::sim {
 
-std::array<std::string, 3> reaction_quantities(std::string_view constraint) {
+std::array<std::string, 6> reaction_quantities(std::string_view constraint) {
     const std::string reaction = "reaction_" + std::string(constraint);
-    return {reaction + "_x", reaction + "_y", reaction + "_z"};
+    const std::string torque = "torque_" + std::string(constraint);
+    return {reaction + "_x", reaction + "_y", reaction + "_z",
+            torque + "_x",   torque + "_y",   torque + "_z"};
 }
 
 std::vector<std::string> all_quantities(std::span<const std::string> constraints) {

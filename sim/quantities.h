@@ -34,12 +34,13 @@ inline constexpr std::array<std::string_view, 20> history_quantities = {"time",
                                                                         "stable_step"};
 
 /// What summary.json has besides the columns of history.csv.
-inline constexpr std::array<std::string_view, 10> run_quantities = {
-    "gravity_energy", "edits",    "elements_removed", "elements_split", "elements_added",
-    "faces_opened",   "cut_area", "mass_removed",     "mass_error",     "energy_error"};
+inline constexpr std::array<std::string_view, 12> run_quantities = {
+    "gravity_energy", "edits",        "elements_removed", "elements_split",
+    "elements_added", "faces_opened", "cut_area",         "mass_removed",
+    "mass_error",     "energy_error", "volume_change",    "max_displacement"};
 
-/// The columns of a constraint's reaction, along x, y and z.
-std::array<std::string, 3> reaction_quantities(std::string_view constraint);
+/// The columns of a constraint's reaction, along x, y and z, then those of its moment.
+std::array<std::string, 6> reaction_quantities(std::string_view constraint);
 
 /// All that an [expect] can name, in the order of summary.json.
 /// @param constraints  their names

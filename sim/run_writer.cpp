@@ -96,9 +96,10 @@ std::vector<std::pair<std::string, double>> history_row(const Simulation& simula
                       simulation.time_step(),
                       account.stable_step});
     for (std::size_t s = 0; s < model.num_supports(); ++s) {
-        const Vec3 reaction = model.reaction(s);
+        const Vec3 reaction = model.reaction(s), torque = model.reaction_moment(s);
         append(row, reaction_quantities(model.support_name(s)),
-               std::array{reaction.x(), reaction.y(), reaction.z()});
+               std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
+                          torque.z()});
     }
     return row;
 }
@@ -121,7 +122,8 @@ std::vector<std::pair<std::string, double>> summary_quantities(const Simulation&
                       static_cast<double>(ledger.edits().size()), static_cast<double>(removed),
                       static_cast<double>(split), static_cast<double>(added),
                       static_cast<double>(opened), cut_area, mass_removed, ledger.mass_error(),
-                      ledger.energy_error()});
+                      ledger.energy_error(), simulation.model().volume_change(),
+                      simulation.model().max_displacement()});
     return quantities;
 }
 

@@ -38,10 +38,12 @@ struct MaterialSpec {
     /// Without: all regions that no other material names. At most one material is without.
     std::optional<std::vector<int>> regions;
     Method method = Method::heml;
-    Law law = Law::neo_hookean;  ///< without meaning for mass-spring
+    Law law = Law::neo_hookean;  ///< of HEML
     double density = 0.0;
     ElasticParameters parameters;      ///< as given; resolve() makes constants of them
-    double inversion_threshold = 0.4;  ///< J0, in (0, 1)
+    double inversion_threshold = 0.4;  ///< J0, in (0, 1); of HEML
+    double stiffness_ratio = 1.0;      ///< A of HybMSS, 0 to infinity
+    bool correction_forces = true;     ///< of HybMSS: without, Poisson's ratio is 1/4
 };
 
 struct DynamicsSpec {

@@ -249,7 +249,7 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
         report_type(value, path, "a number");
         return std::nullopt;
     }
-    if (std::isfinite(number) && limits.contains(number)) return number;
+    if (limits.contains(number)) return number;
     diagnostics_.key_error(value.place, path,
                            io::format_number(number) + " is not allowed: must be " + limits.text());
     return std::nullopt;

@@ -72,7 +72,8 @@ TEST_F(RunFiles, HistoryHasItsColumnsAndARowForEachFrameAndEdit) {
               "time,step,nodes,elements,components,mass,volume,kinetic_energy,elastic_energy,"
               "external_work,dissipated_energy,momentum_x,momentum_y,momentum_z,"
               "angular_momentum_x,angular_momentum_y,angular_momentum_z,min_J,time_step,"
-              "stable_step,reaction_floor_x,reaction_floor_y,reaction_floor_z");
+              "stable_step,reaction_floor_x,reaction_floor_y,reaction_floor_z,"
+              "torque_floor_x,torque_floor_y,torque_floor_z");
     const auto& edits = simulation_.ledger().edits();
     ASSERT_GT(edits.size(), 2u);
     EXPECT_EQ(lines.size(), 1 + 11 + edits.size());

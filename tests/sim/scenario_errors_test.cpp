@@ -293,7 +293,7 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
         "stable_step, ";
     const std::string more =
         "gravity_energy, edits, elements_removed, elements_split, elements_added, faces_opened, "
-        "cut_area, mass_removed, mass_error, energy_error";
+        "cut_area, mass_removed, mass_error, energy_error, volume_change, max_displacement";
     EXPECT_EQ(error_of("[expect]\nreaction_floor_z = { min = 0 }\n"),
               "scene.toml:10:1: key 'expect.reaction_floor_z': is not known; did you mean "
               "'elastic_energy'? " +
@@ -306,9 +306,15 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
               "scene.toml:16:16: key 'expect.time.max': must be a number, but is the text \"x\" | "
               "scene.toml:17:1: key 'expect.reaction_flor_z': is not known; did you mean "
               "'reaction_floor_z'? " +
-                  known + "reaction_floor_x, reaction_floor_y, reaction_floor_z, " + more +
+                  known +
+                  "reaction_floor_x, reaction_floor_y, reaction_floor_z, torque_floor_x, "
+                  "torque_floor_y, torque_floor_z, " +
+                  more +
                   " | scene.toml:18:1: key 'expect.mas': is not known; did you mean 'mass'? " +
-                  known + "reaction_floor_x, reaction_floor_y, reaction_floor_z, " + more);
+                  known +
+                  "reaction_floor_x, reaction_floor_y, reaction_floor_z, torque_floor_x, "
+                  "torque_floor_y, torque_floor_z, " +
+                  more);
 }
 
 TEST(ScenarioErrors, OfOverridesQuoteThem) {

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/memory.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <string>
+
+#include "io/number_text.h"
+#include "topology/error.h"
+
+namespace incise::io {
+
+namespace {
+
+std::string gigabytes(double bytes) { return shown(std::round(bytes / 1e8) / 10) + " GB"; }
+
+}  // namespace
+
+void require_memory(double bytes, std::string_view what, std::string_view remedy) {
+    const auto pages = ::sysconf(_SC_PHYS_PAGES), page_size = ::sysconf(_SC_PAGESIZE);
+    if (pages <= 0 || page_size <= 0) return;  // not known
+    const double memory = static_cast<double>(pages) * static_cast<double>(page_size);
+    if (bytes > memory)
+        throw InputError(std::string(what) + " takes " + gigabytes(bytes) +
+                         " of memory, and this machine has " + gigabytes(memory) + "; " +
+                         std::string(remedy));
+}
+
+}  // namespace incise::io
