@@ -86,16 +86,16 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
 std::optional<std::string> why_no_cell(const HybridSprings& material,
                                        const std::array<Vec3, 8>& corners) {
     const Vec3 edges = edge_lengths(BoxFrame(corners));
-    std::ostringstream text;
+    std::ostringstream size, text;
+    size << edges[0] << " x " << edges[1] << " x " << edges[2] << " m";
     const double off = distance_from_box(corners);
     if (!(off <= shape_tolerance * edges.minCoeff())) {
-        text << "is no box: a corner is " << off
-             << " m from where it would be in one with edges of " << edges.transpose()
-             << " m; the method hybmss needs boxes, such as voxels or a grid";
+        text << "is no box: a corner is " << off << " m from where it would be in one of "
+             << size.str() << "; the method hybmss needs boxes, such as voxels or a grid";
         return text.str();
     }
     if (spring_shares(edges, material.shear_modulus, material.stiffness_ratio)) return std::nullopt;
-    text << "is a box with edges of " << edges.transpose() << " m; ";
+    text << "is a box of " << size.str() << "; ";
     if (material.stiffness_ratio == 0.0)
         text << "without face diagonals the method hybmss needs cubes";
     else
