@@ -90,8 +90,9 @@ inline Carried carried_by(const Model& model, const MaterialTable& table, Elemen
     const ElementResult result = model.element_result(e);
     const double density = table.materials[table.of_region.at(model.mesh().region(e))].density;
     Carried c{density * result.volume, result.volume, result.energy, Vec3::Zero()};
+    const double share = 1.0 / static_cast<double>(model.mesh().corners(e).size());
     for (const NodeId n : model.mesh().corners(e))
-        c.momentum += 0.25 * c.mass * model.velocities()[n.index()];
+        c.momentum += share * c.mass * model.velocities()[n.index()];
     return c;
 }
 

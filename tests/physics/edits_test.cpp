@@ -75,11 +75,16 @@ void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.stable_step, b.stable_step);
 }
 
+MaterialTable table_for(const topology::MeshData& data) {
+    return data.kinds.front() == topology::CellKind::hexahedron ? table_of_hybrid_springs()
+                                                                : table_of_all_materials();
+}
+
 /// A body that is edited at random while it moves, and checked after each edit.
 class EditedBody {
   public:
     EditedBody(const topology::MeshData& data, std::uint64_t seed)
-        : table_(table_of_all_materials()),
+        : table_(table_for(data)),
           mesh_(Mesh::build(with_regions(data, table_.materials.size())).mesh),
           selections_(selections(mesh_)),
           descent_(mesh_, selections_),
@@ -206,13 +211,15 @@ static_assert(std::accumulate(std::begin(edit_programs), std::end(edit_programs)
                               [](int sum, const EditProgram& p) { return sum + p.num_edits; }) >=
                   10'000,
               "edits, each of which changes something");
+constexpr EditProgram hexahedral_edit_programs[] = {{"hexahedra", 5000}, {"voxels", 5000}};
 
 class RandomEdits : public testing::TestWithParam<EditProgram> {};
 
 TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
     const std::string name(GetParam().family);
     const int num_edits = GetParam().num_edits;
-    for (const auto* family : test::tetrahedral_families()) {
+    for (const auto& of_all : test::mesh_families()) {
+        const auto* family = &of_all;
         if (family->name != name) continue;
         auto body = std::make_unique<EditedBody>(family->data, 1);
         int num_bodies = 1;
@@ -231,23 +238,30 @@ TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
     FAIL() << "no family " << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTetrahedra, RandomEdits, testing::ValuesIn(edit_programs),
-                         [](const auto& program) {
-                             std::string name(program.param.family);
-                             std::replace(name.begin(), name.end(), ' ', '_');
-                             return name;
-                         });
+std::string name_of(const testing::TestParamInfo<EditProgram>& program) {
+    std::string name(program.param.family);
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+}
+INSTANTIATE_TEST_SUITE_P(OfTetrahedra, RandomEdits, testing::ValuesIn(edit_programs), name_of);
+INSTANTIATE_TEST_SUITE_P(OfHexahedra, RandomEdits, testing::ValuesIn(hexahedral_edit_programs),
+                         name_of);
 
-TEST(RandomEdits, OnEveryFamilyOfTetrahedraAreTested) {
-    EXPECT_EQ(test::tetrahedral_families().size(), 7u) << "add the new one above";
+TEST(RandomEdits, OnEveryFamilyAreTested) {
+    EXPECT_EQ(test::tetrahedral_families().size(), std::size(edit_programs));
+    EXPECT_EQ(test::families_of(topology::CellKind::hexahedron).size(),
+              std::size(hexahedral_edit_programs));
 }
 
 // Many edits in a row, undone in reverse: supports, loads on nodes and all else are back, so that
 // the body moves on as if nothing had been.
 TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
-    for (const auto* family : test::tetrahedral_families()) {
+    auto families = test::tetrahedral_families();
+    for (const auto* family : test::families_of(topology::CellKind::hexahedron))
+        families.push_back(family);
+    for (const auto* family : families) {
         SCOPED_TRACE(family->name);
-        const auto table = table_of_all_materials();
+        const auto table = table_for(family->data);
         const auto data = with_regions(family->data, table.materials.size());
         Mesh mesh = Mesh::build(data).mesh;
         const Mesh untouched = Mesh::build(data).mesh;
@@ -281,9 +295,9 @@ TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
     }
 }
 
-// Kinds of cells that have no forces yet can be edited all the same.
+// Kinds of cells that have no forces can be edited all the same.
 TEST(RandomEdits, OfOtherCellsLeaveAValidMeshAndCanBeUndone) {
-    for (const char* name : {"hexahedra", "mixed"}) {
+    for (const char* name : {"mixed"}) {
         const auto& families = test::mesh_families();
         const auto family = std::find_if(families.begin(), families.end(),
                                          [&](const auto& f) { return f.name == name; });

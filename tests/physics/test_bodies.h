@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,19 @@ inline MaterialTable table_of_all_materials() {
     };
     for (const NamedLaw& named : test_laws()) add(HyperElasticLinks{named.law});
     add(MassSprings{1e4});
+    return table;
+}
+
+/// Hybrid springs of several Poisson's ratios and ratios of springs, each in a region of its own.
+inline MaterialTable table_of_hybrid_springs() {
+    MaterialTable table;
+    double density = 900.0;
+    for (const double kappa : {0.0, 3e4, -1e3, 4e5})
+        for (const double ratio : {1.0, 0.5, std::numeric_limits<double>::infinity()}) {
+            table.of_region[static_cast<int>(table.materials.size())] = table.materials.size();
+            table.materials.push_back({density, HybridSprings{4e3, kappa, ratio}});
+            density += 37.0;
+        }
     return table;
 }
 

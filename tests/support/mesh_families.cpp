@@ -150,6 +150,32 @@ MeshData jittered_cube(int n, double jitter, std::uint64_t seed) {
     return data;
 }
 
+/// Cubes whose centres are in a ball that has a hollow; some meet at edges and corners only.
+MeshData voxels() {
+    constexpr int n = 6;
+    const MeshData all =
+        box_mesh(CellKind::hexahedron, Vec3::Constant(-1.0), Vec3::Constant(2.0), {n, n, n});
+    MeshData data;
+    std::vector<std::int64_t> number(all.points.size(), -1);
+    for (std::size_t c = 0; c < all.num_cells(); ++c) {
+        Vec3 centre = Vec3::Zero();
+        for (const auto corner : all.cell(c))
+            centre += all.points[static_cast<std::size_t>(corner)] / 8.0;
+        if (centre.norm() > 1.0 || (centre - Vec3(0.2, 0.1, 0.3)).norm() < 0.45) continue;
+        std::vector<std::int64_t> corners;
+        for (const auto corner : all.cell(c)) {
+            auto& n_new = number[static_cast<std::size_t>(corner)];
+            if (n_new < 0) {
+                n_new = static_cast<std::int64_t>(data.points.size());
+                data.points.push_back(all.points[static_cast<std::size_t>(corner)]);
+            }
+            corners.push_back(n_new);
+        }
+        data.add_cell(CellKind::hexahedron, corners);
+    }
+    return data;
+}
+
 const std::vector<MeshFamily>& mesh_families() {
     static const std::vector<MeshFamily> families = [] {
         const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0},   {0, 1, 0},
@@ -169,21 +195,24 @@ const std::vector<MeshFamily>& mesh_families() {
         all.push_back({"ball", ball(4)});
         all.push_back({"organ", organ()});
         all.push_back(
-            {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.5, 2}, {4, 3, 5})});
+            {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.5, 2}, {4, 4, 6})});
+        all.push_back({"voxels", voxels()});
         all.push_back({"mixed", mixed()});
         return all;
     }();
     return families;
 }
 
-std::vector<const MeshFamily*> tetrahedral_families() {
+std::vector<const MeshFamily*> families_of(CellKind kind) {
     std::vector<const MeshFamily*> families;
     for (const MeshFamily& family : mesh_families())
         if (std::all_of(family.data.kinds.begin(), family.data.kinds.end(),
-                        [](CellKind kind) { return kind == CellKind::tetrahedron; }))
+                        [&](CellKind of_cell) { return of_cell == kind; }))
             families.push_back(&family);
     return families;
 }
+
+std::vector<const MeshFamily*> tetrahedral_families() { return families_of(CellKind::tetrahedron); }
 
 ChangeSet random_edit(Mesh& mesh, Random& random) {
     MeshEdit edit(mesh);

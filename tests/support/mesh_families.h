@@ -19,10 +19,12 @@ struct MeshFamily {
 };
 
 /// One tetrahedron; two by a face; two by an edge; a jittered Kuhn cube; a ring; a ball; an
-/// organ-like body; a block of hexahedra; wedge, pyramid, hexahedron and tetrahedra glued together.
+/// organ-like body; a block of boxes; cubes that fill a hollow ball; wedge, pyramid, hexahedron and
+/// tetrahedra glued together.
 const std::vector<MeshFamily>& mesh_families();
 
-/// Those of tetrahedra only.
+/// Those of one kind of cell only.
+std::vector<const MeshFamily*> families_of(topology::CellKind kind);
 std::vector<const MeshFamily*> tetrahedral_families();
 
 /// Kuhn cube of n^3 bricks, side 1, inner points moved by up to `jitter` of an edge.

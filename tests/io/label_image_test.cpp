@@ -1,0 +1,560 @@
+// What label images of each format mean, and what is refused in one.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/label_image.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkImageData.h>
+#include <vtkMatrix4x4.h>
+#include <vtkMetaImageWriter.h>
+#include <vtkNIFTIImageWriter.h>
+#include <vtkNew.h>
+
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "io/memory.h"
+#include "tests/io/image_samples.h"
+#include "tests/io/reader_samples.h"
+
+namespace incise::io {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Eigen::Matrix3d no_rotation = Eigen::Matrix3d::Identity();
+/// Axes along y, -x and z.
+const Eigen::Matrix3d quarter_turn = (Eigen::Matrix3d() << 0, -1, 0, 1, 0, 0, 0, 0, 1).finished();
+
+void expect_image(const LabelImage& image, const Eigen::Matrix3d& directions, const Vec3& origin,
+                  double tolerance = 1e-15) {
+    EXPECT_THAT(image.dimensions, ElementsAre(2, 3, 4));
+    EXPECT_EQ(image.labels, sample_labels());
+    EXPECT_LE((image.spacing - Vec3(1, 2, 3)).norm(), tolerance) << image.spacing;
+    EXPECT_LE((image.directions - directions).norm(), tolerance) << image.directions;
+    EXPECT_LE((image.origin - origin).norm(), tolerance) << image.origin;
+    EXPECT_THAT(image.warnings, IsEmpty());
+}
+
+/// The message, without the folder.
+std::string image_refusal(const std::string& name, const std::string& bytes) {
+    const support::TemporaryFolder folder;
+    write_bytes(folder / name, bytes);
+    try {
+        read_label_image(folder / name);
+    } catch (const InputError& error) {
+        std::string text = error.what();
+        const auto prefix = folder.path().string() + "/";
+        for (auto at = text.find(prefix); at != text.npos; at = text.find(prefix))
+            text.erase(at, prefix.size());
+        return text;
+    }
+    ADD_FAILURE() << name << " was read";
+    return {};
+}
+
+/// Labels 0 to 23.
+vtkSmartPointer<vtkImageData> vtk_image() {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(2, 3, 4);
+    image->SetSpacing(1, 2, 3);
+    image->AllocateScalars(VTK_SHORT, 1);
+    auto* values = static_cast<short*>(image->GetScalarPointer());
+    for (short v = 0; v < 24; ++v) values[v] = v;
+    return image;
+}
+
+TEST(LabelImage, ReadsNiftiWrittenByVtk) {
+    const support::TemporaryFolder folder;
+    vtkNew<vtkMatrix4x4> pose;
+    const double elements[] = {0, -1, 0, -10, 1, 0, 0, 5, 0, 0, 1, 7, 0, 0, 0, 1};
+    pose->DeepCopy(elements);
+    for (const auto* name : {"a.nii", "a.nii.gz"})
+        for (const bool is_sform : {false, true}) {
+            vtkNew<vtkNIFTIImageWriter> writer;
+            writer->SetInputData(vtk_image());
+            writer->SetFileName((folder / name).c_str());
+            is_sform ? writer->SetSFormMatrix(pose) : writer->SetQFormMatrix(pose);
+            writer->Write();
+            expect_image(read_label_image(folder / name), quarter_turn, {-10, 5, 7}, 1e-7);
+        }
+}
+
+TEST(LabelImage, ReadsMetaImageWrittenByVtk) {
+    const support::TemporaryFolder folder;
+    for (const auto* name : {"a.mha", "a.mhd"})
+        for (const bool is_packed : {false, true}) {
+            auto image = vtk_image();
+            image->SetOrigin(-10, 5, 7);
+            vtkNew<vtkMetaImageWriter> writer;
+            writer->SetInputData(image);
+            writer->SetFileName((folder / name).c_str());
+            writer->SetCompression(is_packed);
+            writer->Write();
+            expect_image(read_label_image(folder / name), no_rotation, {-10, 5, 7});
+        }
+}
+
+TEST(LabelImage, ReadsNiftiOfBothVersionsAndByteOrders) {
+    for (const bool is_second : {false, true})
+        for (const bool is_big : {false, true}) {
+            Nifti nifti;
+            nifti.is_second = is_second;
+            nifti.is_big = is_big;
+            nifti.datatype = 4;
+            nifti.data = bytes_of<std::int16_t>(sample_labels(), is_big);
+            nifti.sform_code = 1;
+            nifti.srow = {0, -2, 0, -10, 1, 0, 0, 5, 0, 0, 3, 7};
+            for (const auto& bytes : {nifti.bytes(), gzipped(nifti.bytes())})
+                expect_image(read_image("a.nii", bytes), quarter_turn, {-10, 5, 7});
+        }
+}
+
+TEST(LabelImage, TakesNiftisSformElseItsQform) {
+    Nifti nifti;
+    const double half = std::numbers::sqrt2 / 2;
+    nifti.qform_code = 1;
+    nifti.quaternion_and_offset = {0, 0, half, -10, 5, 7};
+    expect_image(read_image("a.nii", nifti.bytes()), quarter_turn, {-10, 5, 7}, 1e-7);
+
+    // About x: y goes to z.
+    nifti.quaternion_and_offset = {half, 0, 0, -10, 5, 7};
+    const Eigen::Matrix3d about_x = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
+    expect_image(read_image("a.nii", nifti.bytes()), about_x, {-10, 5, 7}, 1e-7);
+
+    nifti.sform_code = 2;
+    nifti.srow = {0, -2, 0, 1, 1, 0, 0, 2, 0, 0, 3, 3};
+    expect_image(read_image("a.nii", nifti.bytes()), quarter_turn, {1, 2, 3});
+}
+
+TEST(LabelImage, LeavesNiftisLeftHandedAxesLeftHanded) {
+    Nifti nifti;
+    const Eigen::Matrix3d mirror = Vec3(1, 1, -1).asDiagonal();
+    nifti.qform_code = 1;
+    nifti.pixdim[0] = -1;
+    nifti.quaternion_and_offset = {0, 0, 0, -10, 5, 7};
+    expect_image(read_image("a.nii", nifti.bytes()), mirror, {-10, 5, 7});
+
+    nifti.sform_code = 1;
+    nifti.srow = {-1, 0, 0, -10, 0, 2, 0, 5, 0, 0, 3, 7};
+    expect_image(read_image("a.nii", nifti.bytes()), Vec3(-1, 1, 1).asDiagonal(), {-10, 5, 7});
+}
+
+TEST(LabelImage, WarnsOfAPoseThatIsOddOrNotThere) {
+    Nifti nifti;
+    auto image = read_image("a.nii", nifti.bytes());
+    EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("neither sform nor qform")));
+    EXPECT_EQ(image.spacing, Vec3(1, 2, 3));
+    EXPECT_EQ(image.directions, no_rotation);
+    EXPECT_EQ(image.origin, Vec3::Zero());
+
+    nifti.sform_code = 1;
+    nifti.srow = {1, 0, 0, 0, 0, 4, 0, 0, 0, 0, 3, 0};
+    nifti.units = 1;
+    image = read_image("a.nii", nifti.bytes());
+    EXPECT_THAT(image.warnings,
+                ElementsAre("along axis 2 the voxel size is 2, but the sform steps by 4; the sform "
+                            "is used",
+                            "its lengths are in metres, not in millimetres; they are left so"));
+    EXPECT_EQ(image.spacing, Vec3(1, 4, 3));
+
+    image = read_image("a.mha", replaced(meta_image(), "ElementSpacing = 1 2 3\n", ""));
+    EXPECT_THAT(image.warnings, ElementsAre("states no ElementSpacing; 1 is taken"));
+    image = read_image("a.nrrd",
+                       replaced(nrrd(), "space directions: (0,1,0) (-2,0,0) (0, 0, 3)\n", ""));
+    EXPECT_THAT(image.warnings,
+                ElementsAre("states neither space directions nor spacings; 1 is taken"));
+    EXPECT_EQ(image.spacing, Vec3::Ones());
+}
+
+TEST(LabelImage, RescalesNiftisValuesAsItsHeaderSays) {
+    Nifti nifti;
+    nifti.scl = {2, -1};
+    nifti.sform_code = 1;
+    nifti.srow = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+    const auto labels = read_image("a.nii", nifti.bytes()).labels;
+    for (int v = 0; v < 24; ++v) EXPECT_EQ(labels[static_cast<std::size_t>(v)], 2 * v - 1);
+    nifti.scl = {0.5, 0};
+    EXPECT_THAT(image_refusal("a.nii", nifti.bytes()),
+                HasSubstr("voxel (1, 0, 0) has the value 0.5"));
+}
+
+TEST(LabelImage, ReadsAllNumberTypes) {
+    const auto expect_type = [](int nifti_type, const std::string& meta_type,
+                                const std::string& nrrd_type, auto value) {
+        using T = decltype(value);
+        auto labels = sample_labels();
+        if (std::is_signed_v<T>) labels[5] = -7;
+        if (sizeof(T) > 1) labels[6] = 300;
+        for (const bool is_big : {false, true}) {
+            SCOPED_TRACE(nrrd_type + (is_big ? " big" : " little"));
+            Nifti nifti;
+            nifti.datatype = nifti_type;
+            nifti.is_big = is_big;
+            nifti.data = bytes_of<T>(labels, is_big);
+            EXPECT_EQ(read_image("a.nii", nifti.bytes()).labels, labels);
+            auto meta = replaced(meta_image_header("LOCAL"), "MET_UCHAR", meta_type);
+            if (is_big) meta = replaced(meta, "MSB = False", "MSB = True");
+            EXPECT_EQ(read_image("a.mha", meta + nifti.data).labels, labels);
+            auto header = replaced(nrrd_header(), "unsigned char", nrrd_type);
+            if (is_big) header = replaced(header, "little", "big");
+            EXPECT_EQ(read_image("a.nrrd", header + "\n" + nifti.data).labels, labels);
+        }
+    };
+    expect_type(256, "MET_CHAR", "int8", std::int8_t{});
+    expect_type(2, "MET_UCHAR", "uchar", std::uint8_t{});
+    expect_type(4, "MET_SHORT", "short", std::int16_t{});
+    expect_type(512, "MET_USHORT", "unsigned short", std::uint16_t{});
+    expect_type(8, "MET_INT", "int", std::int32_t{});
+    expect_type(768, "MET_UINT", "uint32_t", std::uint32_t{});
+    expect_type(1024, "MET_LONG_LONG", "long long", std::int64_t{});
+    expect_type(1280, "MET_ULONG_LONG", "uint64", std::uint64_t{});
+    expect_type(16, "MET_FLOAT", "float", float{});
+    expect_type(64, "MET_DOUBLE", "double", double{});
+}
+
+TEST(LabelImage, ReadsMetaImageInItsPose) {
+    expect_image(read_image("a.mha", meta_image()), quarter_turn, {-10, 5, 7});
+    auto text = replaced(meta_image_header("LOCAL"), "BinaryData = True", "BinaryData = False");
+    for (const int label : sample_labels()) text += std::to_string(label) + "\n";
+    expect_image(read_image("a.mha", text), quarter_turn, {-10, 5, 7});
+    // The names of old files, told by the content.
+    const auto old =
+        replaced(replaced(meta_image(), "Offset", "Position"), "TransformMatrix", "Orientation");
+    expect_image(read_image("a.img", old), quarter_turn, {-10, 5, 7});
+}
+
+TEST(LabelImage, ReadsMetaImageDataFromAnotherFile) {
+    const support::TemporaryFolder folder;
+    const auto data = bytes_of<std::uint8_t>(sample_labels());
+    write_bytes(folder / "my data.raw", "xyz" + data);
+    for (const auto* size : {"3", "-1"}) {
+        write_bytes(folder / "a.mhd",
+                    "HeaderSize = " + std::string(size) + "\n" + meta_image_header("my data.raw"));
+        expect_image(read_label_image(folder / "a.mhd"), quarter_turn, {-10, 5, 7});
+    }
+    // Labels that look like a mark of byte order.
+    write_bytes(folder / "my data.raw", "\xEF\xBB\xBF" + data.substr(3));
+    write_bytes(folder / "a.mhd", meta_image_header("my data.raw"));
+    const auto labels = read_label_image(folder / "a.mhd").labels;
+    EXPECT_EQ(labels[0], 0xEF);
+    EXPECT_EQ(labels[2], 0xBF);
+    EXPECT_EQ(labels[23], 23);
+}
+
+TEST(LabelImage, ReadsNrrdInAllItsEncodings) {
+    const auto data = bytes_of<std::uint8_t>(sample_labels());
+    std::string text, hex;
+    for (const int label : sample_labels()) {
+        text += std::to_string(label) + " ";
+        hex += "0123456789aBcDeF"[label / 16];
+        hex += "0123456789aBcDeF"[label % 16];
+        if (label % 5 == 0) hex += '\n';
+    }
+    for (const auto& [encoding, values] : {std::pair<std::string, std::string>{"raw", data},
+                                           {"txt", text},
+                                           {"ascii", text},
+                                           {"hex", hex},
+                                           {"gzip", gzipped(data)},
+                                           {"gz", gzipped(data)}}) {
+        SCOPED_TRACE(encoding);
+        const auto header = replaced(nrrd_header(), "encoding: raw", "encoding: " + encoding);
+        expect_image(read_image("a.nrrd", header + "\n" + values), quarter_turn, {-10, 5, 7});
+    }
+    const auto members = gzipped(data.substr(0, 10)) + gzipped(data.substr(10));
+    expect_image(read_image("a.nrrd", replaced(nrrd_header(), "raw", "gzip") + "\n" + members),
+                 quarter_turn, {-10, 5, 7});
+}
+
+TEST(LabelImage, ReadsNrrdDataFromAnotherFile) {
+    const support::TemporaryFolder folder;
+    const auto data = bytes_of<std::uint8_t>(sample_labels());
+    write_bytes(folder / "a.raw", "first\nsecond\nxyz" + data);
+    write_bytes(folder / "a.nhdr",
+                nrrd_header() + "data file: a.raw\nline skip: 2\nbyte skip: 3\n");
+    expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+    write_bytes(folder / "a.nhdr", nrrd_header() + "datafile: a.raw\nbyte skip: -1\n");
+    expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+    write_bytes(folder / "a.raw", gzipped("xyz" + data));
+    write_bytes(folder / "a.nhdr",
+                replaced(nrrd_header(), "raw", "gzip") + "data file: a.raw\nbyte skip: 3\n");
+    expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+}
+
+TEST(LabelImage, ReadsNrrdOfSpacingsAlone) {
+    const auto bytes = replaced(
+        replaced(nrrd(), "space directions: (0,1,0) (-2,0,0) (0, 0, 3)", "spacings: 1 2 3"),
+        "space: left-posterior-superior\n", "");
+    expect_image(read_image("a.nrrd", bytes), no_rotation, {-10, 5, 7});
+}
+
+TEST(LabelImage, TakesTheLengthOfDirectionsIntoTheSpacing) {
+    const auto image =
+        read_image("a.mha", replaced(meta_image(), "0 1 0 -1 0 0 0 0 1", "0 2 0 -1 0 0 0 0 1"));
+    EXPECT_EQ(image.spacing, Vec3(2, 2, 3));
+    EXPECT_EQ(image.directions, quarter_turn);
+}
+
+TEST(LabelImage, RefusesDamagedNifti) {
+    const auto refused = [](auto change) {
+        Nifti nifti;
+        nifti.qform_code = 1;
+        change(nifti);
+        return image_refusal("a.nii", nifti.bytes());
+    };
+    const auto whole = Nifti().bytes();
+    EXPECT_EQ(image_refusal("a.nii", whole.substr(0, whole.size() - 1)),
+              "a.nii: ends too early: its header announces 24 bytes of values, and there are 23; "
+              "get it anew");
+    EXPECT_EQ(image_refusal("a.nii", whole.substr(0, 100)),
+              "a.nii: ends within the header of a NIfTI image; get it anew");
+    EXPECT_THAT(image_refusal("a.nii", std::string(400, 'x')),
+                HasSubstr("does not begin as a NIfTI image"));
+    const auto packed = gzipped(whole);
+    EXPECT_THAT(image_refusal("a.nii.gz", packed.substr(0, packed.size() - 12)),
+                HasSubstr("the packed data are damaged, or end before 376 bytes"));
+    auto damaged = packed;
+    damaged[damaged.size() - 6] ^= 1;  // the sum of checks
+    EXPECT_THAT(image_refusal("a.nii.gz", damaged), HasSubstr("the packed data are damaged"));
+
+    EXPECT_EQ(refused([](Nifti& n) {
+                  n.dim = {2, 4, 6};
+              }),
+              "a.nii: is an image of 2 axes; a mesh takes one of three, with one label a voxel");
+    EXPECT_EQ(refused([](Nifti& n) {
+                  n.dim = {4, 2, 3, 2, 2};
+              }),
+              "a.nii: has 2 images in time; save one of them");
+    EXPECT_THAT(refused([](Nifti& n) { n.dim = {5, 2, 3, 2, 1, 2}; }),
+                HasSubstr("more than one component a voxel (2)"));
+    EXPECT_THAT(refused([](Nifti& n) { n.datatype = 128; }), HasSubstr("more than one component"));
+    EXPECT_THAT(refused([](Nifti& n) { n.datatype = 1; }), HasSubstr("data type 1 is not known"));
+    EXPECT_THAT(refused([](Nifti& n) {
+                    n.dim = {3, 2, -3, 4};
+                }),
+                HasSubstr("has -3 voxels along axis 2"));
+    EXPECT_THAT(refused([](Nifti& n) { n.dim = {9, 2, 3, 4}; }), HasSubstr("has 9 axes"));
+    EXPECT_THAT(refused([](Nifti& n) {
+                    n.dim = {3, 32767, 32767, 32767};
+                }),
+                HasSubstr("more than 2147483647 voxels"));
+    EXPECT_THAT(refused([](Nifti& n) {
+                    n.dim = {3, 1000, 1000, 1000};
+                }),
+                HasSubstr("announces 1000000000 bytes of values, and there are 24"));
+    EXPECT_EQ(refused([](Nifti& n) { n.pixdim[2] = 0; }),
+              "a.nii: the spacing of voxels along axis 2 is 0; it must be above 0 and finite");
+    EXPECT_THAT(refused([](Nifti& n) { n.pixdim[3] = -1; }), HasSubstr("along axis 3 is -1;"));
+    EXPECT_THAT(refused([](Nifti& n) { n.pixdim[1] = std::nan(""); }), HasSubstr("is nan;"));
+    EXPECT_THAT(refused([](Nifti& n) { n.quaternion_and_offset[4] = INFINITY; }),
+                HasSubstr("the origin has inf"));
+    EXPECT_THAT(refused([](Nifti& n) {
+                    n.sform_code = 1;
+                    n.srow = {1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 3, 0};
+                }),
+                HasSubstr("the directions of its three axes lie in a plane"));
+    auto pair = whole;
+    pair.replace(344, 3, "ni1");
+    EXPECT_THAT(image_refusal("a.hdr", pair), HasSubstr("no NIfTI image in one file"));
+}
+
+TEST(LabelImage, RefusesDamagedMetaImage) {
+    const auto refused = [](const std::string& from, const std::string& to) {
+        return image_refusal("a.mha", replaced(meta_image(), from, to));
+    };
+    EXPECT_EQ(image_refusal("a.mha", meta_image().substr(0, meta_image().size() - 14)),
+              "a.mha: ends too early: its header announces 24 bytes of values, and there are 10; "
+              "get it anew");
+    EXPECT_EQ(image_refusal("a.mhd", meta_image_header("none.raw")),
+              "a.mhd: its data: none.raw: no such file; check the path");
+    EXPECT_THAT(refused("CompressedData = False", "CompressedData = True"),
+                HasSubstr("the packed data are damaged"));
+    EXPECT_THAT(refused("ElementDataFile", "DataFile"), HasSubstr("a.mha:"));
+    EXPECT_THAT(image_refusal("a.mha", meta_image_header("x").substr(0, 150)),
+                HasSubstr("no ElementDataFile"));
+    EXPECT_EQ(refused("NDims = 3", "NDims = 2"), "a.mha:10: expected 2 numbers, found '2 3 4'");
+    EXPECT_THAT(image_refusal("a.mha", replaced(replaced(meta_image(), "NDims = 3", "NDims = 2"),
+                                                "2 3 4", "4 6")),
+                HasSubstr("is an image of 2 axes"));
+    EXPECT_EQ(refused("ElementType", "ElementNumberOfChannels = 3\nElementType"),
+              "a.mha:11: has more than one component a voxel (3); give an image of one label a "
+              "voxel");
+    EXPECT_THAT(refused("MET_UCHAR", "MET_UCHAR_ARRAY"),
+                HasSubstr("a.mha:11: ElementType 'MET_UCHAR_ARRAY' is not one number"));
+    EXPECT_THAT(refused("Spacing = 1 2 3", "Spacing = 0 2 3"), HasSubstr("along axis 1 is 0;"));
+    EXPECT_THAT(refused("Spacing = 1 2 3", "Spacing = 1 -2 3"), HasSubstr("along axis 2 is -2;"));
+    EXPECT_THAT(refused("Spacing = 1 2 3", "Spacing = 1 2 nan"), HasSubstr("axis 3 is nan;"));
+    EXPECT_EQ(refused("Spacing = 1 2 3", "Spacing = 1 2 x"),
+              "a.mha:9: expected a number, found 'x'");
+    EXPECT_THAT(refused("0 1 0 -1 0 0 0 0 1", "0 1 0 0 1 0 0 0 1"), HasSubstr("lie in a plane"));
+    EXPECT_THAT(refused("0 1 0 -1 0 0 0 0 1", "0 1 0 0 0 0 0 0 1"),
+                HasSubstr("the direction along axis 2 has the length 0"));
+    EXPECT_THAT(refused("0 1 0 -1 0 0 0 0 1", "0 1 0 -1 0 0 0 0 inf"), HasSubstr("axis 3"));
+    EXPECT_THAT(refused("LOCAL", "LIST"), HasSubstr("list of files"));
+    EXPECT_THAT(refused("LOCAL", "a%03d.raw 0 3 1"), HasSubstr("list of files"));
+    EXPECT_THAT(refused("ObjectType = Image", "ObjectType = Tube"), HasSubstr("not an image"));
+    EXPECT_THAT(refused("DimSize = 2 3 4", "DimSize = 2 3 0"), HasSubstr("has 0 voxels"));
+    EXPECT_THAT(refused("DimSize = 2 3 4\n", ""), HasSubstr("no DimSize"));
+}
+
+TEST(LabelImage, RefusesDamagedNrrd) {
+    const auto refused = [](const std::string& from, const std::string& to) {
+        return image_refusal("a.nrrd", replaced(nrrd(), from, to));
+    };
+    EXPECT_EQ(image_refusal("a.nrrd", nrrd().substr(0, nrrd().size() - 1)),
+              "a.nrrd: ends too early: its header announces 24 bytes of values, and there are 23; "
+              "get it anew");
+    EXPECT_THAT(image_refusal("a.nrrd", replaced(nrrd_header(), "raw", "txt") + "\n1 2 3"),
+                HasSubstr("announces 24 values, and there are 3"));
+    EXPECT_THAT(image_refusal("a.nrrd", replaced(nrrd_header(), "raw", "txt") + "\n1 2 x"),
+                HasSubstr("voxel (0, 1, 0): expected a number, found 'x'"));
+    EXPECT_THAT(image_refusal("a.nrrd", replaced(nrrd_header(), "raw", "hex") + "\n0g"),
+                HasSubstr("expected hexadecimal digits, found 'g'"));
+    EXPECT_THAT(image_refusal("a.nrrd", replaced(nrrd_header(), "raw", "gzip") + "\nxyz"),
+                HasSubstr("the packed data are damaged"));
+    EXPECT_THAT(image_refusal("a.nhdr", nrrd_header() + "data file: none.raw\n"),
+                HasSubstr("a.nhdr: its data: none.raw: no such file"));
+    EXPECT_THAT(image_refusal("a.nhdr", nrrd_header() + "data file: LIST\na.raw\n"),
+                HasSubstr("expected FIELD: VALUE, found 'a.raw'"));
+    EXPECT_THAT(refused("encoding: raw", "encoding: bzip2"),
+                HasSubstr("a.nrrd:10: encoding 'bzip2' is not read here"));
+    EXPECT_THAT(refused("domain domain domain", "vector domain domain"),
+                HasSubstr("an axis 'vector' that is not of space"));
+    EXPECT_THAT(refused("(0,1,0)", "none"), HasSubstr("an axis 'none' that is not of space"));
+    EXPECT_THAT(refused("unsigned char", "block"), HasSubstr("type 'block' is not one number"));
+    EXPECT_THAT(refused("sizes: 2 3 4", "sizes: 2 3"), HasSubstr("expected 3 values"));
+    EXPECT_THAT(refused("(0,1,0) (-2", "(0,1) (-2"), HasSubstr("vectors of three numbers"));
+    EXPECT_THAT(refused("(0,1,0) (-2", "(0,0,0) (-2"), HasSubstr("along axis 1 is 0;"));
+    EXPECT_THAT(refused("(0,1,0) (-2,0,0)", "(0,1,0) (0,2,0)"), HasSubstr("lie in a plane"));
+    EXPECT_THAT(refused("space directions: (0,1,0) (-2,0,0) (0, 0, 3)", "spacings: 1 -2 3"),
+                HasSubstr("along axis 2 is -2;"));
+    EXPECT_THAT(refused("unsigned char\n", "short\n").substr(0, 8), "a.nrrd: ");
+    EXPECT_THAT(image_refusal("a.nrrd", replaced(replaced(nrrd(), "endian: little\n", ""),
+                                                 "unsigned char", "short")),
+                HasSubstr("no field 'endian'"));
+    auto flat = replaced(replaced(nrrd(), "dimension: 3", "dimension: 2"), "2 3 4", "4 6");
+    flat = replaced(flat, "kinds: domain domain domain\n", "");
+    EXPECT_THAT(image_refusal("a.nrrd", flat), HasSubstr("is an image of 2 axes"));
+}
+
+TEST(LabelImage, RefusesValuesThatAreNoLabels) {
+    const auto refused = [](int datatype, const std::string& last) {
+        Nifti nifti;
+        nifti.datatype = datatype;
+        nifti.dim = {3, 2, 1, 1};
+        nifti.data = std::string(last.size(), '\0') + last;
+        return image_refusal("a.nii", nifti.bytes());
+    };
+    EXPECT_EQ(refused(16, bytes_of(1.5F)),
+              "a.nii: voxel (1, 0, 0) has the value 1.5, and labels are whole numbers; give a "
+              "segmentation, not an image of intensities");
+    EXPECT_THAT(refused(64, bytes_of(std::nan(""))), HasSubstr("has the value nan"));
+    EXPECT_THAT(refused(64, bytes_of(-INFINITY)), HasSubstr("has the value -inf"));
+    EXPECT_THAT(refused(64, bytes_of(3e9)), HasSubstr("has the label 3e+09, beyond the range"));
+    EXPECT_THAT(refused(768, bytes_of(3000000000U)), HasSubstr("has the label 3000000000"));
+    EXPECT_THAT(refused(1024, bytes_of(std::int64_t{-3000000000})), HasSubstr("-3000000000"));
+    EXPECT_THAT(refused(1280, bytes_of(std::numeric_limits<std::uint64_t>::max())),
+                HasSubstr("18446744073709551615"));
+    EXPECT_EQ(refused(2, bytes_of(std::uint8_t{0})), "a.nii: no voxel with a label: all are 0");
+    EXPECT_EQ(refused(64, bytes_of(0.0)), "a.nii: no voxel with a label: all are 0");
+}
+
+TEST(LabelImage, NamesTheFirstVoxelThatIsNoLabel) {
+    Nifti nifti;
+    nifti.datatype = 16;
+    nifti.data = bytes_of<float>(sample_labels());
+    nifti.data.replace(4 * 17, 4, bytes_of(0.25F));  // 17 = 1 + 2 (2 + 3 * 2)
+    nifti.data.replace(4 * 20, 4, bytes_of(0.75F));
+    EXPECT_THAT(image_refusal("a.nii", nifti.bytes()),
+                HasSubstr("voxel (1, 2, 2) has the value 0.25"));
+}
+
+TEST(LabelImage, RefusesWhatIsNoImage) {
+    EXPECT_EQ(image_refusal("a.png", "\x89PNG and more"),
+              "a.png: begins like no image format known here; convert it to one of: NIfTI (.nii, "
+              ".nii.gz), MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr)");
+    EXPECT_THAT(image_refusal("a.nrrd", "nonsense"), HasSubstr("does not begin as a NRRD image"));
+    EXPECT_THAT(image_refusal("a.mha", "nonsense"), HasSubstr("expected KEY = VALUE"));
+    EXPECT_THAT(image_refusal("a.nii.gz", gzipped("nonsense")),
+                HasSubstr("ends within the header"));
+    EXPECT_THAT(image_refusal("a.nii", ""), HasSubstr("the file is empty"));
+    const support::TemporaryFolder folder;
+    EXPECT_THROW(read_label_image(folder / "none.nii"), InputError);
+    EXPECT_THROW(read_label_image(folder.path()), InputError);
+}
+
+TEST(LabelImage, RefusesMoreThanTheMemoryOfTheMachine) {
+    EXPECT_NO_THROW(require_memory(1.0, "a.nii: the image", "crop it"));
+    try {
+        require_memory(1e18, "a.nii: the image", "crop it");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("a.nii: the image takes 1e+09 GB of memory, and this"));
+        EXPECT_THAT(error.what(), HasSubstr(" GB; crop it"));
+    }
+}
+
+/// One to three bytes changed, removed or cut off.
+std::string mutated(std::string bytes, std::mt19937& random) {
+    const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
+    if (below(8) == 0) bytes.resize(below(bytes.size()));
+    for (auto n = 1 + below(3); n > 0 && !bytes.empty(); --n) {
+        const auto at = below(bytes.size());
+        switch (below(4)) {
+            case 0:
+                bytes[at] = static_cast<char>(below(256));
+                break;
+            case 1:
+                bytes[at] = "0123456789-.e \n(,"[below(17)];
+                break;
+            case 2:
+                bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
+                break;
+            case 3:
+                bytes.erase(at, 1 + below(4));
+                break;
+        }
+    }
+    return bytes;
+}
+
+TEST(LabelImage, ReadsOrRefusesDamagedFiles) {
+    Nifti nifti;
+    nifti.sform_code = nifti.qform_code = 1;
+    nifti.srow = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+    auto second = nifti;
+    second.is_second = true;
+    const std::pair<std::string, std::string> samples[] = {
+        {"a.nii", nifti.bytes()},
+        {"b.nii", second.bytes()},
+        {"a.nii.gz", gzipped(nifti.bytes())},
+        {"a.mha", meta_image()},
+        {"a.nrrd", nrrd()},
+        {"b.nrrd", replaced(nrrd_header(), "raw", "gzip") + "\n" +
+                       gzipped(bytes_of<std::uint8_t>(sample_labels()))}};
+    const support::TemporaryFolder folder;
+    for (const auto& [name, bytes] : samples) {
+        std::mt19937 random(12345);
+        int num_refused = 0;
+        for (int i = 0; i < 500; ++i) {
+            write_bytes(folder / name, mutated(bytes, random));
+            try {
+                const auto image = read_label_image(folder / name);
+                const auto [x, y, z] = image.dimensions;
+                EXPECT_EQ(image.labels.size(), static_cast<std::size_t>(x * y * z));
+                EXPECT_TRUE(image.spacing.minCoeff() > 0.0 && image.directions.allFinite());
+            } catch (const InputError&) {
+                ++num_refused;
+            } catch (const std::exception& error) {
+                FAIL() << name << ", mutation " << i << ": " << error.what();
+            }
+        }
+        EXPECT_GT(num_refused, 50) << name;
+    }
+}
+
+}  // namespace
+}  // namespace incise::io
