@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "physics/test_bodies.h"
+#include "topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {
@@ -115,6 +116,34 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
 
 // For linear forces the staggered energy is constant: what is left of its swing is due to the
 // curvature of the law and so, relative to the energy, in proportion to the amplitude.
+TEST(FreeMotion, OfHybridSpringsKeepsMomentaAndDoesNotDriftInEnergy) {
+    const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
+                                                     {1, 1, 1}, {3, 3, 3}))
+                          .mesh;
+    for (const double ratio : {1.0, std::numeric_limits<double>::infinity()})
+        for (const double kappa : {0.0, 2e4}) {
+            SCOPED_TRACE(testing::Message() << "A " << ratio << ", kappa " << kappa);
+            Model model(mesh, table_of_one_material(HybridSprings{4e3, kappa, ratio}));
+            set_state(model, swinging_state(mesh, 0.01));
+            const Totals before = model.totals();
+            double scale = 0.0;  // of momenta: the body is one metre wide
+            for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
+                scale += model.masses()[n] * model.velocities()[n].norm();
+            const int num_steps = 40000;
+            const auto record = run(model, 0.5 * model.stable_step(), num_steps);
+            const Totals after = model.totals();
+            EXPECT_LE((after.momentum - before.momentum).norm(), 1e-12 * scale);
+            EXPECT_LE((after.angular_momentum - before.angular_momentum).norm(), 1e-12 * scale);
+            const std::span<const double> staggered(record.staggered);
+            const double energy = average(staggered);
+            EXPECT_LE(swing(staggered), 1e-2 * energy);
+            // Once the first swing has spread over all modes there is no trend.
+            const auto last = staggered.last(num_steps / 2);
+            EXPECT_NEAR(average(last.first(num_steps / 4)), average(last.last(num_steps / 4)),
+                        1e-3 * energy);
+        }
+}
+
 TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));

@@ -98,6 +98,31 @@ TEST(StableStep, HoldsForABodyOfAllMaterials) {
     EXPECT_GE(bound, 0.4 * exact);
 }
 
+TEST(StableStep, HoldsForHybridSprings) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    struct Grid {
+        Vec3 size;
+        std::array<int, 3> cells;
+        double least;  // of the true step
+    };
+    for (const Grid& grid : {Grid{{1, 1, 1}, {1, 1, 1}, 0.99}, Grid{{3, 2, 2}, {3, 2, 2}, 0.65},
+                             Grid{{3, 2, 2.4}, {4, 2, 2}, 0.4}})
+        for (const double ratio : {0.5, 1.0, infinite})
+            for (const double kappa : {-3e3, 0.0, 1e4, 1e6}) {
+                SCOPED_TRACE(testing::Message() << grid.cells[0] << " cells along x, A " << ratio
+                                                << ", kappa " << kappa);
+                const Mesh mesh =
+                    Mesh::build(topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
+                                                   grid.size, grid.cells))
+                        .mesh;
+                const auto table = table_of_one_material(HybridSprings{5e3, kappa, ratio});
+                const double bound = Model(mesh, table).stable_step();
+                const double exact = true_stable_step(mesh, table);
+                EXPECT_LE(bound, exact * (1.0 + 1e-6));
+                EXPECT_GE(bound, (kappa < 0.0 ? 0.6 : 1.0) * grid.least * exact);
+            }
+}
+
 TEST(StableStep, FollowsDensityStiffnessAndSize) {
     const auto step_of = [](double size, double density, double factor) {
         MeshData data = test::jittered_cube(2, 0.1, 1);
