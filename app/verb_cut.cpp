@@ -17,6 +17,7 @@
 #include "sim/diagnostics.h"
 #include "sim/geometric_cut.h"
 #include "sim/table_reader.h"
+#include "sim/tool.h"
 #include "topology/error.h"
 
 namespace incise::app {

@@ -411,10 +411,6 @@ std::optional<double> GeometricCutReport::stable_step_ratio() const {
     return ratio(*after.step_length, *before.step_length);
 }
 
-CutMode usual_mode(const Mesh& mesh) {
-    return is_all_tetrahedra(mesh) ? CutMode::split : CutMode::separate;
-}
-
 GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options) {
     GeometricCutReport report;

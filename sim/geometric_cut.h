@@ -40,9 +40,6 @@ struct CutTool {
     std::variant<PlaneCut, SurfaceCut, SweepCut, ShapeRemoval> kind;
 };
 
-/// Split, unless the mesh has other elements than tetrahedra.
-CutMode usual_mode(const topology::Mesh& mesh);
-
 struct GeometricCutOptions {
     CutMode mode = CutMode::split;        ///< of all tools; split is for tetrahedra only
     double snap = cutting::default_snap;  ///< see cutting::SplitOptions; split mode only

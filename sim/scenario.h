@@ -144,9 +144,9 @@ enum class CutMode { split, separate };
 
 /// Cuts along what its edge sweeps.
 struct Blade {
-    std::vector<Vec3> edge;  ///< polyline in the tool's frame, at least two points
-    CutMode mode = CutMode::split;
-    std::optional<double> snap;  ///< of splitting: see cutting::SplitOptions
+    std::vector<Vec3> edge;       ///< polyline in the tool's frame, at least two points
+    std::optional<CutMode> mode;  ///< without: usual_mode of the mesh (tool.h)
+    std::optional<double> snap;   ///< of splitting: see cutting::SplitOptions
 };
 
 /// The points x with (x - point) . normal = 0.

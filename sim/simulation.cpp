@@ -38,6 +38,23 @@ std::map<int, double> step_lengths(const physics::Model& model) {
     return lengths;
 }
 
+/// Blades get a mode that suits the mesh, unless they have one.
+/// Throws InputError for what is to split a mesh without tetrahedra.
+ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
+    auto* blade = std::get_if<Blade>(&spec.kind);
+    if (blade && !blade->mode) blade->mode = usual_mode(mesh);
+    const bool splits =
+        blade ? blade->mode == CutMode::split : std::holds_alternative<Cut>(spec.kind);
+    if (!splits) return spec;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i);
+            mesh.is_alive(e) && mesh.kind(e) == topology::CellKind::tetrahedron)
+            return spec;
+    throw InputError("tool '" + spec.name +
+                     "' splits tetrahedra, and the mesh has none; use a blade with mode = "
+                     "\"separate\", which opens the faces nearest to it");
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario)
@@ -48,7 +65,8 @@ Simulation::Simulation(const Scenario& scenario)
       ledger_(model_),
       boxes_(mesh_, model_.positions()) {
     const auto step_length = step_lengths(model_);
-    for (const ToolSpec& spec : scenario.tools) tools_.emplace_back(spec, step_length, warnings_);
+    for (const ToolSpec& spec : scenario.tools)
+        tools_.emplace_back(with_mode(spec, mesh_), step_length, warnings_);
     step_limit();  // a fixed step that is too large is refused before anything is written
 }
 

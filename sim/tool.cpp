@@ -60,6 +60,14 @@ cutting::Split carry_out(const cutting::CutPlan& plan, topology::Mesh& mesh) {
 
 }  // namespace
 
+CutMode usual_mode(const topology::Mesh& mesh) {
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i);
+            mesh.is_alive(e) && mesh.kind(e) != topology::CellKind::tetrahedron)
+            return CutMode::separate;
+    return CutMode::split;
+}
+
 Tool::Tool(const ToolSpec& spec, const std::map<int, double>& step_length,
            std::vector<std::string>& warnings)
     : spec_(spec) {

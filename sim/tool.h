@@ -17,8 +17,13 @@
 namespace incise::sim {
 
 /// Follows its path: position linear between keys, orientation along the shortest turn.
+/// How blades cut if they are not told: they split, unless the mesh has other elements than
+/// tetrahedra. Cost: O(#elements).
+CutMode usual_mode(const topology::Mesh& mesh);
+
 class Tool {
   public:
+    /// @param spec  of a blade whose mode is given
     /// @param step_length  by region, what cuts keep a share of: see cutting::min_step_lengths
     /// Throws InputError if the file of its surface cannot be read. Warnings name that file.
     Tool(const ToolSpec& spec, const std::map<int, double>& step_length,

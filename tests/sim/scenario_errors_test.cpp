@@ -151,14 +151,34 @@ TEST(ScenarioErrors, OfMaterials) {
               "before it: only one material can take all that is left");
 }
 
+TEST(ScenarioErrors, OfHybridSprings) {
+    const std::string good = "method = \"hybmss\"\ndensity = 1\nyoung = 1\npoisson = 0.3\n";
+    EXPECT_EQ(material_error(good), "");
+    EXPECT_EQ(material_error(good + "stiffness_ratio = inf"), "");
+    EXPECT_EQ(material_error(good + "stiffness_ratio = 0"),
+              "scene.toml:6:19: key 'material[0].stiffness_ratio': 0 is not allowed: must be above "
+              "0, or inf");
+    EXPECT_EQ(material_error(good + "stiffness_ratio = nan"),
+              "scene.toml:6:19: key 'material[0].stiffness_ratio': nan is not allowed: must be "
+              "above 0, or inf");
+    EXPECT_EQ(material_error(good + "stiffness_ratio = 1\nface_diagonals = false"),
+              "scene.toml:6:19: key 'material[0].stiffness_ratio': has no meaning without face "
+              "diagonals: leave it out");
+    EXPECT_EQ(material_error(good + "law = \"neo-hookean\""),
+              "scene.toml:6:7: key 'material[0].law': is a key of the method heml, not of hybmss: "
+              "leave it out");
+    EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nface_diagonals = true"),
+              "scene.toml:5:18: key 'material[0].face_diagonals': is a key of the method hybmss, "
+              "not of heml: leave it out");
+    EXPECT_EQ(material_error("method = \"hybmss\"\ndensity = 1\nyoung = 1\nc1 = 0.3\n"),
+              "scene.toml:1:1: key 'material[0]': hybmss takes young + poisson, or shear_modulus + "
+              "bulk_modulus, or lame_lambda + lame_mu; given: young + c1");
+}
+
 TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
     const std::string good = "density = 1\nyoung = 1\npoisson = 0.3\n";
-    EXPECT_EQ(material_error(good + "method = \"hybmss\""),
-              "scene.toml:5:10: key 'material[0].method': 'hybmss': this version does not support "
-              "it yet; supported: heml, mass-spring");
     for (const auto& line : {"law = \"ogden\"", "law = \"fung-demiray\"", "preset = \"liver\"",
-                             "prony = [{ alpha = 0.3, tau = 0.5 }]", "face_diagonals = true",
-                             "stiffness_ratio = 1", "gamma = 1", "terms = []"})
+                             "prony = [{ alpha = 0.3, tau = 0.5 }]", "gamma = 1", "terms = []"})
         EXPECT_NE(material_error(good + line).find("does not support it yet; supported: "),
                   std::string::npos)
             << line;

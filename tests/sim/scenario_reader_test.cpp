@@ -265,5 +265,28 @@ end_time = 1
               std::string::npos);
 }
 
+TEST(ScenarioReader, WarnsWhereHybridSpringsAreOnShakyGround) {
+    const auto warnings = [](double poisson, const std::string& more) {
+        const ScenarioFile file(minimal_mesh +
+                                "[[material]]\nmethod = \"hybmss\"\ndensity = 1\n"
+                                "young = 1\npoisson = " +
+                                std::to_string(poisson) + "\n" + more +
+                                "\n[dynamics]\nend_time = 1\n");
+        EXPECT_EQ(file.errors(), Lines{});
+        std::string all;
+        for (const auto& warning : file.warnings()) all += warning + "\n";
+        return all;
+    };
+    EXPECT_EQ(warnings(0.25, ""), "");
+    EXPECT_EQ(warnings(0.49, "stiffness_ratio = inf"), "");
+    EXPECT_EQ(warnings(0.25, "correction_forces = false"), "");
+    EXPECT_NE(warnings(0.2, "").find("Poisson's ratio is 0.2; below 1/4 the method hybmss loses"),
+              std::string::npos);
+    EXPECT_NE(warnings(0.3, "correction_forces = false").find("ratio is 1/4 and not 0.3"),
+              std::string::npos);
+    EXPECT_NE(warnings(0.3, "face_diagonals = false").find("a model that is singular"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace incise::sim
