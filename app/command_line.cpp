@@ -20,9 +20,9 @@ namespace {
 
 using Action = std::function<int()>;
 
-constexpr std::string_view verbs[] = {"run",     "check",     "info",  "cut",
-                                      "convert", "materials", "render"};
-constexpr std::string_view planned_verbs[] = {"mesh", "bench"};
+constexpr std::string_view verbs[] = {"run",     "check", "info",      "cut",
+                                      "convert", "mesh",  "materials", "render"};
+constexpr std::string_view planned_verbs[] = {"bench"};
 
 constexpr const char* description =
     "Incise deforms and cuts soft tissue. Units are SI throughout: metres, kilograms, seconds,\n"
@@ -37,6 +37,7 @@ constexpr const char* footer =
     "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
     "                                                    a cut without dynamics\n"
     "  incise convert liver.msh liver.vtu                from one format to another\n"
+    "  incise mesh liver.nii.gz liver.vtu --hex          from a label image to hexahedra\n"
     "  incise render liver.out --out liver.png           a picture of the last frame\n"
     "\n"
     "Exit status: 0 done; 1 done, but an [expect] failed; 2 the input or the usage is at fault;\n"
@@ -183,6 +184,37 @@ void declare_convert(CLI::App& app, Action& action) {
     verb->callback([options, &action] { action = [options] { return convert(*options); }; });
 }
 
+constexpr const char* mesh_footer =
+    "IN is a segmentation: NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr) "
+    "of\n"
+    "one whole number a voxel. Each voxel whose label is not 0 becomes a box, the label its "
+    "region.\n"
+    "Lengths and --size are in the file's unit, usually millimetres: --scale 0.001 gives metres.\n"
+    "Points are placed as the file says: NIfTI to the right, front and head; MetaImage and NRRD "
+    "in\n"
+    "their own frame, usually to the left, back and head.\n"
+    "\n"
+    "Example: incise mesh liver.nii.gz liver.vtu --hex --size 4 --scale 0.001";
+
+void declare_mesh(CLI::App& app, Action& action) {
+    auto options = std::make_shared<MeshOptions>();
+    auto* verb = app.add_subcommand("mesh", "Make a mesh from a label image");
+    verb->add_option("IN", options->in, "Label image")->required()->type_name("PATH");
+    verb->add_option("OUT", options->out, "Mesh file to write; replaced if it is there")
+        ->required()
+        ->type_name("PATH");
+    verb->add_flag("--hex", options->hex, "Of hexahedra, the only kind in this version");
+    verb->add_option(
+            "--size", options->size,
+            "Sample the image at the centres of cubes of this edge, which become the cells "
+            "(default: one cell a voxel)")
+        ->type_name("EDGE");
+    verb->add_option("--scale", options->scale, "Multiply all coordinates (default: 1)")
+        ->type_name("FACTOR");
+    verb->footer("Formats to write: " + written_formats() + "\n" + mesh_footer);
+    verb->callback([options, &action] { action = [options] { return mesh(*options); }; });
+}
+
 void declare_materials(CLI::App& app, Action& action) {
     auto options = std::make_shared<MaterialsOptions>();
     auto* verb = app.add_subcommand("materials", "List the laws, their parameters and limits");
@@ -229,6 +261,7 @@ int dispatch(int argc, const char* const* argv) {
     declare_info(app, action);
     declare_cut(app, action);
     declare_convert(app, action);
+    declare_mesh(app, action);
     declare_materials(app, action);
     declare_render(app, action);
     app.footer(footer);  // after the verbs, which would inherit it

@@ -50,6 +50,14 @@ struct ConvertOptions {
 };
 int convert(const ConvertOptions& options);
 
+struct MeshOptions {
+    std::filesystem::path in, out;
+    bool hex = false;
+    std::string size;   ///< empty: one cell a voxel
+    std::string scale;  ///< empty: 1
+};
+int mesh(const MeshOptions& options);
+
 /// An option that adds a tool, as it was given.
 struct CutToolArgument {
     std::string option, text;

@@ -21,8 +21,8 @@ namespace incise::io {
 struct ImageHeader {
     enum class Encoding : std::uint8_t {
         raw,
-        text,    ///< numbers, parted by blanks
-        hex,     ///< two digits a byte
+        text,  ///< numbers, parted by blanks
+        hex,   ///< two digits a byte
         zlib_or_gzip
     };
 

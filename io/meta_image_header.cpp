@@ -76,8 +76,8 @@ class Entries {
         std::vector<std::string_view> words;
         append_words(entry.value, words);
         if (words.size() != count)
-            fail(entry, "expected " + std::to_string(count) + " numbers, found " +
-                            in_quotes(entry.value));
+            fail(entry,
+                 "expected " + std::to_string(count) + " numbers, found " + in_quotes(entry.value));
         std::vector<T> numbers;
         for (const auto word : words) {
             const auto number = parse_number<T>(word);
@@ -98,12 +98,12 @@ class Entries {
 
 ScalarType type_of(const Entries& entries, const Entry& entry) {
     constexpr std::pair<std::string_view, ScalarType> types[] = {
-        {"MET_CHAR", ScalarType::int8},          {"MET_UCHAR", ScalarType::uint8},
-        {"MET_SHORT", ScalarType::int16},        {"MET_USHORT", ScalarType::uint16},
-        {"MET_INT", ScalarType::int32},          {"MET_UINT", ScalarType::uint32},
-        {"MET_LONG", ScalarType::int32},         {"MET_ULONG", ScalarType::uint32},
-        {"MET_LONG_LONG", ScalarType::int64},    {"MET_ULONG_LONG", ScalarType::uint64},
-        {"MET_FLOAT", ScalarType::float32},      {"MET_DOUBLE", ScalarType::float64},
+        {"MET_CHAR", ScalarType::int8},       {"MET_UCHAR", ScalarType::uint8},
+        {"MET_SHORT", ScalarType::int16},     {"MET_USHORT", ScalarType::uint16},
+        {"MET_INT", ScalarType::int32},       {"MET_UINT", ScalarType::uint32},
+        {"MET_LONG", ScalarType::int32},      {"MET_ULONG", ScalarType::uint32},
+        {"MET_LONG_LONG", ScalarType::int64}, {"MET_ULONG_LONG", ScalarType::uint64},
+        {"MET_FLOAT", ScalarType::float32},   {"MET_DOUBLE", ScalarType::float64},
     };
     for (const auto& [name, type] : types)
         if (entry.value == name) return type;
@@ -133,8 +133,7 @@ void set_place(ImageHeader& header, const InputFile& file, const Entries& entrie
     const auto word = data.value.substr(0, data.value.find_first_of(" \t"));
     if (data.value.empty()) entries.fail(data, "ElementDataFile names no file");
     if (word == "LIST" || data.value.find('%') != data.value.npos)
-        entries.fail(data,
-                     "data in a list of files are not read; save the image as one .mha file");
+        entries.fail(data, "data in a list of files are not read; save the image as one .mha file");
     if (data.value == "LOCAL" || data.value == "Local" || data.value == "local")
         header.data_begin = entries.data_begin();
     else
@@ -143,8 +142,7 @@ void set_place(ImageHeader& header, const InputFile& file, const Entries& entrie
         const auto bytes = entries.numbers<std::int64_t>(*skip, 1)[0];
         if (bytes < -1) entries.fail(*skip, "HeaderSize cannot be " + std::to_string(bytes));
         header.is_at_end = bytes == -1;
-        // Counted from where the file begins.
-        if (bytes > 0 && header.data_file) header.data_begin = static_cast<std::size_t>(bytes);
+        if (bytes > 0) header.data_begin = static_cast<std::size_t>(bytes);  // of its file
     }
 }
 
@@ -168,16 +166,15 @@ ImageHeader read_meta_image_header(const InputFile& file) {
 
     ImageHeader header;
     header.dimensions = image_dimensions(
-        file, entries.numbers<std::int64_t>(entries.need("DimSize"),
-                                            static_cast<std::size_t>(num_axes)));
+        file,
+        entries.numbers<std::int64_t>(entries.need("DimSize"), static_cast<std::size_t>(num_axes)));
     if (const auto* channels = entries.find({"ElementNumberOfChannels"}))
         if (const auto count = entries.numbers<std::int64_t>(*channels, 1)[0]; count != 1)
             entries.fail(*channels, "has more than one component a voxel (" +
                                         std::to_string(count) +
                                         "); give an image of one label a voxel");
     header.type = type_of(entries, entries.need("ElementType"));
-    const bool is_big =
-        entries.flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false);
+    const bool is_big = entries.flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false);
     header.swap_bytes = is_big != (std::endian::native == std::endian::big);
     if (!entries.flag({"BinaryData"}, true))
         header.encoding = ImageHeader::Encoding::text;

@@ -144,10 +144,9 @@ void set_sform(ImageHeader& header, const Fields& fields) {
         const double size = std::abs(fields.pixdim(a + 1));
         const double step = header.spacing[static_cast<Eigen::Index>(a)];
         if (std::abs(size - step) > tolerance * step)
-            header.warnings.push_back("along axis " + std::to_string(a + 1) +
-                                      " the voxel size is " + shown(size) +
-                                      ", but the sform steps by " + shown(step) +
-                                      "; the sform is used");
+            header.warnings.push_back(
+                "along axis " + std::to_string(a + 1) + " the voxel size is " + shown(size) +
+                ", but the sform steps by " + shown(step) + "; the sform is used");
     }
 }
 

@@ -34,7 +34,8 @@ class Inflater {
             const auto given = std::min(rest_.size(), longest_piece);
             stream_.next_out = reinterpret_cast<Bytef*>(out.data() + num_taken);
             stream_.avail_out = static_cast<uInt>(free);
-            stream_.next_in = reinterpret_cast<const Bytef*>(rest_.data());
+            stream_.next_in =
+                reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));  // only read
             stream_.avail_in = static_cast<uInt>(given);
             const int status = inflate(&stream_, Z_NO_FLUSH);
             num_taken += free - stream_.avail_out;
@@ -67,8 +68,11 @@ std::string unpacked_prefix(std::string_view packed, std::size_t most) {
     return bytes;
 }
 
+std::size_t max_unpacked(std::size_t num_packed) {
+    return num_packed * max_expansion(Compressor::zlib);
+}
+
 std::optional<std::string> unpacked(std::string_view packed, std::size_t size) {
-    if (size / max_expansion(Compressor::zlib) > packed.size()) return std::nullopt;
     std::string bytes(size, '\0');
     Inflater inflater(packed);
     if (inflater.take(bytes) != size) return std::nullopt;

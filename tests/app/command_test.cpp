@@ -39,10 +39,10 @@ TEST_F(Command, TellsItsVersionAndHelp) {
     const auto help = run("--help");
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
-    for (const auto* word : {"run", "check", "info", "cut", "convert", "materials", "render",
-                             "Examples:", "Exit status: 0 done"})
+    for (const auto* word : {"run", "check", "info", "cut", "convert", "mesh", "materials",
+                             "render", "Examples:", "Exit status: 0 done"})
         EXPECT_NE(help.out.find(word), std::string::npos) << word;
-    for (const auto* verb : {"run", "check", "info", "cut", "convert", "materials"}) {
+    for (const auto* verb : {"run", "check", "info", "cut", "convert", "mesh", "materials"}) {
         const auto of_verb = run(std::string(verb) + " --help");
         EXPECT_EQ(of_verb.status, 0) << verb;
         EXPECT_NE(of_verb.out.find(std::string("Usage: incise ") + verb), std::string::npos);
@@ -62,7 +62,7 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
               0u);
     EXPECT_EQ(refused("bench a.vtu"),
               "incise: this version has no verb 'bench' yet; there are: run, check, info, cut, "
-              "convert, materials, render\n");
+              "convert, mesh, materials, render\n");
     EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
     EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
@@ -248,14 +248,16 @@ TEST_F(Command, ListsMaterials) {
     const auto all = run("materials");
     EXPECT_EQ(all.status, 0);
     for (const auto* name :
-         {"saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin", "mass-spring"})
+         {"saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin", "mass-spring", "hybmss"})
         EXPECT_NE(all.out.find(name), std::string::npos) << name;
     EXPECT_NE(run("materials mooney-rivlin").out.find("law = \"mooney-rivlin\""),
               std::string::npos);
     const auto json = nlohmann::json::parse(run("materials --json").out);
-    ASSERT_EQ(json["materials"].size(), 4u);
+    ASSERT_EQ(json["materials"].size(), 5u);
     EXPECT_EQ(json["materials"][1]["name"], "neo-hookean");
     EXPECT_EQ(json["materials"][1]["parameter_sets"][0], (std::vector{"young", "poisson"}));
+    EXPECT_EQ(json["materials"][4]["kind"], "method");
+    EXPECT_NE(run("materials hybmss").out.find("method = \"hybmss\""), std::string::npos);
     EXPECT_EQ(run("materials neo-hooke").status, 2);
 }
 

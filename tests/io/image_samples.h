@@ -76,7 +76,8 @@ struct Nifti {
     std::string bytes() const {
         std::string bytes(is_second ? 544 : 352, '\0');
         const auto put = [&](std::size_t offset, auto value) {
-            bytes.replace(offset, sizeof value, bytes_of(value, is_big));
+            const auto part = bytes_of(value, is_big);
+            std::copy(part.begin(), part.end(), bytes.data() + offset);
         };
         const auto integer = [&](std::size_t at_1, std::size_t at_2, std::int64_t value) {
             is_second ? put(at_2, static_cast<std::int32_t>(value))

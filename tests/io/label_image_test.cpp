@@ -9,6 +9,7 @@
 #include <vtkMetaImageWriter.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
+#include <vtkSmartPointer.h>
 
 #include <limits>
 #include <numbers>
@@ -452,7 +453,7 @@ TEST(LabelImage, RefusesValuesThatAreNoLabels) {
               "a.nii: voxel (1, 0, 0) has the value 1.5, and labels are whole numbers; give a "
               "segmentation, not an image of intensities");
     EXPECT_THAT(refused(64, bytes_of(std::nan(""))), HasSubstr("has the value nan"));
-    EXPECT_THAT(refused(64, bytes_of(-INFINITY)), HasSubstr("has the value -inf"));
+    EXPECT_THAT(refused(64, bytes_of(-HUGE_VAL)), HasSubstr("has the value -inf"));
     EXPECT_THAT(refused(64, bytes_of(3e9)), HasSubstr("has the label 3e+09, beyond the range"));
     EXPECT_THAT(refused(768, bytes_of(3000000000U)), HasSubstr("has the label 3000000000"));
     EXPECT_THAT(refused(1024, bytes_of(std::int64_t{-3000000000})), HasSubstr("-3000000000"));

@@ -98,9 +98,8 @@ TEST(HexMesh, NumbersSharedPointsOnceAndOnlyThoseUsed) {
         return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
     };
     EXPECT_TRUE(std::is_sorted(mesh.points.begin(), mesh.points.end(), before));
-    EXPECT_EQ(
-        std::set<Vec3, decltype(before)>(mesh.points.begin(), mesh.points.end(), before).size(),
-        mesh.points.size());
+    const std::set<Vec3, decltype(before)> distinct(mesh.points.begin(), mesh.points.end(), before);
+    EXPECT_EQ(distinct.size(), mesh.points.size());
     const auto num_labelled = std::ranges::count_if(labels.labels, [](int l) { return l != 0; });
     EXPECT_EQ(mesh.num_cells(), static_cast<std::size_t>(num_labelled));
     EXPECT_EQ(hex_mesh(filled({6, 5, 4})).points.size(), 7u * 6u * 5u);
@@ -184,6 +183,11 @@ TEST(HexMesh, OfTheSpacingOfAnImageIsThatOfItsVoxels) {
         ASSERT_EQ(cubes.points.size(), voxels.points.size());
         for (std::size_t p = 0; p < voxels.points.size(); ++p)
             EXPECT_LT((cubes.points[p] - voxels.points[p]).norm(), 1e-5 * spacing);
+
+        // Centres between voxels: rounding of the directions decides nothing.
+        auto upright = labels;
+        upright.directions.setIdentity();
+        EXPECT_EQ(hex_mesh(labels, 2 * spacing).regions, hex_mesh(upright, 2 * spacing).regions);
     }
 }
 
@@ -222,9 +226,41 @@ TEST(HexMesh, MakesCubesAlsoOfSkewAxes) {
                 testing::IsEmpty());
 }
 
+TEST(HexMesh, GivesCubesTheLabelsOfTheirCentresInAnyPose) {
+    std::mt19937 random(5);
+    for (const double lean : {0.0, 0.4})
+        for (int mirrored = -1; mirrored < 3; ++mirrored) {
+            auto labels = filled({9, 8, 7}, 0);
+            double labelled = 0.0;
+            for (auto& label : labels.labels) {
+                label = static_cast<int>(random() % 3);
+                labelled += label != 0;
+            }
+            labels.spacing = {1, 1.5, 0.7};
+            labels.origin = {-100, 50, 3};
+            labels.directions = turn(0.6, {1, 2, -1});
+            if (mirrored >= 0) labels.directions.col(mirrored) *= -1.0;
+            for (const int a : {1, 2}) {
+                labels.directions.col(a) += lean * labels.directions.col(a - 1);
+                labels.directions.col(a).normalize();
+            }
+            const Eigen::Matrix3d steps = labels.directions * labels.spacing.asDiagonal();
+            constexpr double size = 0.31;
+            const auto mesh = hex_mesh(labels, size);
+            for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+                const Vec3 at = steps.inverse() * (centre(mesh, c) - labels.origin);
+                const Eigen::Vector3i voxel = at.array().round().cast<int>();
+                ASSERT_EQ(mesh.regions[c], labels.label(voxel.x(), voxel.y(), voxel.z()));
+                ASSERT_NEAR(volume(mesh, c), size * size * size, 1e-10);
+            }
+            const double expected = labelled * std::abs(steps.determinant()) / (size * size * size);
+            EXPECT_NEAR(static_cast<double>(mesh.num_cells()), expected, 0.03 * expected);
+        }
+}
+
 TEST(HexMesh, RefusesWhatCannotBe) {
     auto labels = filled({10, 10, 10});
-    for (const double size : {0.0, -1.0, std::nan(""), INFINITY})
+    for (const double size : {0.0, -1.0, std::nan(""), HUGE_VAL})
         EXPECT_THAT(refusal(labels, size), HasSubstr("it must be above 0")) << size;
     EXPECT_THAT(
         refusal(labels, 0.02),
