@@ -217,7 +217,8 @@ void declare_mesh(CLI::App& app, Action& action) {
 
 void declare_materials(CLI::App& app, Action& action) {
     auto options = std::make_shared<MaterialsOptions>();
-    auto* verb = app.add_subcommand("materials", "List the laws, their parameters and limits");
+    auto* verb =
+        app.add_subcommand("materials", "List the laws and the tissues, with limits and sources");
     verb->add_option("NAME", options->name, "One of them, in detail");
     verb->add_flag("--json", options->json, "One JSON object on stdout");
     verb->footer("Example: incise materials neo-hookean");

@@ -1,12 +1,14 @@
-// incise materials: the laws, their parameters and their limits.
+// incise materials: the laws, their parameters and their limits; the tissues and their sources.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "app/verbs.h"
+#include "io/number_format.h"
 #include "sim/material_catalog.h"
 #include "sim/table_reader.h"
+#include "sim/tissue_catalog.h"
 #include "topology/error.h"
 
 namespace incise::app {
@@ -14,6 +16,7 @@ namespace incise::app {
 namespace {
 
 using sim::MaterialModel;
+using sim::Tissue;
 
 std::vector<const MaterialModel*> all_models() {
     std::vector<const MaterialModel*> models;
@@ -67,6 +70,33 @@ nlohmann::ordered_json as_json(const MaterialModel& model) {
     return json;
 }
 
+nlohmann::ordered_json as_json(const Tissue& tissue) {
+    nlohmann::ordered_json json;
+    json["name"] = tissue.key;
+    json["kind"] = "tissue";
+    json["title"] = tissue.title;
+    json["law"] = sim::model(tissue.law).key;
+    json["density"] = tissue.density;
+    auto& parameters = json["parameters"] = nlohmann::ordered_json::object();
+    for (const auto& row : sim::parameters())
+        if (row.parameter != sim::Parameter::terms && tissue.parameters[row.parameter])
+            parameters[row.key] = *tissue.parameters[row.parameter];
+    for (const auto& term : tissue.parameters.terms)
+        parameters["terms"].push_back({{"mu", term.mu}, {"alpha", term.alpha}});
+    json["prony"] = nlohmann::ordered_json::array();
+    for (const auto& term : tissue.prony)
+        json["prony"].push_back({{"alpha", term.alpha}, {"tau", term.tau}});
+    json["toughness"] = nullptr;
+    if (tissue.toughness)
+        json["toughness"] = {{"min", tissue.toughness->low}, {"max", tissue.toughness->high}};
+    json["source"] = tissue.source;
+    json["density_source"] = tissue.density_source;
+    json["validity"] = tissue.validity;
+    json["assumed"] = tissue.assumed;
+    json["scenario"] = sim::scenario_lines(tissue);
+    return json;
+}
+
 /// Words that fit in 80 columns, after an indent.
 void print_wrapped(std::string_view text, std::string_view indent) {
     constexpr std::size_t width = 80;
@@ -92,11 +122,20 @@ void print_summary(const MaterialModel& model) {
     print_wrapped("takes " + sim::list_of_sets(model.parameter_sets), "    ");
 }
 
+void print_summary(const Tissue& tissue) {
+    std::cout << tissue.key << "\n";
+    print_wrapped(tissue.title, "    ");
+    std::string line;
+    for (const auto& part : sim::scenario_lines(tissue)) line += (line.empty() ? "" : ", ") + part;
+    print_wrapped(line, "    ");
+}
+
+void section(std::string_view title, std::string_view text) {
+    std::cout << '\n' << title << '\n';
+    print_wrapped(text, "    ");
+}
+
 void print_detail(const MaterialModel& model) {
-    const auto section = [](std::string_view title, std::string_view text) {
-        std::cout << '\n' << title << '\n';
-        print_wrapped(text, "    ");
-    };
     std::cout << model.key << ": " << model.title << '\n';
     section("In a scenario", scenario_line(model));
     section("Energy", model.energy);
@@ -112,13 +151,41 @@ void print_detail(const MaterialModel& model) {
     section("Limits", model.limits);
 }
 
-std::vector<const MaterialModel*> chosen_models(const std::string& name) {
-    auto models = all_models();
-    if (name.empty()) return models;
+void print_detail(const Tissue& tissue) {
+    std::cout << tissue.key << ": " << tissue.title << '\n';
+    section("In a scenario", "preset = \"" + std::string(tissue.key) + "\"");
+    std::cout << "\nIt stands for\n";
+    for (const auto& line : sim::scenario_lines(tissue)) std::cout << "    " << line << '\n';
+    section("Source", tissue.source);
+    section("Density", tissue.density_source);
+    section("Validity", tissue.validity);
+    if (!tissue.assumed.empty()) section("Assumed", tissue.assumed);
+    if (const auto& toughness = tissue.toughness)
+        section(
+            "Toughness, for information",
+            (toughness->low < toughness->high ? io::format_number(toughness->low) + " to " : "") +
+                io::format_number(toughness->high) + " J/m2 (" +
+                std::string(sim::toughness_source) + ")");
+}
+
+/// What was asked for: everything, or the one of this name.
+struct Choice {
+    std::vector<const MaterialModel*> models;
+    std::vector<const Tissue*> tissues;
+};
+
+Choice choose(const std::string& name) {
+    Choice choice{all_models(), {}};
+    for (const auto& tissue : sim::tissues()) choice.tissues.push_back(&tissue);
+    if (name.empty()) return choice;
     std::vector<std::string_view> names;
-    for (const auto* model : models) {
-        if (model->key == name) return {model};
+    for (const auto* model : choice.models) {
+        if (model->key == name) return {{model}, {}};
         names.push_back(model->key);
+    }
+    for (const auto* tissue : choice.tissues) {
+        if (tissue->key == name) return {{}, {tissue}};
+        names.push_back(tissue->key);
     }
     throw InputError("material " + sim::in_quotes(name) + " " + *sim::complaint(name, {names}));
 }
@@ -126,17 +193,22 @@ std::vector<const MaterialModel*> chosen_models(const std::string& name) {
 }  // namespace
 
 int materials(const MaterialsOptions& options) {
-    const auto models = chosen_models(options.name);
+    const auto [models, tissues] = choose(options.name);
     if (options.json) {
         nlohmann::ordered_json json;
         json["materials"] = nlohmann::ordered_json::array();
         for (const auto* model : models) json["materials"].push_back(as_json(*model));
+        for (const auto* tissue : tissues) json["materials"].push_back(as_json(*tissue));
         std::cout << json.dump(2) << '\n';
     } else if (options.name.empty()) {
+        std::cout << "Laws and methods\n\n";
         for (const auto* model : models) print_summary(*model);
-        std::cout << "\nMore about one: incise materials NAME\n";
+        std::cout << "\nTissues: preset = \"NAME\"\n\n";
+        for (const auto* tissue : tissues) print_summary(*tissue);
+        std::cout << "\nMore about one, with its limits or sources: incise materials NAME\n";
     } else {
-        print_detail(*models.front());
+        for (const auto* model : models) print_detail(*model);
+        for (const auto* tissue : tissues) print_detail(*tissue);
     }
     return done;
 }

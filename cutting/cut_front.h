@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -44,32 +45,40 @@ class CutFront {
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }
 
+    /// Calls visit(node) for each node on the cut, in no order.
+    template <class Visit>
+    void for_each(Visit visit) const {
+        for (const auto& [value, node] : nodes_)
+            visit(topology::NodeId(static_cast<std::size_t>(value)));
+    }
+
     /// Copies of a node are what it is.
     void follow(const topology::ChangeSet& changes);
-    /// Forgets the nodes for which keep(node, reach) is false.
+    /// The nodes for which keep(node, reach) is false, in ascending order.
     template <class Keep>
-    void forget_unless(Keep keep);
+    std::vector<topology::NodeId> nodes_unless(Keep keep) const;
+    /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
+    void forget(const std::vector<topology::NodeId>& nodes);
 
   private:
     struct Node {
         bool is_exact = false;
         double reach = 0.0;
     };
-    void forget(const std::vector<topology::NodeId>& nodes);
-
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
 };
 
 template <class Keep>
-void CutFront::forget_unless(Keep keep) {
-    std::vector<topology::NodeId> left_behind;
+std::vector<topology::NodeId> CutFront::nodes_unless(Keep keep) const {
+    std::vector<topology::NodeId> nodes;
     for (const auto& [value, node] : nodes_) {
         const topology::NodeId n(static_cast<std::size_t>(value));
-        if (!keep(n, node.reach)) left_behind.push_back(n);
+        if (!keep(n, node.reach)) nodes.push_back(n);
     }
-    forget(left_behind);
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
 }
 
 }  // namespace incise::cutting

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "cutting/space_time.h"
@@ -28,9 +29,12 @@ class CutSurface {
     /// Distance of a point from the surface, m; not a number if the surface is flat near all
     /// crossings, so that its planes tell.
     virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
-    /// Whether the border with which an earlier sweep ended, and this one begins, runs through the
-    /// triangle.
-    virtual bool starts_inside(const std::array<MovingPoint, 3>&) const { return false; }
+    /// Whether the border at which a sweep ends, and the next one begins, runs through the
+    /// triangle (as it is after the step), an odd number of times. Exact, and in agreement with the
+    /// crossings of this step and the next. Nothing if the surface is not swept.
+    virtual std::optional<bool> ends_inside(const std::array<MovingPoint, 3>&) const {
+        return std::nullopt;
+    }
     /// Whether the cut, if it goes on, does so from within `reach` of the point (as it is after the
     /// step).
     virtual bool ends_near(const Vec3&, double /*reach*/) const { return true; }

@@ -8,6 +8,7 @@
 #include <queue>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "cutting/sides.h"
@@ -78,7 +79,6 @@ class Splitter {
         while (!queue_.empty()) divide_next();
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-        for (const Edge& edge : toggled_) front_.toggle(edge.a, edge.b);
         const Parting parting = parted_faces(mesh_, front_, scars_, touched_, options_.snap > 0.0);
         for (const FaceId f : parting.faces) {
             report_.cut_area += topology::rest_area(mesh_, f);
@@ -121,10 +121,18 @@ class Splitter {
         return new_points_[n.index() - num_old_nodes_];
     }
 
+    /// Where the cut is finished, or the sweep has gone far away, a later passage is another cut.
     void leave_behind(const topology::ChangeSet& changes) {
-        front_.forget_unless([&](NodeId n, double reach) {
-            return surface_.ends_near(final_position(n, changes), reach_of_front * reach);
+        const bool goes_on = !touched_.empty();
+        const auto border = goes_on ? nodes_at_border() : std::unordered_set<std::int32_t>{};
+        const auto left = front_.nodes_unless([&](NodeId n, double reach) {
+            return mesh_.is_alive(n) &&
+                   surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&
+                   (!goes_on || is_beside(n, border));
         });
+        for (const NodeId n : left)
+            if (mesh_.is_alive(n)) turn_to_neighbors(n);
+        front_.forget(left);
     }
 
     /// Of a copy, where its source is.
@@ -156,7 +164,11 @@ class Splitter {
     bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const;
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place);
-    void inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring);
+    void place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
+                       const std::vector<Passages>& to_ring, const Passages& to_b);
+    std::unordered_set<std::int32_t> nodes_at_border();
+    void turn_to_neighbors(NodeId n);
+    bool is_beside(NodeId n, const std::unordered_set<std::int32_t>& nodes);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void snap_to(NodeId n, double reach);
     void recognize(const std::vector<std::pair<Edge, ElementId>>& edges);
@@ -175,7 +187,6 @@ class Splitter {
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
-    std::vector<Edge> toggled_;       // crossed in this sweep and not divided
     std::vector<ElementId> touched_;  // crossed, or made of such
     std::vector<ElementId> ring_;     // scratch
     SplitReport report_;
@@ -281,6 +292,8 @@ void Splitter::find_crossed_edges() {
         if (is_near(f.edge.a, first.from_a, first)) snap_to(f.edge.a, length);
         if (is_near(f.edge.b, last.from_b, last)) snap_to(f.edge.b, length);
     }
+    for (const Found& f : found)
+        if (f.passages.size() % 2 == 1) front_.toggle(f.edge.a, f.edge.b);
     for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
 }
 
@@ -362,7 +375,6 @@ void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
 
 /// The edge is not divided: what passes through it counts as at its ends.
 void Splitter::settle(const Edge& edge, const Passages& passages) {
-    if (passages.size() % 2 == 1) toggled_.push_back(edge);
     for (const Passage& passage : passages) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
         const auto is_of = [&](double share, bool is_at_other, double other_share) {
@@ -451,42 +463,106 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
     }
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    inherit(edge, middle, ring);
     inherit_scars(edge.a, edge.b, middle);
     inherit_scars(edge.b, edge.a, middle);
     front_.put_on(middle, true, reach);
 
-    const auto ask = [&](NodeId other) {
-        const Edge born = edge_between(other, middle);
-        ElementId holder;
+    const auto holder = [&](NodeId other) {
+        ElementId found;
         for (const auto& [kept, added] : halves.elements)
             for (const ElementId e : {kept, added})
-                if (mesh_.corner_of(e, other) >= 0) holder = e;
-        auto passed = passages(born, holder);
-        if (!passed.empty()) receive(born, holder, std::move(passed));
+                if (mesh_.corner_of(e, other) >= 0) found = e;
+        return found;
     };
-    ask(edge.a);
-    ask(edge.b);
-    for (const NodeId n : ring) ask(n);
+    const auto ask = [&](NodeId other) {
+        return passages(edge_between(other, middle), holder(other));
+    };
+    std::vector<Passages> to_ring;
+    for (const NodeId n : ring) to_ring.push_back(ask(n));
+    Passages to_a = ask(edge.a), to_b = ask(edge.b);
+    place_on_side(edge, middle, ring, to_ring, to_b);
+    const auto take = [&](NodeId other, Passages&& passed) {
+        if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
+    };
+    take(edge.a, std::move(to_a));
+    take(edge.b, std::move(to_b));
+    for (std::size_t i = 0; i < ring.size(); ++i) take(ring[i], std::move(to_ring[i]));
     return middle;
 }
 
-// What earlier sweeps crossed: the middle counts as on the side of the end b, so the edges round
-// it are crossed as those at b are.
-void Splitter::inherit(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring) {
-    if (front_.is_empty()) return;
+// The middle counts as on the side of the end b. Round a triangle the crossings are odd in number
+// if the border of the sweep runs through it, and in no other case, now and after each later step:
+// rounding has moved the middle off the edge, so nothing of this may be left to its place.
+void Splitter::place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
+                             const std::vector<Passages>& to_ring, const Passages& to_b) {
+    const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
+        return surface_.ends_inside({point(p), point(q), point(r)});
+    };
     const bool is_crossed = front_.is_crossed(edge.a, edge.b);
-    for (const NodeId n : ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const NodeId n = ring[i];
         const bool at_a = front_.is_crossed(edge.a, n), at_b = front_.is_crossed(edge.b, n);
-        // Unless the front of before was inside this face: then it depends in which half.
-        const bool has_front = at_a != (at_b != is_crossed);
-        const bool front_is_at_b =
-            has_front && surface_.starts_inside({point(middle), point(edge.b), point(n)});
-        if (at_b != front_is_at_b) front_.toggle(middle, n);
+        bool is_crossed_to_n = at_b;
+        if (const auto border = has_border(middle, edge.b, n))
+            is_crossed_to_n = at_b != *border;
+        else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
+            is_crossed_to_n = (to_ring[i].size() + to_b.size()) % 2 == 1;
+        if (is_crossed_to_n) front_.toggle(middle, n);
     }
-    if (!is_crossed) return;
-    front_.toggle(edge.a, edge.b);
-    front_.toggle(edge.a, middle);
+    if (is_crossed) front_.toggle(edge.a, edge.b);
+    if (is_crossed != has_border(edge.a, middle, edge.b).value_or(false))
+        front_.toggle(edge.a, middle);
+}
+
+/// Corners of the elements that the border of the cut runs through: of a triangle through which it
+/// does, the edges are crossed an odd number of times.
+std::unordered_set<std::int32_t> Splitter::nodes_at_border() {
+    std::unordered_set<std::int32_t> nodes;
+    const auto is_odd = [&](FaceId f) {
+        bool odd = false;
+        const int size = mesh_.face_size(f);
+        for (int p = 0; p < size; ++p)
+            odd ^= front_.is_crossed(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % size));
+        return odd;
+    };
+    front_.for_each([&](NodeId n) {
+        if (!mesh_.is_alive(n)) return;
+        mesh_.star(n, ring_);
+        for (const ElementId e : ring_)
+            for (int f = 0; f < mesh_.num_faces(e); ++f)
+                if (is_odd({e, f})) {
+                    for (const NodeId corner : mesh_.corners(e)) nodes.insert(corner.value);
+                    break;
+                }
+    });
+    return nodes;
+}
+
+/// Counts a node that is to be forgotten as on the side of those of its neighbours that are not on
+/// the cut: no edge to them is crossed then, and what its other edges are stays true.
+void Splitter::turn_to_neighbors(NodeId n) {
+    mesh_.star(n, ring_);
+    std::vector<NodeId> neighbors;
+    int balance = 0;
+    for (const ElementId e : ring_)
+        for (const NodeId other : mesh_.corners(e)) {
+            if (other == n) continue;
+            neighbors.push_back(other);
+            if (!front_.is_on(other)) balance += front_.is_crossed(n, other) ? 1 : -1;
+        }
+    if (balance <= 0) return;
+    std::sort(neighbors.begin(), neighbors.end());
+    neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+    for (const NodeId other : neighbors) front_.toggle(n, other);
+}
+
+/// Whether an element of the node has one of these: snapping may yet reach it.
+bool Splitter::is_beside(NodeId n, const std::unordered_set<std::int32_t>& nodes) {
+    mesh_.star(n, ring_);
+    for (const ElementId e : ring_)
+        for (const NodeId corner : mesh_.corners(e))
+            if (nodes.contains(corner.value)) return true;
+    return false;
 }
 
 /// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by

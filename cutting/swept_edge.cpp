@@ -43,10 +43,13 @@ void SweptEdge::append_crossings(const MovingPoint& a, const MovingPoint& b,
             cutting::append_crossings({a, b}, segments_[s], crossings);
 }
 
-bool SweptEdge::starts_inside(const std::array<MovingPoint, 3>& triangle) const {
+std::optional<bool> SweptEdge::ends_inside(const std::array<MovingPoint, 3>& triangle) const {
+    Box box(triangle[0][1]);
+    box.extend(triangle[1][1]).extend(triangle[2][1]);
     bool is_odd = false;
     for (const MovingSegment& s : segments_)
-        is_odd ^= pierces(s.a[0], s.b[0], {triangle[0][0], triangle[1][0], triangle[2][0]});
+        if (box.intersects(Box(s.a[1].cwiseMin(s.b[1]), s.a[1].cwiseMax(s.b[1]))))
+            is_odd ^= pierces(s.a[1], s.b[1], {triangle[0][1], triangle[1][1], triangle[2][1]});
     return is_odd;
 }
 

@@ -17,7 +17,7 @@ class SweptEdge final : public CutSurface {
     bool may_meet(const Box& box) const override;
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
-    bool starts_inside(const std::array<MovingPoint, 3>& triangle) const override;
+    std::optional<bool> ends_inside(const std::array<MovingPoint, 3>& triangle) const override;
     bool ends_near(const Vec3& x, double reach) const override;
 
   private:

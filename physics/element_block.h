@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "physics/viscous_history.h"
 #include "topology/types.h"
 
 namespace incise::physics {
 
-using topology::ElementId;
 using topology::NodeId;
 
 /// What one element does at a given state; for output and diagnosis, not for the force loop.
@@ -39,15 +39,22 @@ class ElementBlock {
 
     std::span<const ElementId> elements() const { return elements_; }
 
-    /// Adds elastic forces (N) at `positions` (m, by node id) to `forces` (by node id).
-    virtual void add_forces(std::span<const Vec3> positions, std::span<Vec3> forces) const = 0;
+    /// Adds elastic forces (N) at `positions` (m, by node id) to `forces` (by node id), with those
+    /// of viscosity as far as the history goes.
+    virtual void add_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                            std::span<Vec3> forces) const = 0;
+    /// Brings the history of the elements from the positions `before` to `positions`, dt later
+    /// (s). Returns the energy that viscosity took, J; 0 if the material has none.
+    virtual double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
+                           ViscousHistory& history) = 0;
     /// Appends the elastic energy of each element, J.
     virtual void append_energies(std::span<const Vec3> positions,
                                  std::vector<double>& energies) const = 0;
     /// Sum over the elements of modulus times rest volume, J.
     virtual double stiffness_energy() const = 0;
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
-    virtual ElementResult result(ElementId e, std::span<const Vec3> positions) const = 0;
+    virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
+                                 const ViscousHistory& history) const = 0;
     virtual ElementShares shares(ElementId e) const = 0;
     virtual double rest_volume(ElementId e) const = 0;
 
@@ -68,8 +75,14 @@ class ElementBlock {
     std::vector<ElementId> elements_;
 };
 
+/// A kernel whose elements have a history: ViscousKernel.
+template <class Kernel>
+concept HasHistory = requires(Kernel& kernel) {
+    kernel.begin_step(0.0);
+};
+
 /// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
-/// a kernel has to have).
+/// a kernel has to have), or ViscousKernel for what it has besides.
 template <class Kernel>
 class KernelBlock final : public ElementBlock {
   public:
@@ -78,11 +91,24 @@ class KernelBlock final : public ElementBlock {
 
     KernelBlock(const Kernel& kernel, double density) : kernel_(kernel), density_(density) {}
 
-    void add_forces(std::span<const Vec3> positions, std::span<Vec3> forces) const override {
+    void add_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                    std::span<Vec3> forces) const override {
         for (std::size_t s = 0; s < rows_.size(); ++s) {
-            const Corners f = kernel_.forces(rows_[s].rest, gather(s, positions));
+            const Corners f = forces_of(s, gather(s, positions), history);
             for (std::size_t k = 0; k < num_corners; ++k) forces[rows_[s].nodes[k]] += f[k];
         }
+    }
+
+    double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
+                   ViscousHistory& history) override {
+        double energy = 0.0;
+        if constexpr (HasHistory<Kernel>) {
+            kernel_.begin_step(dt);
+            for (std::size_t s = 0; s < rows_.size(); ++s)
+                energy += kernel_.advance(rows_[s].rest, gather(s, before), gather(s, positions),
+                                          history.of(elements_[s]));
+        }
+        return energy;
     }
 
     void append_energies(std::span<const Vec3> positions,
@@ -106,14 +132,15 @@ class KernelBlock final : public ElementBlock {
 
     /// The Cauchy stress is the virial of the element's own forces, -sum of f_i x_i^T over its
     /// volume: exact for linear elements, and the mean stress for springs.
-    ElementResult result(ElementId e, std::span<const Vec3> positions) const override {
+    ElementResult result(ElementId e, std::span<const Vec3> positions,
+                         const ViscousHistory& history) const override {
         const std::size_t s = slot_of(e);
         const Corners x = gather(s, positions);
         ElementResult result;
         result.energy = kernel_.energy(rows_[s].rest, x);
         result.volume = rows_[s].rest.volume;
         result.volume_ratio = kernel_.volume_ratio(rows_[s].rest, x);
-        const Corners f = kernel_.forces(rows_[s].rest, x);
+        const Corners f = forces_of(s, x, history);
         for (std::size_t k = 1; k < num_corners; ++k)
             result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
         const double volume = result.volume * result.volume_ratio;
@@ -166,6 +193,14 @@ class KernelBlock final : public ElementBlock {
         const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
         std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
         return row;
+    }
+
+    Corners forces_of(std::size_t s, const Corners& x,
+                      [[maybe_unused]] const ViscousHistory& history) const {
+        if constexpr (HasHistory<Kernel>)
+            return kernel_.forces(rows_[s].rest, x, history.of(elements_[s]));
+        else
+            return kernel_.forces(rows_[s].rest, x);
     }
 
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {

@@ -4,6 +4,7 @@
 #include "physics/heml_kernel.h"
 #include "physics/hybmss_kernel.h"
 #include "physics/mass_spring_kernel.h"
+#include "physics/viscous_kernel.h"
 #include "topology/error.h"
 
 namespace incise::physics {
@@ -21,9 +22,13 @@ std::unique_ptr<ElementBlock> make_block(const Material& material) {
     const auto& links = std::get<HyperElasticLinks>(material.method);
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<ElementBlock> {
-            using Kernel = HemlKernel<std::decay_t<decltype(law)>>;
-            return std::make_unique<KernelBlock<Kernel>>(Kernel{law, links.inversion_threshold},
-                                                         material.density);
+            using Elastic = HemlKernel<std::decay_t<decltype(law)>>;
+            using Viscous = ViscousKernel<std::decay_t<decltype(law)>>;
+            const Elastic elastic{law, links.inversion_threshold};
+            if (links.prony.empty())
+                return std::make_unique<KernelBlock<Elastic>>(elastic, material.density);
+            return std::make_unique<KernelBlock<Viscous>>(Viscous(elastic, links.prony),
+                                                          material.density);
         },
         links.law);
 }
@@ -85,6 +90,22 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
 
 void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
     blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions());
+}
+
+std::size_t ElementStore::max_prony_terms() const {
+    std::size_t most = 0;
+    for (const Material& material : table_.materials)
+        if (const auto* links = std::get_if<HyperElasticLinks>(&material.method))
+            most = std::max(most, links->prony.size());
+    return most;
+}
+
+double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3> positions,
+                             double dt, ViscousHistory& history) {
+    double energy = 0.0;
+    for (const auto& block : blocks_)
+        if (block) energy += block->advance(before, positions, dt, history);
+    return energy;
 }
 
 void ElementStore::erase(ElementId e, int region) { blocks_[block_index(e, region)]->erase(e); }

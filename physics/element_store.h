@@ -43,6 +43,14 @@ class ElementStore {
         return table_.materials[table_.of_region.at(region)].density;
     }
 
+    /// Of the longest series of any of the materials; 0 if none is viscous.
+    std::size_t max_prony_terms() const;
+
+    /// Brings the history of all elements from the positions `before` to `positions`, dt later;
+    /// see ElementBlock. Returns the energy that viscosity took, J.
+    double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
+                   ViscousHistory& history);
+
     /// Calls visit(block) for each block in ascending order.
     template <class Visit>
     void for_each_block(Visit visit) const {

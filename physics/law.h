@@ -4,48 +4,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
+#include "physics/law_response.h"
+#include "physics/ogden.h"
+
 namespace incise::physics {
-
-/// Strain of one element as its links see it. With dl the changes of the six squared edge
-/// lengths, E the Green-Lagrange strain and C = I + 2E:
-struct LinkStrain {
-    double a;  ///< vtr . dl = tr(2E) = I1 - 3
-    double b;  ///< dl . Mtr dl = tr((2E)^2)
-    double J;  ///< current over rest volume; negative when inverted
-};
-
-/// Energy density per rest volume (J/m3) and its derivatives.
-struct LawResponse {
-    double w, w_a, w_b, w_J;
-};
-
-/// A function of J with its first two derivatives.
-struct VolumeTerm {
-    double value, first, second;
-};
-
-/// Below the threshold J0 a volume term follows its second-order expansion there, so that its
-/// force is the tangent at J0: finite and restoring through J = 0 and beyond.
-/// Source: HEML 2015, section 4.4, with slope and intercept corrected. An element collapsed to a
-/// point is a local minimum of this extension, and one collapsed to a line feels no force of
-/// volume: it recovers from flat and turned states, not from those two.
-template <class Term>
-VolumeTerm extended(const Term& term, double J, double J0) {
-    if (J > J0) return term(J);
-    const VolumeTerm t = term(J0);
-    const double d = J - J0;
-    return {t.value + d * (t.first + 0.5 * d * t.second), t.first + d * t.second, t.second};
-}
-
-/// lambda/2 (ln J)^2 - p ln J: p is chosen by each law so that it is free of stress at rest.
-inline VolumeTerm logarithmic_volume_term(double J, double lambda, double p) {
-    const double ln = std::log(J);
-    return {ln * (0.5 * lambda * ln - p), (lambda * ln - p) / J,
-            (lambda - lambda * ln + p) / (J * J)};
-}
 
 /// w = lambda/2 (tr E)^2 + mu tr(E^2). Linear in E; softens in compression below a stretch of
 /// 0.577 and does not resist inversion.
@@ -89,6 +55,89 @@ struct MooneyRivlin {
     }
 };
 
-using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin>;
+/// w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1), Ciarlet's form: convex in J.
+struct CiarletNeoHookean {
+    double mu, lambda;  ///< Pa
+
+    double rest_lambda() const { return lambda; }
+    double rest_mu() const { return mu; }
+    LawResponse response(const LinkStrain& s, double J0) const {
+        const auto term = [this](double J) {
+            const double p = mu + 0.5 * lambda;
+            return VolumeTerm{0.25 * lambda * (J * J - 1.0) - p * std::log(J),
+                              0.5 * lambda * J - p / J, 0.5 * lambda + p / (J * J)};
+        };
+        const VolumeTerm v = extended(term, s.J, J0);
+        return {0.5 * mu * s.a + v.value, 0.5 * mu, 0.0, v.first};
+    }
+};
+
+/// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion
+/// there, so that crushed elements have finite forces.
+struct Exponential {
+    double value, first;
+
+    explicit Exponential(double x) {
+        constexpr double last = 20.0;
+        const double at = std::min(x, last), d = x - at, e = std::exp(at);
+        value = std::expm1(at) + e * d * (1.0 + 0.5 * d);
+        first = e * (1.0 + d);
+    }
+};
+
+/// w = mu/(2 gamma) (exp(gamma (I1 - 3)) - 1) - mu ln J + lambda/2 (ln J)^2: stiffens with strain.
+/// At rest the Lame constants are lambda + 2 mu gamma and mu. HEML 2006, Table 1, corrected.
+struct FungDemiray {
+    double mu, gamma, lambda;  ///< Pa, 1, Pa
+
+    double rest_lambda() const { return lambda + 2.0 * mu * gamma; }
+    double rest_mu() const { return mu; }
+    LawResponse response(const LinkStrain& s, double J0) const {
+        const auto term = [this](double J) { return logarithmic_volume_term(J, lambda, mu); };
+        const VolumeTerm v = extended(term, s.J, J0);
+        const Exponential e(gamma * s.a);
+        return {0.5 * mu / gamma * e.value + v.value, 0.5 * mu * e.first, 0.0, v.first};
+    }
+};
+
+/// w = C1 (I1 J^-2/3 - 3) + C2 (I2 J^-4/3 - 3) + K/2 (J - 1)^2; neo-Hookean with C2 = 0. Changes
+/// of shape and of volume have energies of their own. HEML 2015, eq. (24).
+struct IsochoricMooneyRivlin {
+    double c1, c2, bulk_modulus;  ///< Pa
+
+    double rest_mu() const { return 2.0 * (c1 + c2); }
+    double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
+    LawResponse response(const LinkStrain& s, double J0) const {
+        const auto power = [&](double p) {
+            return extended([p](double J) { return power_of_volume(J, p); }, s.J, J0);
+        };
+        const double I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b);
+        const VolumeTerm p1 = power(2.0 / 3.0), p2 = power(4.0 / 3.0),
+                         v = quadratic_volume_term(s.J, bulk_modulus);
+        return {c1 * (I1 * p1.value - 3.0) + c2 * (I2 * p2.value - 3.0) + v.value,
+                c1 * p1.value + c2 * p2.value * (2.0 + s.a), -0.5 * c2 * p2.value,
+                c1 * I1 * p1.first + c2 * I2 * p2.first + v.first};
+    }
+};
+
+/// w = mu/(2 gamma) (exp(gamma (I1 J^-2/3 - 3)) - 1) + K/2 (J - 1)^2.
+struct IsochoricFungDemiray {
+    double mu, gamma, bulk_modulus;  ///< Pa, 1, Pa
+
+    double rest_mu() const { return mu; }
+    double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * mu; }
+    LawResponse response(const LinkStrain& s, double J0) const {
+        const VolumeTerm p =
+            extended([](double J) { return power_of_volume(J, 2.0 / 3.0); }, s.J, J0);
+        const VolumeTerm v = quadratic_volume_term(s.J, bulk_modulus);
+        const double I1 = 3.0 + s.a, slope = 0.5 * mu;
+        const Exponential e(gamma * (I1 * p.value - 3.0));
+        return {slope / gamma * e.value + v.value, slope * e.first * p.value, 0.0,
+                slope * e.first * I1 * p.first + v.first};
+    }
+};
+
+using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean,
+                         FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden>;
 
 }  // namespace incise::physics

@@ -3,15 +3,25 @@
 #pragma once
 
 #include <variant>
+#include <vector>
 
 #include "physics/law.h"
 
 namespace incise::physics {
 
+/// One branch of linear viscosity: the share `alpha` of the stress relaxes as exp(-t / tau).
+struct PronyTerm {
+    double alpha;  ///< above 0; the sum over the terms of a series is below 1
+    double tau;    ///< s, above 0
+    bool operator==(const PronyTerm&) const = default;
+};
+
 /// Hyper-elastic mass links on tetrahedra.
 struct HyperElasticLinks {
-    Law law;
+    Law law;                           ///< of instantaneous strain, where there is viscosity
     double inversion_threshold = 0.4;  ///< J0: below it volume terms are extended linearly in force
+    /// Empty: elastic. The long-time moduli are 1 less the sum of the alphas of those of the law.
+    std::vector<PronyTerm> prony = {};
 };
 
 /// The classical mass-spring model on the edges of tetrahedra, as a baseline. Each element brings

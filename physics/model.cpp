@@ -28,6 +28,7 @@ Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surrounding
     : mesh_(mesh),
       epoch_(mesh.epoch()),
       elements_(mesh, table),
+      history_(elements_.max_prony_terms(), mesh.element_capacity()),
       gravity_(surroundings.gravity),
       damping_(surroundings.damping),
       body_size_(diagonal(mesh)),
@@ -70,13 +71,15 @@ void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> vel
                       double time) {
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
+    if (!history_.is_empty()) elements_.advance(positions_, positions_, 0.0, history_);
     compute_forces(time);
 }
 
 void Model::compute_forces(double time) {
     std::fill(elastic_forces_.begin(), elastic_forces_.end(), Vec3::Zero());
-    elements_.for_each_block(
-        [&](const ElementBlock& block) { block.add_forces(positions_, elastic_forces_); });
+    elements_.for_each_block([&](const ElementBlock& block) {
+        block.add_forces(positions_, history_, elastic_forces_);
+    });
     for (std::size_t n = 0; n < masses_.size(); ++n) outer_forces_[n] = masses_[n] * gravity_;
     loads_.add(loaded_body(), time, outer_forces_);
 }
@@ -87,6 +90,7 @@ void Model::integrate(double time, double dt) {
     const double slowing = 1.0 / (1.0 + damping_ * dt);
     double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;
     bool is_finite = true;
+    if (!history_.is_empty()) previous_positions_ = positions_;
     for (std::size_t n = 0; n < masses_.size(); ++n) {
         const double mass = masses_[n];
         if (mass == 0.0) continue;  // dead
@@ -124,6 +128,8 @@ void Model::integrate(double time, double dt) {
     dissipated_energy_ += dissipated_power * dt;
     largest_move_ = std::sqrt(largest_square) * dt;
     if (!is_finite || largest_move_ > body_size_) explain_failure(dt);
+    if (!history_.is_empty())
+        dissipated_energy_ += elements_.advance(previous_positions_, positions_, dt, history_);
 }
 
 void Model::explain_failure(double dt) const {
@@ -230,6 +236,7 @@ void Model::apply(const ChangeSet& changes) {
     epoch_ = changes.epoch_after;
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
+    history_.apply(changes);
 
     std::vector<NodeId> touched;
     const auto touch = [&](std::span<const NodeId> nodes) {
@@ -333,7 +340,7 @@ double Model::volume_change() const {
     double now = 0.0, at_rest = 0.0;
     elements_.for_each_block([&](const ElementBlock& block) {
         for (const ElementId e : block.elements()) {
-            const ElementResult result = block.result(e, positions_);
+            const ElementResult result = block.result(e, positions_, history_);
             now += result.volume * result.volume_ratio;
             at_rest += result.volume;
         }

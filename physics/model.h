@@ -11,6 +11,7 @@
 #include "physics/loads.h"
 #include "physics/stable_step.h"
 #include "physics/supports.h"
+#include "physics/viscous_history.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
 
@@ -29,7 +30,7 @@ struct Totals {
     double mass = 0.0;            ///< kg
     double rest_volume = 0.0;     ///< m3
     double kinetic_energy = 0.0;  ///< J, of the velocities as they stand
-    double elastic_energy = 0.0;  ///< J
+    double elastic_energy = 0.0;  ///< J; of viscous elements that of the long-time moduli
     double gravity_energy = 0.0;  ///< J, zero at the origin
     Vec3 momentum = Vec3::Zero();
     Vec3 angular_momentum = Vec3::Zero();
@@ -50,10 +51,19 @@ class Model {
     std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
     std::span<const double> masses() const { return masses_; }                ///< kg
 
-    /// Replaces the state; sizes are those of node_capacity. The forces follow.
+    /// Replaces the state; sizes are those of node_capacity. The forces follow. Viscous elements
+    /// take it for an instantaneous strain, to which the moduli as entered answer.
     void set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities, double time);
 
-    /// Elastic and outer forces at the present positions and `time`.
+    /// What viscous elements remember; empty if there are none. Like the positions it belongs to
+    /// the state: integrate() brings it to the positions that it leaves.
+    const ViscousHistory& history() const { return history_; }
+    /// Replaces it after set_state(); values as of history().values(). Forces are those of before
+    /// until compute_forces is called.
+    void set_history(std::span<const SymmetricTensor> values) { history_.set_values(values); }
+
+    /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
+    /// and of the history as it stands.
     void compute_forces(double time);
 
     /// One step of semi-implicit Euler, from the forces last computed:
@@ -64,14 +74,14 @@ class Model {
     void integrate(double time, double dt);
 
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
-    /// the edited mesh with the same state. Copied nodes copy their state, a node between others
-    /// takes a mean of theirs with the weights of the record, merged ones keep momentum.
-    /// Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of mass and the
-    /// elastic energy of all laws (not of springs), but lumped masses lose angular momentum
-    /// m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2 / 2, m
-    /// being a quarter of the mass of the elements round the edge.
-    /// The inverse of an edit, applied before anything moved, gives the former state back to the
-    /// bit. Forces are those of before until compute_forces is called.
+    /// the edited mesh with the same state and history. Copied nodes copy their state, a node
+    /// between others takes a mean of theirs with the weights of the record, merged ones keep
+    /// momentum. Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of
+    /// mass and the elastic energy of all laws (not of springs), but lumped masses lose angular
+    /// momentum m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2
+    /// / 2, m being a quarter of the mass of the elements round the edge. Parts of a viscous
+    /// element inherit its history. The inverse of an edit, applied before anything moved, gives
+    /// the former state back to the bit. Forces are those of before until compute_forces is called.
     /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
     void apply(const topology::ChangeSet& changes);
 
@@ -99,13 +109,14 @@ class Model {
     /// Of the node that is farthest from where it is at rest, m.
     double max_displacement() const;
     ElementResult element_result(ElementId e) const {
-        return elements_.block_of(mesh_, e).result(e, positions_);
+        return elements_.block_of(mesh_, e).result(e, positions_, history_);
     }
 
     /// Density of what the elements of a region are made of, kg/m3.
     double density(int region) const { return elements_.density(region); }
 
-    /// Work since the start, joules: of gravity, loads and supports; and what damping took.
+    /// Work since the start, joules: of gravity, loads and supports; and what damping and viscosity
+    /// took. What viscous elements can still give back counts as taken until they do.
     double external_work() const { return external_work_; }
     double dissipated_energy() const { return dissipated_energy_; }
 
@@ -138,6 +149,7 @@ class Model {
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
     ElementStore elements_;
+    ViscousHistory history_;
     Vec3 gravity_;
     double damping_;
     double body_size_;
@@ -149,8 +161,9 @@ class Model {
     Loads loads_;
     std::vector<Vec3> reactions_, reaction_moments_;
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
-    std::map<NodeId, Merge> merges_;  // by the node that was absorbed
-    std::vector<ElementId> star_;     // scratch
+    std::map<NodeId, Merge> merges_;        // by the node that was absorbed
+    std::vector<ElementId> star_;           // scratch
+    std::vector<Vec3> previous_positions_;  // scratch, of viscous bodies only
 };
 
 }  // namespace incise::physics

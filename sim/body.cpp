@@ -43,18 +43,6 @@ void require_memory_for(const BoxMeshSpec& box) {
     if (bytes > memory) throw std::bad_alloc();
 }
 
-physics::Law build_law(const MaterialSpec& spec, const ElasticConstants& constants) {
-    switch (spec.law) {
-        case Law::saint_venant_kirchhoff:
-            return physics::SaintVenantKirchhoff{constants.lambda, constants.mu};
-        case Law::neo_hookean:
-            return physics::NeoHookean{constants.c1, constants.law_lambda};
-        case Law::mooney_rivlin:
-            break;
-    }
-    return physics::MooneyRivlin{constants.c1, constants.c2, constants.law_lambda};
-}
-
 physics::Material build_material(const MaterialSpec& spec) {
     const ElasticConstants constants = resolve(spec.method, spec.law, spec.parameters);
     physics::Material material;
@@ -69,8 +57,8 @@ physics::Material build_material(const MaterialSpec& spec) {
                 spec.stiffness_ratio};
             break;
         case Method::heml:
-            material.method =
-                physics::HyperElasticLinks{build_law(spec, constants), spec.inversion_threshold};
+            material.method = physics::HyperElasticLinks{make_law(spec.law, spec.parameters),
+                                                         spec.inversion_threshold, spec.prony};
             break;
     }
     return material;

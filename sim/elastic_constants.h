@@ -1,4 +1,4 @@
-// From the elastic parameters of a scenario to the constants of its law.
+// From the elastic parameters of a scenario to the moduli and the law of a material.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,25 +6,20 @@
 
 namespace incise::sim {
 
-/// Moduli of small strain about rest, and the constants in the law's energy; pascal.
-struct ElasticConstants {
-    double lambda = 0.0;  ///< Lame's first parameter at rest
-    double mu = 0.0;      ///< shear modulus at rest
-    /// Neo-Hookean: mu / 2 and 0. Mooney-Rivlin: as given. Without meaning elsewhere.
-    double c1 = 0.0, c2 = 0.0;
-    /// The factor of ln^2 J / 2 in the neo-Hookean and Mooney-Rivlin laws: lambda - 4 c2.
-    double law_lambda = 0.0;
-
-    double bulk_modulus() const { return lambda + 2.0 * mu / 3.0; }
-    double young() const { return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu); }
-    double poisson() const { return lambda / (2.0 * (lambda + mu)); }
-};
-
-/// All given moduli are those at rest, lame_lambda of Mooney-Rivlin too.
+/// All given moduli are those at rest, also where a law adds to its own lambda there.
 /// For mass-spring the constants are those of springs in all directions alike: Poisson's ratio is
 /// 1/4, lambda = mu = 2/5 young; a given mesh deviates from them.
 /// Throws InputError if the parameters are not exactly one of the sets that the model takes, or
 /// the constants are not admissible.
 ElasticConstants resolve(Method method, Law law, const ElasticParameters& given);
+
+/// Whether the parameters are exactly one of the sets that the model takes.
+bool is_complete(const MaterialModel& model, const ElasticParameters& given);
+
+/// Such as "young + poisson"; empty if there are none.
+std::string list_of(const ElasticParameters& given);
+
+/// The law of HEML itself. Throws as resolve().
+physics::Law make_law(Law law, const ElasticParameters& given);
 
 }  // namespace incise::sim

@@ -115,7 +115,7 @@ double Ledger::energy_error() const {
     // 1e-4, a hundredth of a percent.
     const double floor = 1e-8 * model_.stiffness_energy();
     const double scale = std::abs(at_start) + std::abs(at_end) + std::abs(model_.external_work()) +
-                         model_.dissipated_energy() + std::abs(energy_removed_);
+                         std::abs(model_.dissipated_energy()) + std::abs(energy_removed_);
     const double missing =
         at_start + model_.external_work() - model_.dissipated_energy() - energy_removed_ - at_end;
     return scale + floor == 0.0 ? 0.0 : std::abs(missing) / std::max(scale, floor);

@@ -13,13 +13,24 @@
 #include <string_view>
 #include <vector>
 
+#include "physics/law.h"
 #include "sim/limits.h"
 
 namespace incise::sim {
 
 enum class Method : std::uint8_t { heml, mass_spring, hybmss };
 
-enum class Law : std::uint8_t { saint_venant_kirchhoff, neo_hookean, mooney_rivlin };
+enum class Law : std::uint8_t {
+    saint_venant_kirchhoff,
+    neo_hookean,
+    mooney_rivlin,
+    fung_demiray,
+    ogden,
+    ciarlet_neo_hookean,
+    isochoric_neo_hookean,
+    isochoric_mooney_rivlin,
+    isochoric_fung_demiray
+};
 
 enum class Parameter : std::uint8_t {
     young,
@@ -29,9 +40,11 @@ enum class Parameter : std::uint8_t {
     lame_lambda,
     lame_mu,
     c1,
-    c2
+    c2,
+    gamma,
+    terms
 };
-inline constexpr std::size_t num_parameters = 8;
+inline constexpr std::size_t num_parameters = 10;
 
 struct ParameterInfo {
     Parameter parameter;
@@ -43,7 +56,8 @@ struct ParameterInfo {
 
 /// What a scenario gives of a material's elastic parameters.
 struct ElasticParameters {
-    std::array<std::optional<double>, num_parameters> values;
+    std::array<std::optional<double>, num_parameters> values;  ///< of `terms`: how many
+    std::vector<physics::Ogden::Term> terms;                   ///< of Ogden's law
 
     std::optional<double>& operator[](Parameter p) { return values[static_cast<std::size_t>(p)]; }
     const std::optional<double>& operator[](Parameter p) const {
@@ -54,6 +68,16 @@ struct ElasticParameters {
 /// Parameters that together determine a material.
 using ParameterSet = std::vector<Parameter>;
 
+/// Moduli of small strain about rest, Pa.
+struct ElasticConstants {
+    double lambda = 0.0;  ///< Lame's first parameter
+    double mu = 0.0;      ///< shear modulus
+
+    double bulk_modulus() const { return lambda + 2.0 * mu / 3.0; }
+    double young() const { return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu); }
+    double poisson() const { return lambda / (2.0 * (lambda + mu)); }
+};
+
 /// What takes parameters: a law of HEML, or a method without laws.
 struct MaterialModel {
     std::string_view key;
@@ -63,6 +87,9 @@ struct MaterialModel {
     std::string_view admissible;
     std::string_view use;
     std::string_view limits;
+    /// Of a law of HEML: the law with these moduli at rest and what else was given of one of its
+    /// sets. Throws InputError, without the law's name, if there is none.
+    physics::Law (*make)(const ElasticConstants& at_rest, const ElasticParameters& given) = nullptr;
 };
 
 std::span<const ParameterInfo> parameters();

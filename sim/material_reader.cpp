@@ -7,18 +7,17 @@
 #include "io/number_format.h"
 #include "sim/elastic_constants.h"
 #include "sim/scenario_sections.h"
+#include "sim/tissue_catalog.h"
 #include "topology/error.h"
 
 namespace incise::sim {
 
 namespace {
 
-constexpr std::string_view common_keys[] = {"regions", "method", "density"};
-constexpr std::string_view heml_keys[] = {"law", "inversion_threshold"};
+constexpr std::string_view common_keys[] = {"regions", "method", "preset", "density"};
+constexpr std::string_view heml_keys[] = {"law", "inversion_threshold", "prony"};
 constexpr std::string_view hybmss_keys[] = {"face_diagonals", "stiffness_ratio",
                                             "correction_forces"};
-constexpr std::string_view planned_keys[] = {"preset", "prony", "gamma", "terms"};
-constexpr std::string_view planned_laws[] = {"fung-demiray", "ogden"};
 
 constexpr IntegerLimits region_limits{std::numeric_limits<int>::min(),
                                       std::numeric_limits<int>::max()};
@@ -72,13 +71,19 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
     }
 }
 
+/// All that springs take.
+ElasticParameters only_young(const ElasticParameters& parameters) {
+    ElasticParameters young;
+    young[Parameter::young] = parameters[Parameter::young];
+    return young;
+}
+
 /// Reports what of the method, law and parameters does not go together.
 void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
     ElasticParameters parameters = spec.parameters;
     refuse_keys_of_others(material, spec.method);
     if (spec.method == Method::mass_spring) {
-        parameters = {};
-        parameters[Parameter::young] = spec.parameters[Parameter::young];
+        parameters = only_young(parameters);
     } else if (spec.method == Method::heml && spec.law == Law::saint_venant_kirchhoff &&
                material.has("inversion_threshold")) {
         material.warning("inversion_threshold",
@@ -93,6 +98,75 @@ void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
     }
 }
 
+/// Of Ogden's law. Whether they are as they should be, or not there.
+bool read_terms(const TableReader& material, ElasticParameters& parameters) {
+    if (!material.has("terms")) return true;
+    bool is_readable = !material.is_empty_array("terms");
+    if (!is_readable)
+        material.error("terms", "is empty: give at least one, as in [{ mu = 500, alpha = 4 }]");
+    static constexpr std::string_view keys[] = {"mu", "alpha"};
+    const auto rows = material.tables("terms", {keys});
+    for (const auto& row : rows) {
+        row.require("mu", "its part of the shear modulus in Pa, as in mu = 500");
+        row.require("alpha", "the power of the stretches, as in alpha = 4");
+        const auto mu = row.number_if_given("mu"), alpha = row.number_if_given("alpha");
+        is_readable = is_readable && mu && alpha && *alpha != 0.0;
+        if (alpha && *alpha == 0.0)
+            row.error("alpha", "0 is not allowed: a power of 0 is no strain");
+        parameters.terms.push_back({mu.value_or(1.0), alpha.value_or(1.0)});
+    }
+    if (!rows.empty()) parameters[Parameter::terms] = static_cast<double>(rows.size());
+    return is_readable && !rows.empty();
+}
+
+/// Takes from the preset what the scenario does not give of the elastic parameters: those of
+/// other names or, if the scenario has a set of its own, none. Whether there is a whole set now.
+bool complete_parameters(const TableReader& material, const Tissue& preset, MaterialSpec& spec) {
+    const MaterialModel& model = sim::model(spec.method, spec.law);
+    ElasticParameters both = preset.parameters;
+    if (spec.method == Method::mass_spring) {  // other keys than young are refused elsewhere
+        both = only_young(both);
+        spec.parameters = only_young(spec.parameters);
+    }
+    for (const auto& row : parameters())
+        if (spec.parameters[row.parameter]) both[row.parameter] = spec.parameters[row.parameter];
+    if (!spec.parameters.terms.empty()) both.terms = spec.parameters.terms;
+    if (is_complete(model, both)) {
+        spec.parameters = both;
+        return true;
+    }
+    if (is_complete(model, spec.parameters)) return true;
+    const std::string given = list_of(spec.parameters);
+    material.error("preset", in_quotes(preset.key) + " has " + list_of(preset.parameters) +
+                                 (given.empty() ? "" : ", the scenario gives " + given) + "; but " +
+                                 std::string(model.key) + " takes " +
+                                 list_of_sets(model.parameter_sets) +
+                                 ": give values for what the preset has, or one whole set");
+    return false;
+}
+
+/// The terms of viscosity. What is wrong with them does not hinder the checks of elasticity.
+std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
+    if (material.is_empty_array("prony") && !material.has("preset"))  // there it means: elastic
+        material.error("prony",
+                       "is empty: give at least one term, as in [{ alpha = 0.3, tau = 0.5 }], or "
+                       "leave it out");
+    static constexpr std::string_view keys[] = {"alpha", "tau"};
+    std::vector<physics::PronyTerm> terms;
+    double sum = 0.0;
+    for (const auto& row : material.tables("prony", {keys})) {
+        row.require("alpha", "the share of the stress that relaxes, as in alpha = 0.3");
+        row.require("tau", "the time in which it does, in seconds, as in tau = 0.5");
+        const double alpha = row.number("alpha", 0.0, {.low = 0.0, .high = 1.0});
+        terms.push_back({alpha, row.number("tau", 1.0, limits::positive)});
+        sum += alpha;
+    }
+    if (sum >= 1.0)
+        material.error("prony", "has shares alpha that add up to " + io::format_number(sum) +
+                                    ": their sum must be below 1, or no stress would last");
+    return terms;
+}
+
 MaterialSpec read_material(const TableReader& material) {
     MaterialSpec spec;
     if (material.has("regions")) {
@@ -104,20 +178,36 @@ MaterialSpec read_material(const TableReader& material) {
         spec.method = static_cast<Method>(*index);
     else
         is_readable = !material.has("method");
+    const Tissue* preset = nullptr;
+    std::vector<std::string_view> tissue_names;
+    for (const auto& tissue : tissues()) tissue_names.push_back(tissue.key);
+    if (const auto index = material.choice("preset", {tissue_names})) {
+        preset = &tissues()[*index];
+        spec.law = preset->law;
+    } else {
+        is_readable = is_readable && !material.has("preset");
+    }
     std::vector<std::string_view> law_names;
     for (const auto& law : laws()) law_names.push_back(law.key);
-    if (const auto index = material.choice("law", {law_names, planned_laws}))
+    if (const auto index = material.choice("law", {law_names}))
         spec.law = static_cast<Law>(*index);
     else
         is_readable = is_readable && !material.has("law");
-    material.require("density", "kilograms a cubic metre, as in density = 1060");
-    spec.density = material.number("density", 1.0, limits::positive);
+    if (!material.has("preset"))
+        material.require("density", "kilograms a cubic metre, as in density = 1060");
+    spec.density =
+        material.number("density", preset != nullptr ? preset->density : 1.0, limits::positive);
     for (const auto& row : parameters()) {
+        if (row.parameter == Parameter::terms) continue;
         spec.parameters[row.parameter] = material.number_if_given(row.key, row.limits);
         if (material.has(row.key) && !spec.parameters[row.parameter]) is_readable = false;
     }
+    is_readable = read_terms(material, spec.parameters) && is_readable;
     spec.inversion_threshold =
         material.number("inversion_threshold", spec.inversion_threshold, {.low = 0.0, .high = 1.0});
+    spec.prony = read_prony(material);
+    if (preset != nullptr && spec.method == Method::heml && !material.has("prony"))
+        spec.prony = preset->prony;
     spec.correction_forces = material.flag("correction_forces", true);
     spec.stiffness_ratio = material.number("stiffness_ratio", spec.stiffness_ratio,
                                            {.low = 0.0, .includes_high = true});
@@ -127,7 +217,11 @@ MaterialSpec read_material(const TableReader& material) {
             material.error("stiffness_ratio",
                            "has no meaning without face diagonals: leave it out");
     }
-    if (is_readable) check_elasticity(material, spec);
+    if (!is_readable) return spec;
+    if (preset != nullptr && !complete_parameters(material, *preset, spec))
+        refuse_keys_of_others(material, spec.method);
+    else
+        check_elasticity(material, spec);
     return spec;
 }
 
@@ -148,7 +242,7 @@ std::vector<MaterialSpec> read_materials(const TableReader& root) {
     const std::string remedy = "add a section [[material]] with density, young and poisson";
     if (root.require("material", remedy) && root.is_empty_array("material"))
         root.error("material", "is empty: " + remedy);
-    for (const auto& material : root.tables("material", {keys, planned_keys})) {
+    for (const auto& material : root.tables("material", {keys})) {
         specs.push_back(read_material(material));
         if (const auto& regions = specs.back().regions) {
             for (const int region : *regions)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/frame.h"
+#include "physics/material.h"
 #include "sim/material_catalog.h"
 #include "topology/cell_kind.h"
 #include "topology/types.h"
@@ -40,10 +41,11 @@ struct MaterialSpec {
     Method method = Method::heml;
     Law law = Law::neo_hookean;  ///< of HEML
     double density = 0.0;
-    ElasticParameters parameters;      ///< as given; resolve() makes constants of them
-    double inversion_threshold = 0.4;  ///< J0, in (0, 1); of HEML
-    double stiffness_ratio = 1.0;      ///< A of HybMSS, 0 to infinity
-    bool correction_forces = true;     ///< of HybMSS: without, Poisson's ratio is 1/4
+    ElasticParameters parameters;           ///< as given; resolve() makes constants of them
+    double inversion_threshold = 0.4;       ///< J0, in (0, 1); of HEML
+    std::vector<physics::PronyTerm> prony;  ///< of HEML; empty: elastic
+    double stiffness_ratio = 1.0;           ///< A of HybMSS, 0 to infinity
+    bool correction_forces = true;          ///< of HybMSS: without, Poisson's ratio is 1/4
 };
 
 struct DynamicsSpec {

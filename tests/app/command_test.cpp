@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "in_folder.h"
@@ -247,18 +248,54 @@ TEST_F(Command, RefusesToRunABadScenario) {
 TEST_F(Command, ListsMaterials) {
     const auto all = run("materials");
     EXPECT_EQ(all.status, 0);
-    for (const auto* name :
-         {"saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin", "mass-spring", "hybmss"})
+    for (const auto* name : {"saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin",
+                             "fung-demiray", "ogden", "mass-spring", "hybmss"})
         EXPECT_NE(all.out.find(name), std::string::npos) << name;
     EXPECT_NE(run("materials mooney-rivlin").out.find("law = \"mooney-rivlin\""),
               std::string::npos);
     const auto json = nlohmann::json::parse(run("materials --json").out);
-    ASSERT_EQ(json["materials"].size(), 5u);
+    std::map<std::string, nlohmann::json> rows;
+    for (const auto& row : json["materials"]) rows[row["name"]] = row;
+    EXPECT_EQ(rows.size(), json["materials"].size());
     EXPECT_EQ(json["materials"][1]["name"], "neo-hookean");
-    EXPECT_EQ(json["materials"][1]["parameter_sets"][0], (std::vector{"young", "poisson"}));
-    EXPECT_EQ(json["materials"][4]["kind"], "method");
+    EXPECT_EQ(rows["neo-hookean"]["parameter_sets"][0], (std::vector{"young", "poisson"}));
+    EXPECT_EQ(rows["neo-hookean"]["kind"], "law");
+    EXPECT_EQ(rows["hybmss"]["kind"], "method");
     EXPECT_NE(run("materials hybmss").out.find("method = \"hybmss\""), std::string::npos);
     EXPECT_EQ(run("materials neo-hooke").status, 2);
+}
+
+TEST_F(Command, ListsTissues) {
+    const auto all = run("materials").out;
+    EXPECT_LT(all.find("\nhybmss\n"), all.find("\nliver\n"));
+    EXPECT_NE(all.find("\nparturient-abdomen\n    Abdomen of a parturient woman\n    law = "),
+              std::string::npos);
+    const auto liver = run("materials liver");
+    EXPECT_EQ(liver.status, 0);
+    for (const auto* text : {"preset = \"liver\"\n",
+                             "    law = \"saint-venant-kirchhoff\"\n    density = 1060\n    "
+                             "young = 1600\n    poisson = 0.48\n",
+                             "\nSource\n", "s40323-015-0049-1", "\nValidity\n", "76 to 225 J/m2"})
+        EXPECT_NE(liver.out.find(text), std::string::npos) << text;
+    EXPECT_NE(run("materials livr").err.find("did you mean 'liver'?"), std::string::npos);
+
+    const auto one = [&](const std::string& name) {
+        const auto json = nlohmann::json::parse(run("materials --json " + name).out);
+        EXPECT_EQ(json["materials"].size(), 1u);
+        return json["materials"][0];
+    };
+    const auto fat = one("fat");
+    EXPECT_EQ(fat["kind"], "tissue");
+    EXPECT_EQ(fat["law"], "neo-hookean");
+    EXPECT_EQ(fat["density"], 917.0);
+    EXPECT_EQ(fat["parameters"]["shear_modulus"], 530.0);
+    EXPECT_EQ(fat["prony"], nlohmann::json::parse(R"([{"alpha": 0.39, "tau": 700.0}])"));
+    EXPECT_EQ(fat["toughness"]["max"], 4100.0);
+    for (const auto* key : {"title", "source", "density_source", "validity", "assumed"})
+        EXPECT_FALSE(fat[key].get<std::string>().empty()) << key;
+    EXPECT_EQ(one("brain")["toughness"], nullptr);
+    EXPECT_EQ(one("skin")["parameters"]["terms"],
+              nlohmann::json::parse(R"([{"mu": 10.0, "alpha": 40.0}])"));
 }
 
 TEST_F(Command, HandsRenderingOverWithAllArguments) {

@@ -10,6 +10,8 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "topology/box_mesh.h"
+#include "topology/mesh_metrics.h"
 
 namespace incise::cutting {
 namespace {
@@ -265,6 +267,63 @@ TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
             EXPECT_LT(fine, 2e-3);
             EXPECT_LT(fine, 0.2 * coarse + 1e-4);
         }
+}
+
+/// The edge of a blade right across a body of width one in y, from one corner of the way to the
+/// next in equal parts of about `part`.
+Stroke way_of_edge(const std::vector<std::array<double, 2>>& corners, double part) {
+    const auto edge = [](double x, double z) { return Polyline{{x, -0.1, z}, {x, 1.1, z}}; };
+    Stroke stroke;
+    Polyline from = edge(corners[0][0], corners[0][1]);
+    for (std::size_t c = 1; c < corners.size(); ++c) {
+        const auto [x0, z0] = corners[c - 1];
+        const auto [x1, z1] = corners[c];
+        const int n = std::max(1, static_cast<int>(std::hypot(x1 - x0, z1 - z0) / part));
+        for (int i = 1; i <= n; ++i) {
+            Polyline to = edge(x0 + (x1 - x0) * i / n, z0 + (z1 - z0) * i / n);
+            stroke.push_back(std::make_unique<SweptEdge>(from, to));
+            from = std::move(to);
+        }
+    }
+    return stroke;
+}
+
+// At round places the edge comes to rest just where it crosses edges of the mesh, and rounding
+// takes the new nodes to one or the other side of it.
+TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
+    for (const int n : {4, 8})
+        for (const double at : {0.31, 0.35, 0.37, 0.41, 0.43, 0.44, 0.5, 0.52})
+            for (const double part : {0.02, 0.05, 0.1})
+                for (const double snap : {0.0, 0.1, 0.2})
+                    for (const bool along_x : {true, false}) {
+                        if (n == 8 && part < 0.05) continue;  // takes long
+                        SCOPED_TRACE(testing::Message()
+                                     << n << " bricks, at " << at << ", parts of " << part
+                                     << ", snap " << snap);
+                        SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron,
+                                                          Vec3::Zero(), Vec3::Ones(), {n, n, n}));
+                        body.cut(along_x ? way_of_edge({{-0.1, at}, {1.1, at}}, part)
+                                         : way_of_edge({{at, 1.1}, {at, -0.1}}, part),
+                                 guarded(body.mesh, snap));
+                        ASSERT_EQ(topology::components(body.mesh).count, 2);
+                    }
+}
+
+// Where it has been before is another cut.
+TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Random random(seed);
+        const double z = random.uniform(0.3, 0.5), x = random.uniform(0.4, 0.6);
+        SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                          Vec3::Ones(), {10, 2, 10}));
+        body.cut(way_of_edge({{-0.1, z}, {1.2, z}, {1.2, 1.2}, {x, 1.2}, {x, -0.1}},
+                             seed % 2 == 0 ? 0.05 : 9.0));
+        const auto volumes = piece_volumes(body.mesh);
+        ASSERT_EQ(volumes.size(), 4u);
+        EXPECT_NEAR(volumes[3], std::min({x * z, (1 - x) * z, x * (1 - z), (1 - x) * (1 - z)}),
+                    1e-12);
+    }
 }
 
 }  // namespace

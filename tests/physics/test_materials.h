@@ -33,6 +33,14 @@ inline std::vector<NamedLaw> test_laws() {
         {"Mooney-Rivlin", MooneyRivlin{1346.0, 577.0, 3462.0}},
         {"Mooney-Rivlin without C2", MooneyRivlin{1923.0, 0.0, 5769.0}},
         {"Mooney-Rivlin without lambda", MooneyRivlin{500.0, 1400.0, 0.0}},
+        {"Fung-Demiray", FungDemiray{3846.0, 0.5, 1923.0}},
+        {"Ogden, one term", Ogden{{{{3846.0, 4.0}}}, 1, 8333.0}},
+        {"Ogden, three terms", Ogden{{{{2000.0, 1.3}, {900.0, 5.0}, {700.0, -3.0}}}, 3, 20000.0}},
+        {"Ogden, brain-like", Ogden{{{{670.0, -19.0}}}, 1, 6000.0}},
+        {"Ciarlet's neo-Hookean", CiarletNeoHookean{3846.0, 5769.0}},
+        {"isochoric neo-Hookean", IsochoricMooneyRivlin{1923.0, 0.0, 8333.0}},
+        {"isochoric Mooney-Rivlin", IsochoricMooneyRivlin{1346.0, 577.0, 8333.0}},
+        {"isochoric Fung-Demiray", IsochoricFungDemiray{3846.0, 0.5, 8333.0}},
     };
 }
 
@@ -41,6 +49,11 @@ inline std::optional<Law> law_of(const test::ReferenceLaw& reference) {
     const auto at = [&](const char* key) { return reference.parameters.at(key); };
     if (reference.name == "stvk") return SaintVenantKirchhoff{at("lam"), at("mu")};
     if (reference.name == "nh26") return NeoHookean{0.5 * at("mu"), at("lam")};
+    if (reference.name == "ciarlet") return CiarletNeoHookean{at("mu"), at("lam")};
+    if (reference.name == "nh_iso") return IsochoricMooneyRivlin{at("C1"), 0.0, at("K")};
+    if (reference.name == "mr_iso") return IsochoricMooneyRivlin{at("C1"), at("C2"), at("K")};
+    if (reference.name == "fd_iso") return IsochoricFungDemiray{at("mu"), at("g"), at("K")};
+    if (reference.name == "fd_ln") return FungDemiray{at("mu"), at("g"), at("lam")};
     if (reference.name == "mr_ln") return MooneyRivlin{at("C1"), at("C2"), at("lam")};
     return std::nullopt;
 }

@@ -54,17 +54,49 @@ TEST(ElasticConstants, AreTheSameFromEverySetOfParameters) {
 }
 
 TEST(ElasticConstants, OfTheLawsFollowFromThoseAtRest) {
-    const auto neo =
-        resolve(Method::heml, Law::neo_hookean, given({{lame_mu, 3.0}, {lame_lambda, 5.0}}));
+    const auto neo = std::get<physics::NeoHookean>(
+        make_law(Law::neo_hookean, given({{lame_mu, 3.0}, {lame_lambda, 5.0}})));
     EXPECT_EQ(neo.c1, 1.5);
-    EXPECT_EQ(neo.c2, 0.0);
-    EXPECT_EQ(neo.law_lambda, 5.0);
-    const auto mooney = resolve(Method::heml, Law::mooney_rivlin,
-                                given({{c1, 0.1}, {c2, 0.25}, {lame_lambda, 5.0}}));
+    EXPECT_EQ(neo.lambda, 5.0);
+    const auto mooney = std::get<physics::MooneyRivlin>(
+        make_law(Law::mooney_rivlin, given({{c1, 0.1}, {c2, 0.25}, {lame_lambda, 5.0}})));
     EXPECT_EQ(mooney.c1, 0.1);
     EXPECT_EQ(mooney.c2, 0.25);
-    EXPECT_EQ(mooney.mu, 0.7);
-    EXPECT_EQ(mooney.law_lambda, 4.0);
+    EXPECT_EQ(mooney.lambda, 4.0);
+    const auto isochoric = std::get<physics::IsochoricMooneyRivlin>(make_law(
+        Law::isochoric_mooney_rivlin, given({{c1, 0.1}, {c2, 0.25}, {bulk_modulus, 5.0}})));
+    EXPECT_EQ(isochoric.c2, 0.25);
+    EXPECT_NEAR(isochoric.bulk_modulus, 5.0, 5.0 * round_off);
+}
+
+// Whatever a law adds to lambda and mu on its own account, at rest it has those that were given.
+TEST(ElasticConstants, GivenForAnyLawAreItsModuliAtRest) {
+    for (std::size_t i = 0; i < laws().size(); ++i)
+        for (const ParameterSet& set : laws()[i].parameter_sets) {
+            SCOPED_TRACE(std::string(laws()[i].key) + ": " + list_of_sets(std::span(&set, 1)));
+            ElasticParameters parameters;
+            parameters.terms = {{700.0, 1.5}, {300.0, -2.0}};
+            for (const Parameter p : set) {
+                const double value = p == young              ? 2900.0
+                                     : p == poisson          ? 0.45
+                                     : p == lame_lambda      ? 9000.0
+                                     : p == bulk_modulus     ? 10000.0
+                                     : p == c1               ? 450.0
+                                     : p == c2               ? 50.0
+                                     : p == gamma            ? 0.8
+                                     : p == Parameter::terms ? 2.0
+                                                             : 1000.0;
+                parameters[p] = value;
+            }
+            const auto law = static_cast<Law>(i);
+            const auto constants = resolve(Method::heml, law, parameters);
+            std::visit(
+                [&](const auto& made) {
+                    EXPECT_NEAR(made.rest_mu(), constants.mu, 1e-12 * constants.mu);
+                    EXPECT_NEAR(made.rest_lambda(), constants.lambda, 1e-12 * constants.lambda);
+                },
+                make_law(law, parameters));
+        }
 }
 
 TEST(ElasticConstants, OfSpringsHaveThePoissonsRatioOfSprings) {
@@ -104,6 +136,18 @@ TEST(ElasticConstants, MustBeAdmissible) {
     EXPECT_EQ(refusal(Law::mooney_rivlin, mooney(1.0)), "accepted");
     EXPECT_NE(refusal(Law::mooney_rivlin, mooney(1.1)).find("at most a quarter"),
               std::string::npos);
+    const auto fung = [](double factor) {
+        return given({{lame_mu, 2.0}, {lame_lambda, 4.0}, {Parameter::gamma, factor}});
+    };
+    EXPECT_EQ(refusal(Law::fung_demiray, fung(1.0)), "accepted");
+    EXPECT_EQ(refusal(Law::fung_demiray, fung(1.1)),
+              "fung-demiray: gamma is 1.1, but must be at most Lame's lambda over twice the shear "
+              "modulus (1): lower it, raise poisson, or use fung-demiray-isochoric");
+    EXPECT_EQ(refusal(Law::isochoric_fung_demiray, fung(1.1)), "accepted");
+    auto ogden = given({{Parameter::terms, 2.0}, {bulk_modulus, 10.0}});
+    ogden.terms = {{3.0, 2.0}, {-4.0, 3.0}};
+    EXPECT_NE(refusal(Law::ogden, ogden).find("the shear modulus is -1, but must be above 0"),
+              std::string::npos);
 }
 
 TEST(MaterialCatalog, RowsStandAtTheirIndex) {
@@ -112,6 +156,12 @@ TEST(MaterialCatalog, RowsStandAtTheirIndex) {
     EXPECT_EQ(model(Law::saint_venant_kirchhoff).key, "saint-venant-kirchhoff");
     EXPECT_EQ(model(Law::neo_hookean).key, "neo-hookean");
     EXPECT_EQ(model(Law::mooney_rivlin).key, "mooney-rivlin");
+    EXPECT_EQ(model(Law::fung_demiray).key, "fung-demiray");
+    EXPECT_EQ(model(Law::ogden).key, "ogden");
+    EXPECT_EQ(model(Law::ciarlet_neo_hookean).key, "neo-hookean-ciarlet");
+    EXPECT_EQ(model(Law::isochoric_neo_hookean).key, "neo-hookean-isochoric");
+    EXPECT_EQ(model(Law::isochoric_mooney_rivlin).key, "mooney-rivlin-isochoric");
+    EXPECT_EQ(model(Law::isochoric_fung_demiray).key, "fung-demiray-isochoric");
     EXPECT_EQ(method_names()[static_cast<std::size_t>(Method::mass_spring)], "mass-spring");
 }
 

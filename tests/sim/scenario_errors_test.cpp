@@ -137,7 +137,10 @@ TEST(ScenarioErrors, OfMaterials) {
               "c1 + lame_lambda; given: young");
     EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nlaw = \"neohook\""),
               "scene.toml:5:7: key 'material[0].law': 'neohook': is not known; did you mean "
-              "'neo-hookean'? Known here: saint-venant-kirchhoff, neo-hookean, mooney-rivlin");
+              "'neo-hookean'? Known here: saint-venant-kirchhoff, neo-hookean, mooney-rivlin, "
+              "fung-demiray, "
+              "ogden, neo-hookean-ciarlet, neo-hookean-isochoric, mooney-rivlin-isochoric, "
+              "fung-demiray-isochoric");
     EXPECT_EQ(material_error("density = 1\nyoung = 1\npoisson = 0.3\nmethod = \"mass-spring\""),
               "scene.toml:4:11: key 'material[0].poisson': is not used by the mass-spring method, "
               "whose springs take young and density only and fix Poisson's ratio near 1/4: leave "
@@ -175,13 +178,64 @@ TEST(ScenarioErrors, OfHybridSprings) {
               "bulk_modulus, or lame_lambda + lame_mu; given: young + c1");
 }
 
-TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
+TEST(ScenarioErrors, OfTheTermsOfOgdensLaw) {
+    const std::string ogden = "law = \"ogden\"\ndensity = 1\nbulk_modulus = 9\n";
+    EXPECT_EQ(material_error(ogden + "terms = [{ mu = 1, alpha = 2 }, { mu = -0.5, alpha = -1 }]"),
+              "");
+    EXPECT_EQ(material_error(ogden + "terms = []"),
+              "scene.toml:5:9: key 'material[0].terms': is empty: give at least one, as in [{ mu = "
+              "500, alpha = 4 }]");
+    EXPECT_EQ(material_error(ogden + "terms = [{ mu = 1, alpha = 0 }]"),
+              "scene.toml:5:28: key 'material[0].terms[0].alpha': 0 is not allowed: a power of 0 "
+              "is no strain");
+    EXPECT_EQ(material_error(ogden + "terms = [{ mu = 1 }]"),
+              "scene.toml:5:10: key 'material[0].terms[0].alpha': is missing: the power of the "
+              "stretches, as in alpha = 4");
+    EXPECT_EQ(
+        material_error(ogden + "terms = [{ mu = -1, alpha = 2 }]"),
+        "scene.toml:1:1: key 'material[0]': ogden: the shear modulus is -1, but must be above "
+        "0: the mu of all terms add up to it");
+    EXPECT_EQ(material_error(ogden),
+              "scene.toml:1:1: key 'material[0]': ogden takes bulk_modulus + terms, or poisson + "
+              "terms, or lame_lambda + terms; given: bulk_modulus");
+}
+
+TEST(ScenarioErrors, OfViscosity) {
     const std::string good = "density = 1\nyoung = 1\npoisson = 0.3\n";
-    for (const auto& line : {"law = \"ogden\"", "law = \"fung-demiray\"", "preset = \"liver\"",
-                             "prony = [{ alpha = 0.3, tau = 0.5 }]", "gamma = 1", "terms = []"})
-        EXPECT_NE(material_error(good + line).find("does not support it yet; supported: "),
-                  std::string::npos)
-            << line;
+    EXPECT_EQ(material_error(good + "prony = [{ alpha = 0.3, tau = 0.5 }]"), "");
+    EXPECT_EQ(material_error(good + "prony = []"),
+              "scene.toml:5:9: key 'material[0].prony': is empty: give at least one term, as in "
+              "[{ alpha = 0.3, tau = 0.5 }], or leave it out");
+    EXPECT_EQ(material_error(good + "prony = { alpha = 0.3, tau = 0.5 }"),
+              "scene.toml:5:9: key 'material[0].prony': must be an array of tables, as in "
+              "[{ ... }, { ... }], but is a table");
+    EXPECT_EQ(material_error(good + "prony = [{ alpha = 0, tau = 0 }, { alpha = 1, tau = 1 }]"),
+              "scene.toml:5:20: key 'material[0].prony[0].alpha': 0 is not allowed: must be above "
+              "0 and below 1 | scene.toml:5:29: key 'material[0].prony[0].tau': 0 is not allowed: "
+              "must be above 0 | scene.toml:5:44: key 'material[0].prony[1].alpha': 1 is not "
+              "allowed: must be above 0 and below 1");
+    EXPECT_EQ(
+        material_error(good + "prony = [{ tua = 1, alpha = 0.1 }, { tau = inf }]"),
+        "scene.toml:5:10: key 'material[0].prony[0].tau': is missing: the time in which it "
+        "does, in seconds, as in tau = 0.5 | scene.toml:5:12: key 'material[0].prony[0].tua': "
+        "is not known; did you mean 'tau'? Known here: alpha, tau | scene.toml:5:36: key "
+        "'material[0].prony[1].alpha': is missing: the share of the stress that relaxes, as "
+        "in alpha = 0.3 | scene.toml:5:44: key 'material[0].prony[1].tau': inf is not "
+        "allowed: must be above 0");
+    EXPECT_EQ(material_error(good + "prony = [{ alpha = 0.5, tau = 1 }, { alpha = 0.5, tau = 2 }]"),
+              "scene.toml:5:9: key 'material[0].prony': has shares alpha that add up to 1: their "
+              "sum must be below 1, or no stress would last");
+    for (const std::string method : {"mass-spring", "hybmss"})
+        EXPECT_NE(material_error("density = 1\nyoung = 1\nprony = [{ alpha = 0.3, tau = 0.5 }]\n"
+                                 "method = \"" +
+                                 method + "\"")
+                      .find("scene.toml:4:9: key 'material[0].prony': is a key of the method heml, "
+                            "not of " +
+                            method + ": leave it out"),
+                  std::string::npos);
+}
+
+TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
     EXPECT_NE(error_of("[output]\ncheckpoint_interval = 1\n").find("not support it yet"),
               std::string::npos);
 }

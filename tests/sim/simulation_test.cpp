@@ -260,11 +260,17 @@ where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
 move = [{ time = 0, by = [0, 0, 0] }, { time = 0.2, by = [0.01, 0, 0.02] }]
 )";
     const std::string gravity = "gravity = [0, 0, -2]\n";
+    std::string viscous_cube = soft_cube;
+    viscous_cube.insert(viscous_cube.find("poisson"),
+                        "prony = [{ alpha = 0.3, tau = 0.05 }, { alpha = 0.3, tau = 1 }]\n");
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
              {"undamped", soft_cube + dynamics(0.5, gravity)},
              {"damped", soft_cube + dynamics(0.5, gravity + "damping = 5")},
              {"moved", soft_cube + moved + dynamics(0.5, gravity)},
              {"moved and damped", soft_cube + moved + dynamics(0.5, gravity + "damping = 5")},
+             {"viscous", viscous_cube + dynamics(0.5, gravity)},
+             {"viscous, moved", viscous_cube + moved + dynamics(0.5, gravity)},
+             {"viscous, cut", viscous_cube + two_tools + dynamics(0.5, gravity)},
              {"cut", soft_cube + two_tools + dynamics(0.5, gravity + "damping = 5")}}) {
         Scenario scenario = scenario_of(text);
         std::vector<double> errors;
