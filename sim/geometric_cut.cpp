@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "cutting/cut_plan.h"
+#include "cutting/element_boxes.h"
 #include "cutting/plane.h"
 #include "cutting/separator.h"
 #include "cutting/step_length.h"
@@ -195,7 +196,10 @@ void add(const CutCounts& counts, CutCounts& total) {
 class Cutter {
   public:
     Cutter(Mesh& mesh, const GeometricCutOptions& options)
-        : mesh_(mesh), mode_(options.mode), split_options_{options.snap, {}} {
+        : mesh_(mesh),
+          boxes_(mesh, mesh.rest_positions()),
+          mode_(options.mode),
+          split_options_{options.snap, {}} {
         if (mode_ != CutMode::split) return;
         std::map<int, double> lengths;
         const double length = cutting::step_length(mesh);
@@ -274,7 +278,7 @@ class Cutter {
     void split(const cutting::CutSurface& surface, CutFront& front) {
         // A copy: the split adds positions to those of the mesh.
         const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
-        const TissueMotion tissue{mesh_, rest, rest};
+        const TissueMotion tissue{mesh_, rest, rest, &boxes_};
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
         const cutting::Split result =
@@ -324,6 +328,7 @@ class Cutter {
     }
 
     void book(const topology::ChangeSet& changes) {
+        boxes_.follow(mesh_, mesh_.rest_positions(), changes);
         counts_.elements_added += changes.elements_added.size();
         counts_.elements_removed += changes.elements_removed.size();
         counts_.nodes_added += changes.nodes_added.size();
@@ -345,6 +350,7 @@ class Cutter {
     }
 
     Mesh& mesh_;
+    cutting::ElementBoxes boxes_;
     const CutMode mode_;
     cutting::SplitOptions split_options_;
     cutting::Scars scars_;  // of all splits so far

@@ -16,8 +16,10 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
+#include "topology/mesh_metrics.h"
 #include "topology/validate.h"
 
 namespace incise::cutting {
@@ -350,6 +352,46 @@ TEST(Split, NeverDividesAnElementBelowTheLimit) {
                 EXPECT_GE(step_length(body.mesh),
                           std::min(limit, *std::min_element(first.begin(), first.end())));
             }
+}
+
+double least_altitude(const Mesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        std::vector<Vec3> corners;
+        for (const NodeId n : mesh.corners(e)) corners.push_back(mesh.rest_position(n));
+        least = std::min(least, topology::min_altitude(mesh.kind(e), corners));
+    }
+    return least;
+}
+
+// What docs/cutting.md promises of the default: planes one after the other through one body.
+TEST(Split, AtTheDefaultSnapKeepsTheShapeOfElementsAndGrowsLittle) {
+    const auto regular =
+        topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {8, 8, 8});
+    const auto& families = test::mesh_families();
+    const auto organ = std::find_if(families.begin(), families.end(),
+                                    [](const auto& family) { return family.name == "organ"; });
+    for (const auto& data : {regular, test::jittered_cube(8, 0.2, 3), organ->data})
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            SCOPED_TRACE(testing::Message() << data.num_cells() << " cells, seed " << seed);
+            Random random(seed);
+            SplitBody body(data);
+            const SplitOptions options = guarded(body.mesh, default_snap);
+            const double altitude = least_altitude(body.mesh), step = step_length(body.mesh);
+            for (int cut = 1; cut <= 8; ++cut) {
+                const auto elements = static_cast<double>(body.mesh.num_elements());
+                const Vec3 point =
+                    body.box().center() + 0.3 * body.box().sizes().cwiseProduct(random.vector(1.0));
+                const Split done = body.cut(Plane(point, random.vector(1.0)), options);
+                const auto crossed = static_cast<double>(done.report.elements_crossed);
+                const double added = static_cast<double>(body.mesh.num_elements()) - elements;
+                EXPECT_LE(added, 2.0 * crossed);
+                EXPECT_GE(step_length(body.mesh), 0.5 * step);
+                EXPECT_GE(least_altitude(body.mesh), (cut == 1 ? 0.3 : 0.15) * altitude);
+            }
+        }
 }
 
 }  // namespace
