@@ -514,8 +514,9 @@ void Splitter::place_on_side(const Edge& edge, NodeId middle, const std::vector<
         front_.toggle(edge.a, middle);
 }
 
-/// Corners of the elements that the border of the cut runs through: of a triangle through which it
-/// does, the edges are crossed an odd number of times.
+/// Corners of the elements that the border of the cut runs through, and of those beside them if
+/// nodes may be snapped: of a triangle through which it does, the edges are crossed an odd number
+/// of times.
 std::unordered_set<std::int32_t> Splitter::nodes_at_border() {
     std::unordered_set<std::int32_t> nodes;
     const auto is_odd = [&](FaceId f) {
@@ -534,6 +535,14 @@ std::unordered_set<std::int32_t> Splitter::nodes_at_border() {
                     for (const NodeId corner : mesh_.corners(e)) nodes.insert(corner.value);
                     break;
                 }
+    });
+    if (options_.snap == 0.0) return nodes;
+    // Snapping may reach a ring farther.
+    const auto inner = nodes;
+    front_.for_each([&](NodeId n) {
+        if (!mesh_.is_alive(n) || !is_beside(n, inner)) return;
+        for (const ElementId e : ring_)
+            for (const NodeId corner : mesh_.corners(e)) nodes.insert(corner.value);
     });
     return nodes;
 }
@@ -556,7 +565,7 @@ void Splitter::turn_to_neighbors(NodeId n) {
     for (const NodeId other : neighbors) front_.toggle(n, other);
 }
 
-/// Whether an element of the node has one of these: snapping may yet reach it.
+/// Whether an element of the node, which is left in ring_, has one of these.
 bool Splitter::is_beside(NodeId n, const std::unordered_set<std::int32_t>& nodes) {
     mesh_.star(n, ring_);
     for (const ElementId e : ring_)

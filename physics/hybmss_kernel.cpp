@@ -8,9 +8,12 @@ namespace incise::physics {
 
 namespace {
 
-/// Corners off a box by less than this share of its shortest edge are taken to be on it: more than
-/// what single precision in a file does to them.
+/// Corners off a box by less than this share of its shortest edge are taken to be on it.
 constexpr double shape_tolerance = 1e-5;
+
+/// Longest over shortest edge: beyond, some springs of an isotropic box are so weak, or would have
+/// to push when pulled, that the lattice loses its stability at strains of some 10 %.
+constexpr double largest_aspect = 1.42;
 
 Vec3 edge_lengths(const BoxFrame& frame) {
     return {frame.a.norm(), frame.b.norm(), frame.c.norm()};
@@ -43,14 +46,16 @@ double distance_from_box(const std::array<Vec3, 8>& x) {
 }  // namespace
 
 std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulus, double ratio) {
+    if (edges.maxCoeff() > largest_aspect * edges.minCoeff()) return std::nullopt;
     if (ratio == 0.0 && !is_cube(edges)) return std::nullopt;
     const Vec3 squares = edges.cwiseAbs2();
     const double stiffness = shear_modulus * edges.prod();  // G V
     const double inner_square = squares.sum();
     const auto others = [](int c) { return std::array<int, 2>{(c + 1) % 3, (c + 2) % 3}; };
 
-    // Bounds on k_c from the face diagonals and from the edges.
-    double mean = 0.0, low = 0.0, high = std::numeric_limits<double>::infinity();
+    // Between these values of k_c no edge and no face diagonal is negative.
+    double mean = 0.0, low = -std::numeric_limits<double>::infinity(),
+           high = std::numeric_limits<double>::infinity();
     for (int c = 0; c < 3; ++c) {
         const auto [p, q] = others(c);
         const double product = squares[p] * squares[q];
@@ -59,9 +64,12 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
         const double left = 3.0 - squares[c] / squares[p] - squares[c] / squares[q];
         low = std::max(low, -0.25 * stiffness * left * inner_square / (squares[c] * squares[c]));
     }
-    if (low > high) return std::nullopt;
-    const double wanted = std::isinf(ratio) ? 0.0 : 3.0 * mean / (4.0 + 3.0 * ratio);
-    const double inner = std::clamp(wanted, low, high);
+    double inner = std::isinf(ratio) ? 0.0 : 3.0 * mean / (4.0 + 3.0 * ratio);
+    if (!is_cube(edges)) {
+        // At the ends springs vanish, and a lattice that lacks them wrinkles.
+        const double range = high - low;
+        inner = std::clamp(inner, std::max(low + 0.25 * range, 0.0), high - 0.1 * range);
+    }
 
     SpringShares shares{};
     for (int c = 0; c < 3; ++c) {
@@ -71,10 +79,8 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
                             4.0 * inner * squares[c] * squares[c] / inner_square;
         const double face = stiffness / (squares[p] * squares[q]) - 4.0 * inner / inner_square;
         const auto k = static_cast<std::size_t>(c);
-        // At the bounds rounding may leave them a hair below zero.
-        shares.stiffnesses[k] = 0.25 * std::max(edge, 0.0) / squares[c];
-        shares.stiffnesses[3 + k] =
-            ratio == 0.0 ? 0.0 : 0.5 * std::max(face, 0.0) * 0.5 * face_square;
+        shares.stiffnesses[k] = 0.25 * edge / squares[c];
+        shares.stiffnesses[3 + k] = ratio == 0.0 ? 0.0 : 0.25 * face * face_square;
         shares.lengths[k] = edges[c];
         shares.lengths[3 + k] = std::sqrt(face_square);
     }
@@ -89,7 +95,10 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
     std::ostringstream size, text;
     size << edges[0] << " x " << edges[1] << " x " << edges[2] << " m";
     const double off = distance_from_box(corners);
-    if (!(off <= shape_tolerance * edges.minCoeff())) {
+    double farthest = 0.0;
+    for (const Vec3& x : corners) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+    const double rounding = 4.0 * 0x1.0p-24 * farthest;  // of coordinates in single precision
+    if (!(off <= shape_tolerance * edges.minCoeff() + rounding)) {
         text << "is no box: a corner is " << off << " m from where it would be in one of "
              << size.str() << "; the method hybmss needs boxes, such as voxels or a grid";
         return text.str();
@@ -99,8 +108,8 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
     if (material.stiffness_ratio == 0.0)
         text << "without face diagonals the method hybmss needs cubes";
     else
-        text << "the method hybmss needs cubes, or boxes whose longest edge is at most 1.7 times "
-                "the shortest";
+        text << "the method hybmss needs cubes, or boxes whose longest edge is at most 1.4 times "
+                "the shortest; make cubes of an image by incise mesh --hex --size";
     return text.str();
 }
 

@@ -54,9 +54,9 @@ struct SpringShares {
 ///   k_f = (G V / (b^2 c^2) - 4 k_c / l_c^2) l_f^2 / 2     (of the face across a)
 ///   k_e = (G V (3 - a^2/b^2 - a^2/c^2) + 4 k_c a^4 / l_c^2) / a^2     (along a)
 /// For a cube this is eq. (5.12), k_f = A k_c. For other boxes k_c is what gives the mean of the
-/// face diagonals the ratio A, or the nearest to it with which no stiffness is negative.
-/// Nothing if there is none: the longest edge is more than about sqrt(3) times the shortest; or
-/// A = 0 for other boxes than cubes, which cannot be without face diagonals.
+/// face diagonals the ratio A, or the nearest to it that leaves no spring too weak: A is a wish.
+/// Nothing if the longest edge is more than 1.42 times the shortest; or for A = 0 and other boxes
+/// than cubes, which cannot be without face diagonals.
 /// Source: derived in docs/theory.md.
 std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulus, double ratio);
 

@@ -226,12 +226,14 @@ const MaterialModel& hybmss_model() {
         "3",
         {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
         "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
-        "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.7 to 1; "
+        "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.4 to 1; "
         "strains of some 10 %, nearly incompressible tissue too. stiffness_ratio = inf for bodies "
         "that are cut or stand beside other elements.",
         "Below a Poisson's ratio of 1/4 kappa is negative and tension is lost at large strain: at "
         "a "
-        "stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2. Without face diagonals "
+        "stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 along one axis, of 1.1, "
+        "1.16, "
+        "1.22 and 1.37 all round, sooner for negative ratios. Without face diagonals "
         "(stiffness_ratio = 0) bodies wrinkle under any load. Inverted cells may stay inverted."};
     return table;
 }

@@ -54,6 +54,12 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
                              " = false gives a model that is singular: a lattice without face "
                              "diagonals wrinkles under any compression or tension; use it for "
                              "comparison only");
+    if (spec.stiffness_ratio > 0.0 && spec.stiffness_ratio < 0.5)
+        material.warning("stiffness_ratio",
+                         in_quotes(material.path_of("stiffness_ratio")) + " = " +
+                             io::format_number(spec.stiffness_ratio) +
+                             " is nearly the singular model without face diagonals, which "
+                             "wrinkles; from 0.5 on a body bears a compression of a quarter");
     constexpr double rounding = 1e-9;
     const double poisson = constants.poisson();
     if (!spec.correction_forces) {
@@ -66,8 +72,10 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
     } else if (poisson < 0.25 - rounding) {
         material.warning("poisson", "Poisson's ratio is " + io::format_number(poisson) +
                                         "; below 1/4 the method hybmss loses its resistance to "
-                                        "large tension: at a stretch of 1.2 for a ratio of 0, 1.37 "
-                                        "for 0.1, 1.6 for 0.15, 2.3 for 0.2");
+                                        "large tension: along one axis at a stretch of 1.2 for a "
+                                        "ratio of 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 (and "
+                                        "stiffness_ratio 1), all round at 1.1, 1.16, 1.22, 1.37, "
+                                        "sooner for negative ratios");
     }
 }
 

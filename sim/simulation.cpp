@@ -99,7 +99,15 @@ void Simulation::step() {
 void Simulation::cut(Tool& tool, double from, double to) {
     if (!tool.is_present(from, to)) return;
     const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions(), &boxes_};
-    const cutting::Split done = tool.cut(mesh_, tissue, scars_, from, to);
+    const cutting::Split done = [&] {
+        try {
+            return tool.cut(mesh_, tissue, scars_, from, to);
+        } catch (const InputError& error) {
+            std::ostringstream text;
+            text << "tool '" << tool.name() << "', at t = " << to << " s: " << error.what();
+            throw InputError(text.str());
+        }
+    }();
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     const Account before = ledger_.account();  // the model has not followed yet

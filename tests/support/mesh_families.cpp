@@ -195,7 +195,7 @@ const std::vector<MeshFamily>& mesh_families() {
         all.push_back({"ball", ball(4)});
         all.push_back({"organ", organ()});
         all.push_back(
-            {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.5, 2}, {4, 4, 6})});
+            {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.25, 1.8}, {4, 4, 6})});
         all.push_back({"voxels", voxels()});
         all.push_back({"mixed", mixed()});
         return all;
