@@ -68,7 +68,7 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
     if (!is_cube(edges)) {
         // At the ends springs vanish, and a lattice that lacks them wrinkles.
         const double range = high - low;
-        inner = std::clamp(inner, std::max(low + 0.25 * range, 0.0), high - 0.1 * range);
+        inner = std::clamp(inner, std::max(low + 0.5 * range, 0.0), high - 0.1 * range);
     }
 
     SpringShares shares{};
