@@ -292,11 +292,10 @@ Stroke way_of_edge(const std::vector<std::array<double, 2>>& corners, double par
 // takes the new nodes to one or the other side of it.
 TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
     for (const int n : {4, 8})
-        for (const double at : {0.31, 0.35, 0.37, 0.41, 0.43, 0.44, 0.5, 0.52})
-            for (const double part : {0.02, 0.05, 0.1})
+        for (const double at : {0.35, 0.41, 0.5})
+            for (const double part : {0.05, 0.1})
                 for (const double snap : {0.0, 0.1, 0.2})
                     for (const bool along_x : {true, false}) {
-                        if (n == 8 && part < 0.05) continue;  // takes long
                         SCOPED_TRACE(testing::Message()
                                      << n << " bricks, at " << at << ", parts of " << part
                                      << ", snap " << snap);
