@@ -8,9 +8,9 @@
 #include <queue>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
+#include "cutting/cut_border.h"
 #include "cutting/sides.h"
 #include "cutting/step_length.h"
 #include "topology/error.h"
@@ -123,16 +123,14 @@ class Splitter {
 
     /// Where the cut is finished, or the sweep has gone far away, a later passage is another cut.
     void leave_behind(const topology::ChangeSet& changes) {
-        const bool goes_on = !touched_.empty();
-        const auto border = goes_on ? nodes_at_border() : std::unordered_set<std::int32_t>{};
-        const auto left = front_.nodes_unless([&](NodeId n, double reach) {
+        std::optional<CutBorder> border;  // where it was, if nothing has been crossed
+        if (!touched_.empty()) border.emplace(mesh_, front_, options_.snap > 0.0);
+        const auto done = front_.nodes_unless([&](NodeId n, double reach) {
             return mesh_.is_alive(n) &&
                    surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&
-                   (!goes_on || is_beside(n, border));
+                   (!border || border->is_beside(n));
         });
-        for (const NodeId n : left)
-            if (mesh_.is_alive(n)) turn_to_neighbors(n);
-        front_.forget(left);
+        forget(mesh_, done, front_);
     }
 
     /// Of a copy, where its source is.
@@ -166,9 +164,6 @@ class Splitter {
     NodeId divide(const Edge& edge, ElementId element, double place);
     void place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
                        const std::vector<Passages>& to_ring, const Passages& to_b);
-    std::unordered_set<std::int32_t> nodes_at_border();
-    void turn_to_neighbors(NodeId n);
-    bool is_beside(NodeId n, const std::unordered_set<std::int32_t>& nodes);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void snap_to(NodeId n, double reach);
     void recognize(const std::vector<std::pair<Edge, ElementId>>& edges);
@@ -512,66 +507,6 @@ void Splitter::place_on_side(const Edge& edge, NodeId middle, const std::vector<
     if (is_crossed) front_.toggle(edge.a, edge.b);
     if (is_crossed != has_border(edge.a, middle, edge.b).value_or(false))
         front_.toggle(edge.a, middle);
-}
-
-/// Corners of the elements that the border of the cut runs through, and of those beside them if
-/// nodes may be snapped: of a triangle through which it does, the edges are crossed an odd number
-/// of times.
-std::unordered_set<std::int32_t> Splitter::nodes_at_border() {
-    std::unordered_set<std::int32_t> nodes;
-    const auto is_odd = [&](FaceId f) {
-        bool odd = false;
-        const int size = mesh_.face_size(f);
-        for (int p = 0; p < size; ++p)
-            odd ^= front_.is_crossed(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % size));
-        return odd;
-    };
-    front_.for_each([&](NodeId n) {
-        if (!mesh_.is_alive(n)) return;
-        mesh_.star(n, ring_);
-        for (const ElementId e : ring_)
-            for (int f = 0; f < mesh_.num_faces(e); ++f)
-                if (is_odd({e, f})) {
-                    for (const NodeId corner : mesh_.corners(e)) nodes.insert(corner.value);
-                    break;
-                }
-    });
-    if (options_.snap == 0.0) return nodes;
-    // Snapping may reach a ring farther.
-    const auto inner = nodes;
-    front_.for_each([&](NodeId n) {
-        if (!mesh_.is_alive(n) || !is_beside(n, inner)) return;
-        for (const ElementId e : ring_)
-            for (const NodeId corner : mesh_.corners(e)) nodes.insert(corner.value);
-    });
-    return nodes;
-}
-
-/// Counts a node that is to be forgotten as on the side of those of its neighbours that are not on
-/// the cut: no edge to them is crossed then, and what its other edges are stays true.
-void Splitter::turn_to_neighbors(NodeId n) {
-    mesh_.star(n, ring_);
-    std::vector<NodeId> neighbors;
-    int balance = 0;
-    for (const ElementId e : ring_)
-        for (const NodeId other : mesh_.corners(e)) {
-            if (other == n) continue;
-            neighbors.push_back(other);
-            if (!front_.is_on(other)) balance += front_.is_crossed(n, other) ? 1 : -1;
-        }
-    if (balance <= 0) return;
-    std::sort(neighbors.begin(), neighbors.end());
-    neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
-    for (const NodeId other : neighbors) front_.toggle(n, other);
-}
-
-/// Whether an element of the node, which is left in ring_, has one of these.
-bool Splitter::is_beside(NodeId n, const std::unordered_set<std::int32_t>& nodes) {
-    mesh_.star(n, ring_);
-    for (const ElementId e : ring_)
-        for (const NodeId corner : mesh_.corners(e))
-            if (nodes.contains(corner.value)) return true;
-    return false;
 }
 
 /// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by

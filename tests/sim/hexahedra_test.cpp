@@ -124,6 +124,22 @@ fix = "xyz"
     EXPECT_LE(simulation.ledger().energy_error(), 0.05);
     EXPECT_EQ(simulation.mesh().num_elements(), num_hexahedra + tetrahedra.num_cells());
 
+    // A cut through both is not for the hexahedra: which tool, when and where is told.
+    Simulation split(folder.scenario(
+        head + "[[material]]\nregions = 7\n" + soft + "[[material]]\nmethod = \"hybmss\"\n" + soft +
+        "[[tool]]\nkind = \"cut\"\nname = \"saw\"\ntime = 0.1\nplane = { point = [0, 0, 0.05], "
+        "normal = [0, 0, 1] }\n"));
+    try {
+        run(split);
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_EQ(text.find("tool 'saw', at t = 0.1"), 0u) << text;
+        EXPECT_NE(text.find(" is a hexahedron, and only tetrahedra can be split"),
+                  std::string::npos)
+            << text;
+    }
+
     try {
         Simulation other(folder.scenario(head + "[[material]]\n" + soft));
         ADD_FAILURE() << "accepted";

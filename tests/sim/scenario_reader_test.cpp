@@ -287,6 +287,9 @@ TEST(ScenarioReader, WarnsWhereHybridSpringsAreOnShakyGround) {
               std::string::npos);
     EXPECT_NE(warnings(0.3, "correction_forces = false").find("ratio is 1/4 and not 0.3"),
               std::string::npos);
+    EXPECT_EQ(warnings(0.3, "stiffness_ratio = 0.5"), "");
+    EXPECT_NE(warnings(0.3, "stiffness_ratio = 0.1").find("is nearly the singular model"),
+              std::string::npos);
     EXPECT_NE(warnings(0.3, "face_diagonals = false").find("a model that is singular"),
               std::string::npos);
 }
