@@ -108,8 +108,8 @@ struct HemlKernel {
         const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
         const Vec6 dl = squared_links(x) - e.rest_links;
         const Vec6 Mdl = e.Mtr * dl;
-        const LawResponse r =
-            law.response({e.vtr.dot(dl), dl.dot(Mdl), volume_ratio(e, x)}, inversion_threshold);
+        const LawResponse r = law.response(
+            LinkStrain{e.vtr.dot(dl), dl.dot(Mdl), volume_ratio(e, x)}, inversion_threshold);
         // Tension of the links, Vol dw/dl, doubled as the DLM_i have it.
         const Vec6 t = 2.0 * e.volume * (r.w_a * e.vtr + 2.0 * r.w_b * Mdl);
         const double p = r.w_J / 6.0;  // w_J dvol/dx_i, eq. (C.4)

@@ -1,5 +1,6 @@
 // Hyperelastic laws as functions of link lengths. A new law is one struct here and one alternative
-// of Law; docs/architecture.md lists what gives it its name and parameters in a scenario.
+// of Law; docs/architecture.md lists what gives it its name and parameters in a scenario. Responses
+// are templates over the kind of number, so that tangents come from the same formulas: LawResponse.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -20,7 +21,8 @@ struct SaintVenantKirchhoff {
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return mu; }
-    LawResponse response(const LinkStrain& s, double /*J0*/) const {
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double /*J0*/) const {
         return {0.125 * lambda * s.a * s.a + 0.25 * mu * s.b, 0.25 * lambda * s.a, 0.25 * mu, 0.0};
     }
 };
@@ -31,9 +33,12 @@ struct NeoHookean {
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return 2.0 * c1; }
-    LawResponse response(const LinkStrain& s, double J0) const {
-        const auto term = [this](double J) { return logarithmic_volume_term(J, lambda, 2.0 * c1); };
-        const VolumeTerm v = extended(term, s.J, J0);
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const auto term = [this](const T& J) {
+            return logarithmic_volume_term(J, lambda, 2.0 * c1);
+        };
+        const VolumeTerm<T> v = extended(term, s.J, J0);
         return {c1 * s.a + v.value, c1, 0.0, v.first};
     }
 };
@@ -45,11 +50,12 @@ struct MooneyRivlin {
 
     double rest_lambda() const { return lambda + 4.0 * c2; }
     double rest_mu() const { return 2.0 * (c1 + c2); }
-    LawResponse response(const LinkStrain& s, double J0) const {
-        const auto term = [this](double J) {
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const auto term = [this](const T& J) {
             return logarithmic_volume_term(J, lambda, 2.0 * c1 + 4.0 * c2);
         };
-        const VolumeTerm v = extended(term, s.J, J0);
+        const VolumeTerm<T> v = extended(term, s.J, J0);
         return {c1 * s.a + c2 * (2.0 * s.a + 0.5 * (s.a * s.a - s.b)) + v.value,
                 c1 + c2 * (2.0 + s.a), -0.5 * c2, v.first};
     }
@@ -61,26 +67,30 @@ struct CiarletNeoHookean {
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return mu; }
-    LawResponse response(const LinkStrain& s, double J0) const {
-        const auto term = [this](double J) {
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const auto term = [this](const T& J) {
+            using std::log;
             const double p = mu + 0.5 * lambda;
-            return VolumeTerm{0.25 * lambda * (J * J - 1.0) - p * std::log(J),
-                              0.5 * lambda * J - p / J, 0.5 * lambda + p / (J * J)};
+            return VolumeTerm<T>{0.25 * lambda * (J * J - 1.0) - p * log(J),
+                                 0.5 * lambda * J - p / J, 0.5 * lambda + p / (J * J)};
         };
-        const VolumeTerm v = extended(term, s.J, J0);
+        const VolumeTerm<T> v = extended(term, s.J, J0);
         return {0.5 * mu * s.a + v.value, 0.5 * mu, 0.0, v.first};
     }
 };
 
 /// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion
 /// there, so that crushed elements have finite forces.
+template <class T>
 struct Exponential {
-    double value, first;
+    T value, first;
 
-    explicit Exponential(double x) {
-        constexpr double last = 20.0;
-        const double at = std::min(x, last), d = x - at, e = std::exp(at);
-        value = std::expm1(at) + e * d * (1.0 + 0.5 * d);
+    explicit Exponential(const T& x) {
+        using std::exp, std::expm1;
+        const T last = 20.0;
+        const T at = std::min(x, last), d = x - at, e = exp(at);
+        value = expm1(at) + e * d * (1.0 + 0.5 * d);
         first = e * (1.0 + d);
     }
 };
@@ -92,10 +102,11 @@ struct FungDemiray {
 
     double rest_lambda() const { return lambda + 2.0 * mu * gamma; }
     double rest_mu() const { return mu; }
-    LawResponse response(const LinkStrain& s, double J0) const {
-        const auto term = [this](double J) { return logarithmic_volume_term(J, lambda, mu); };
-        const VolumeTerm v = extended(term, s.J, J0);
-        const Exponential e(gamma * s.a);
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const auto term = [this](const T& J) { return logarithmic_volume_term(J, lambda, mu); };
+        const VolumeTerm<T> v = extended(term, s.J, J0);
+        const Exponential<T> e(gamma * s.a);
         return {0.5 * mu / gamma * e.value + v.value, 0.5 * mu * e.first, 0.0, v.first};
     }
 };
@@ -107,13 +118,14 @@ struct IsochoricMooneyRivlin {
 
     double rest_mu() const { return 2.0 * (c1 + c2); }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
-    LawResponse response(const LinkStrain& s, double J0) const {
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
         const auto power = [&](double p) {
-            return extended([p](double J) { return power_of_volume(J, p); }, s.J, J0);
+            return extended([p](const T& J) { return power_of_volume(J, p); }, s.J, J0);
         };
-        const double I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b);
-        const VolumeTerm p1 = power(2.0 / 3.0), p2 = power(4.0 / 3.0),
-                         v = quadratic_volume_term(s.J, bulk_modulus);
+        const T I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b);
+        const VolumeTerm<T> p1 = power(2.0 / 3.0), p2 = power(4.0 / 3.0),
+                            v = quadratic_volume_term(s.J, bulk_modulus);
         return {c1 * (I1 * p1.value - 3.0) + c2 * (I2 * p2.value - 3.0) + v.value,
                 c1 * p1.value + c2 * p2.value * (2.0 + s.a), -0.5 * c2 * p2.value,
                 c1 * I1 * p1.first + c2 * I2 * p2.first + v.first};
@@ -126,12 +138,14 @@ struct IsochoricFungDemiray {
 
     double rest_mu() const { return mu; }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * mu; }
-    LawResponse response(const LinkStrain& s, double J0) const {
-        const VolumeTerm p =
-            extended([](double J) { return power_of_volume(J, 2.0 / 3.0); }, s.J, J0);
-        const VolumeTerm v = quadratic_volume_term(s.J, bulk_modulus);
-        const double I1 = 3.0 + s.a, slope = 0.5 * mu;
-        const Exponential e(gamma * (I1 * p.value - 3.0));
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const VolumeTerm<T> p =
+            extended([](const T& J) { return power_of_volume(J, 2.0 / 3.0); }, s.J, J0);
+        const VolumeTerm<T> v = quadratic_volume_term(s.J, bulk_modulus);
+        const T I1 = 3.0 + s.a;
+        const double slope = 0.5 * mu;
+        const Exponential<T> e(gamma * (I1 * p.value - 3.0));
         return {slope / gamma * e.value + v.value, slope * e.first * p.value, 0.0,
                 slope * e.first * I1 * p.first + v.first};
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/power_differences.h"
+
 namespace incise::physics {
 
 namespace {
@@ -74,9 +76,35 @@ Differences differences(const std::array<double, 3>& c, double alpha, double flo
     return d;
 }
 
+/// J^(-alpha/3).
+VolumeTerm<double> isochoric_factor(double J, double alpha, double J0) {
+    return extended([=](double x) { return power_of_volume(x, alpha / 3.0); }, J, J0);
+}
+
+/// The sum of h(c_k) = c_k^(alpha/2), and its derivative by C as (of_one) 1 + (of_C) C + q2 J^2
+/// C^-1.
+///
+/// With the derivative h' interpolated at the c_k by q0 + q1 c + q2 c^2 it is q0 1 + q1 C + q2 C^2,
+/// and by Cayley and Hamilton C^2 = I1 C - I2 1 + J^2 C^-1.
+struct PowerSum {
+    double value = 0.0, of_one, of_C, q2;
+
+    PowerSum(const std::array<double, 3>& c, const LinkStrain<double>& s, double alpha,
+             double floor) {
+        const double I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b);
+        for (const double x : c) value += power(x, alpha, floor).value;
+        const Differences d = differences(c, alpha, floor);
+        q2 = d.second;
+        const double q1 = d.first - q2 * (c[0] + c[1]),
+                     q0 = d.at_first - d.first * c[0] + q2 * c[0] * c[1];
+        of_one = q0 - q2 * I2;
+        of_C = q1 + q2 * I1;
+    }
+};
+
 }  // namespace
 
-std::array<double, 3> squared_principal_stretches(const LinkStrain& s) {
+std::array<double, 3> squared_principal_stretches(const LinkStrain<double>& s) {
     // 2E has the eigenvalues of C less 1; its deviator those of C less their mean.
     const double mean = s.a / 3.0;
     const double square = std::max(s.b - s.a * mean, 0.0);  // of the deviator
@@ -96,33 +124,63 @@ std::array<double, 3> squared_principal_stretches(const LinkStrain& s) {
     return c;
 }
 
-// With c_k the squared stretches, h(c) = c^(alpha/2) and the derivative h' interpolated at the c_k
-// by q0 + q1 c + q2 c^2: dh = tr((q0 1 + q1 C + q2 C^2) dC), and by Cayley and Hamilton
-// C^2 = I1 C - I2 1 + J^2 C^-1. The derivatives by a, b and J follow from da = tr dC,
-// db = 2 tr((C - 1) dC), dJ = J/2 tr(C^-1 dC).
-LawResponse Ogden::response(const LinkStrain& s, double J0) const {
+// The derivatives by a, b and J follow from da = tr dC, db = 2 tr((C - 1) dC),
+// dJ = J/2 tr(C^-1 dC).
+LawResponse<double> Ogden::response(const LinkStrain<double>& s, double J0) const {
     const auto c = squared_principal_stretches(s);
-    const double floor = J0 * J0;
-    const double I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b);
-    const VolumeTerm v = quadratic_volume_term(s.J, bulk_modulus);
-    LawResponse r{v.value, 0.0, 0.0, v.first};
+    const auto v = quadratic_volume_term(s.J, bulk_modulus);
+    LawResponse<double> r{v.value, 0.0, 0.0, v.first};
     for (std::size_t i = 0; i < num_terms; ++i) {
         const auto [mu, alpha] = terms[i];
         const double factor = 2.0 * mu / (alpha * alpha);
-        const VolumeTerm g =
-            extended([&](double J) { return power_of_volume(J, alpha / 3.0); }, s.J, J0);
-        double sum = 0.0;
-        for (const double x : c) sum += power(x, alpha, floor).value;
-        const Differences d = differences(c, alpha, floor);
-        const double q2 = d.second, q1 = d.first - q2 * (c[0] + c[1]),
-                     q0 = d.at_first - d.first * c[0] + q2 * c[0] * c[1];
-        const double of_one = q0 - q2 * I2, of_C = q1 + q2 * I1;
-        r.w += factor * (g.value * sum - 3.0);
-        r.w_a += factor * g.value * (of_one + of_C);
-        r.w_b += factor * g.value * 0.5 * of_C;
-        r.w_J += factor * (g.first * sum + g.value * 2.0 * q2 * s.J);
+        const auto g = isochoric_factor(s.J, alpha, J0);
+        const PowerSum sum(c, s, alpha, J0 * J0);
+        r.w += factor * (g.value * sum.value - 3.0);
+        r.w_a += factor * g.value * (sum.of_one + sum.of_C);
+        r.w_b += factor * g.value * 0.5 * sum.of_C;
+        r.w_J += factor * (g.first * sum.value + g.value * 2.0 * sum.q2 * s.J);
     }
     return r;
+}
+
+// The sum P of h(c_k) as a function of I1, I2 and I3 = J^2: by the characteristic polynomial p(c),
+// dc = (c^2 dI1 - c dI2 + dI3) / p'(c). With e = (c^2, -c, 1) the first derivatives of P are the
+// divided differences of e_i h' over c0, c1, c2, and the second ones those of e_i e_j h' over the
+// same places, each taken twice.
+LawResponse<Dual> Ogden::response(const LinkStrain<Dual>& strain, double J0) const {
+    const LinkStrain<double> s{strain.a.value, strain.b.value, strain.J.value};
+    const LawResponse<double> r = response(s, J0);
+    const auto c = squared_principal_stretches(s);
+    const double J = s.J, I2_a = 2.0 + s.a;       // and I2_b = -1/2, I2_aa = 1
+    Eigen::Matrix3d w = Eigen::Matrix3d::Zero();  // second derivatives by a, b and J
+    w(2, 2) = bulk_modulus;
+    for (std::size_t i = 0; i < num_terms; ++i) {
+        const auto [mu, alpha] = terms[i];
+        const double factor = 2.0 * mu / (alpha * alpha);
+        const auto g = isochoric_factor(J, alpha, J0);
+        const PowerSum sum(c, s, alpha, J0 * J0);
+        const double P_a = sum.of_one + sum.of_C, P_b = 0.5 * sum.of_C, P_2 = -sum.of_C,
+                     P_3 = sum.q2;
+        const auto D = doubled_differences(c, {0.5 * alpha, J0 * J0});
+        const double P_11 = D[4], P_12 = -D[3], P_13 = D[2], P_22 = D[2], P_23 = -D[1], P_33 = D[0];
+        w(0, 0) += factor * g.value * (P_11 + I2_a * (2.0 * P_12 + I2_a * P_22) + P_2);
+        w(0, 1) -= factor * g.value * 0.5 * (P_12 + I2_a * P_22);
+        w(1, 1) += factor * g.value * 0.25 * P_22;
+        w(0, 2) += factor * (g.first * P_a + g.value * 2.0 * J * (P_13 + I2_a * P_23));
+        w(1, 2) += factor * (g.first * P_b - g.value * J * P_23);
+        w(2, 2) += factor * (g.second * sum.value + g.first * 4.0 * J * P_3 +
+                             g.value * (2.0 * P_3 + 4.0 * J * J * P_33));
+    }
+    w(1, 0) = w(0, 1);
+    w(2, 0) = w(0, 2);
+    w(2, 1) = w(1, 2);
+    const auto along = [&](const Eigen::Vector3d& by) -> Eigen::Vector4d {
+        return by[0] * strain.a.gradient + by[1] * strain.b.gradient + by[2] * strain.J.gradient;
+    };
+    return {{r.w, along({r.w_a, r.w_b, r.w_J})},
+            {r.w_a, along(w.col(0))},
+            {r.w_b, along(w.col(1))},
+            {r.w_J, along(w.col(2))}};
 }
 
 }  // namespace incise::physics

@@ -30,11 +30,12 @@ struct Ogden {
     }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
     /// Cost: some ten times that of the other laws.
-    LawResponse response(const LinkStrain& s, double J0) const;
+    LawResponse<double> response(const LinkStrain<double>& s, double J0) const;
+    LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const;
 };
 
 /// Eigenvalues of the right Cauchy-Green tensor, in ascending order, none below zero.
 /// @param s  its invariants; the sign of J does not matter
-std::array<double, 3> squared_principal_stretches(const LinkStrain& s);
+std::array<double, 3> squared_principal_stretches(const LinkStrain<double>& s);
 
 }  // namespace incise::physics

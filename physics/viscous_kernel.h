@@ -46,7 +46,7 @@ inline Mat3 change_of_right_cauchy_green(const Vec6& dl, const Mat3& inverse_edg
 /// S = dw/dE = 2 w_a 1 + 4 w_b (C - 1) + w_J J C^-1, pascals, frame of rest. The last term has no
 /// limit for J -> 0: it is w_J cof(C) / J. For |J| below J0, where the laws with ln J are extended
 /// anyway, it is taken as w_J cof(C) J / J0^2, which is finite for flat elements.
-inline Mat3 second_piola_kirchhoff(const LawResponse& r, const Mat3& C_minus_1, double J,
+inline Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& C_minus_1, double J,
                                    double J0) {
     Mat3 S = 4.0 * r.w_b * C_minus_1;
     S.diagonal().array() += 2.0 * r.w_a;

@@ -128,8 +128,10 @@ TEST(Laws, ExtendTheVolumeTermByItsTangentBelowTheThreshold) {
             const double ln = std::log(J0);
             const double slope = (lambda - lambda * ln + p) / (J0 * J0);
             const double intercept = (2.0 * lambda * ln - lambda - 2.0 * p) / J0;
-            const auto w_J = [&](double J) { return law.response({0, 0, J}, J0).w_J; };
-            const auto w = [&](double J) { return law.response({0, 0, J}, J0).w; };
+            const auto w_J = [&](double J) {
+                return law.response(LinkStrain{0.0, 0.0, J}, J0).w_J;
+            };
+            const auto w = [&](double J) { return law.response(LinkStrain{0.0, 0.0, J}, J0).w; };
             for (const double J : {J0, 0.5 * J0, 0.0, -0.3, -2.0})
                 EXPECT_NEAR(w_J(J), slope * J + intercept, 1e-13 * (slope + std::abs(intercept)));
             // From above the same value, and the same slope.
@@ -204,9 +206,9 @@ TEST(Laws, DifferentiateTheirEnergy) {
                     const LawResponse r = law.response(s, 0.4);
                     const double h = 1e-4;
                     if (std::abs(s.J - 0.4) < 3 * h) continue;
-                    const auto difference = [&](double LinkStrain::*x) {
+                    const auto difference = [&](double LinkStrain<double>::*x) {
                         const auto w = [&](double d) {
-                            LinkStrain shifted = s;
+                            LinkStrain<double> shifted = s;
                             shifted.*x += d;
                             return law.response(shifted, 0.4).w;
                         };
@@ -214,12 +216,119 @@ TEST(Laws, DifferentiateTheirEnergy) {
                     };
                     const double scale =
                         1e-9 * (law.rest_lambda() + law.rest_mu() + std::abs(r.w_J));
-                    EXPECT_NEAR(r.w_a, difference(&LinkStrain::a), scale);
-                    EXPECT_NEAR(r.w_b, difference(&LinkStrain::b), scale);
-                    EXPECT_NEAR(r.w_J, difference(&LinkStrain::J), scale);
+                    EXPECT_NEAR(r.w_a, difference(&LinkStrain<double>::a), scale);
+                    EXPECT_NEAR(r.w_b, difference(&LinkStrain<double>::b), scale);
+                    EXPECT_NEAR(r.w_J, difference(&LinkStrain<double>::J), scale);
                 }
             },
             named.law);
+}
+
+// The matrix of second derivatives by a, b, J and f, from a response with derivatives.
+Eigen::Matrix4d second_derivatives(const LawResponse<Dual>& r) {
+    Eigen::Matrix4d w;
+    w << r.w_a.gradient, r.w_b.gradient, r.w_J.gradient, r.w_f.gradient;
+    return w;
+}
+
+TEST(Laws, DifferentiateTheirForces) {
+    test::Random random(6);
+    for (const NamedLaw& named : test_laws())
+        std::visit(
+            [&](const auto& law) {
+                SCOPED_TRACE(named.name);
+                if (std::holds_alternative<Ogden>(named.law)) return;  // below
+                for (int i = 0; i < 50; ++i) {
+                    const LinkStrain s{random.uniform(-1, 3), random.uniform(0, 4),
+                                       random.uniform(-1.5, 3), random.uniform(-0.5, 1)};
+                    const double h = 1e-4;
+                    if (std::abs(s.J - 0.4) < 3 * h || std::abs(s.f) < 3 * h) continue;
+                    const LawResponse r = law.response(s, 0.4);
+                    const LawResponse with = law.response(with_derivatives(s), 0.4);
+                    const Eigen::Vector4d first(r.w_a, r.w_b, r.w_J, r.w_f);
+                    EXPECT_EQ(with.w.value, r.w);
+                    EXPECT_EQ(Eigen::Vector4d(with.w_a.value, with.w_b.value, with.w_J.value,
+                                              with.w_f.value),
+                              first);
+                    const Eigen::Matrix4d w = second_derivatives(with);
+                    const double scale = law.rest_lambda() + law.rest_mu() + w.norm();
+                    EXPECT_LE((with.w.gradient - first).norm(), 1e-13 * (scale + first.norm()));
+                    EXPECT_LE((w - w.transpose()).norm(), 1e-13 * scale);
+                    int place = 0;
+                    for (double LinkStrain<double>::*x :
+                         {&LinkStrain<double>::a, &LinkStrain<double>::b, &LinkStrain<double>::J,
+                          &LinkStrain<double>::f}) {
+                        const auto at = [&](double d) {
+                            LinkStrain<double> shifted = s;
+                            shifted.*x += d;
+                            const LawResponse q = law.response(shifted, 0.4);
+                            return Eigen::Vector4d(q.w_a, q.w_b, q.w_J, q.w_f);
+                        };
+                        const Eigen::Vector4d difference =
+                            (8.0 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12.0 * h);
+                        EXPECT_LE((w.col(place++) - difference).norm(), 1e-9 * scale);
+                    }
+                }
+            },
+            named.law);
+}
+
+// Sums of even powers of stretches are polynomials of the invariants, but for powers of J.
+struct PowerFour {  // l1^4 + l2^4 + l3^4 = I1^2 - 2 I2
+    static constexpr double alpha = 4.0;
+    static Dual by_I1(const Dual& I1, const Dual&, const Dual&) { return 2.0 * I1; }
+    static Dual by_I2(const Dual&, const Dual&, const Dual&) { return -2.0; }
+    static Dual by_I3(const Dual&, const Dual&, const Dual&) { return 0.0; }
+    static Dual sum(const Dual& I1, const Dual& I2, const Dual&) { return I1 * I1 - 2.0 * I2; }
+};
+struct PowerMinusFour {  // (I2^2 - 2 I1 I3) / I3^2
+    static constexpr double alpha = -4.0;
+    static Dual by_I1(const Dual&, const Dual&, const Dual& I3) { return -2.0 / I3; }
+    static Dual by_I2(const Dual&, const Dual& I2, const Dual& I3) { return 2.0 * I2 / (I3 * I3); }
+    static Dual by_I3(const Dual& I1, const Dual& I2, const Dual& I3) {
+        return 2.0 * (I1 - I2 * I2 / I3) / (I3 * I3);
+    }
+    static Dual sum(const Dual& I1, const Dual& I2, const Dual& I3) {
+        return (I2 * I2 / I3 - 2.0 * I1) / I3;
+    }
+};
+
+TEST(Laws, OgdenDifferentiatesItsForcesAlsoWhereStretchesAreAlike) {
+    test::Random random(12);
+    const auto check = [&](auto powers, const Vec3& stretches) {
+        constexpr double alpha = decltype(powers)::alpha, mu = 1000.0, K = 7000.0, J0 = 0.1;
+        const Ogden law{{{{mu, alpha}}}, 1, K};
+        const Vec3 twice_E = stretches.cwiseAbs2() - Vec3::Ones();
+        const LinkStrain s =
+            with_derivatives({twice_E.sum(), twice_E.squaredNorm(), stretches.prod()});
+        const Dual I1 = 3.0 + s.a, I2 = 3.0 + 2.0 * s.a + 0.5 * (s.a * s.a - s.b), I3 = s.J * s.J;
+        const Dual factor = 2.0 * mu / (alpha * alpha) * pow(s.J, -alpha / 3.0);
+        const Dual by_I2 = factor * powers.by_I2(I1, I2, I3);
+        const Dual w_a = factor * powers.by_I1(I1, I2, I3) + by_I2 * (2.0 + s.a);
+        const Dual w_b = -0.5 * by_I2;
+        const Dual w_J = factor * (2.0 * s.J * powers.by_I3(I1, I2, I3) -
+                                   alpha / 3.0 / s.J * powers.sum(I1, I2, I3)) +
+                         K * (s.J - 1.0);
+        const Eigen::Matrix4d expected = second_derivatives({{}, w_a, w_b, w_J}),
+                              found = second_derivatives(law.response(s, J0));
+        EXPECT_LE((found - expected).norm(), 1e-9 * expected.norm())
+            << "at the stretches " << stretches.transpose() << "\n"
+            << found << "\nfor\n"
+            << expected;
+        const Dual w = law.response(s, J0).w;
+        EXPECT_LE((w.gradient - Eigen::Vector4d(w_a.value, w_b.value, w_J.value, 0)).norm(),
+                  1e-9 * (w.gradient.norm() + mu));
+    };
+    for (const double spread : {1.0, 0.3, 1e-1, 1e-2, 1e-3, 1e-5, 1e-9, 0.0})
+        for (int i = 0; i < 50; ++i) {
+            Vec3 stretches = Vec3::Constant(random.uniform(0.5, 2.0)) +
+                             spread * Vec3(random.uniform(0, 1), random.uniform(0, 1), 0);
+            check(PowerFour{}, stretches);
+            check(PowerMinusFour{}, stretches);
+            stretches[2] *= random.uniform(0.5, 2.0);  // two alike, or none
+            check(PowerFour{}, stretches);
+            check(PowerMinusFour{}, stretches);
+        }
 }
 
 }  // namespace

@@ -95,7 +95,8 @@ TEST(SecondPiolaKirchhoff, HasTheForcesOfTheElement) {
             const auto x = deformed(X, random_deformation(random, {0.8, 1.1, 1.3}));
             const Vec6 dl = squared_links(x) - e.rest_links;
             const double J = kernel.volume_ratio(e, x);
-            const LawResponse r = kernel.law.response({e.vtr.dot(dl), dl.dot(e.Mtr * dl), J}, 0.4);
+            const LawResponse r =
+                kernel.law.response(LinkStrain{e.vtr.dot(dl), dl.dot(e.Mtr * dl), J}, 0.4);
             const Mat3 S = second_piola_kirchhoff(
                 r, change_of_right_cauchy_green(dl, e.inverse_edges), J, 0.4);
             const auto f = forces_of_stress(S, e.volume, e.inverse_edges, x);
