@@ -147,11 +147,12 @@ void declare_cut(CLI::App& app, Action& action) {
                      "split, or separate (default: split, unless the mesh has other cells than "
                      "tetrahedra)")
         ->type_name("MODE");
-    verb->add_option("--snap", options->snap,
-                     "Mode split: a node nearer to the cut than this share of an edge counts as on "
-                     "it, from 0 to below 0.5 (default: " +
-                         io::format_number(cutting::default_snap) + ")")
-        ->type_name("SHARE");
+    verb->add_option(
+            "--snap", options->snap,
+            "Mode split: how far off the cut its nodes may be, in mean edge lengths; from 0, "
+            "exact but with slivers, to 0.5 (default: " +
+                io::format_number(cutting::default_snap) + ")")
+        ->type_name("LENGTHS");
     verb->add_option("--region-array", options->region_array,
                      "Cell array of VTK files that holds the regions")
         ->capture_default_str();

@@ -76,9 +76,7 @@ void split(benchmark::State& state) {
     topology::Mesh mesh = make_cube(state.range(0));
     physics::Model model(mesh, make_material(physics::NeoHookean{2000, 6000}));
     cutting::ElementBoxes boxes(mesh, model.positions());
-    const double snap = cutting::default_snap;
-    const cutting::SplitOptions options{
-        snap, cutting::min_step_lengths(snap, {{0, cutting::step_length(mesh)}})};
+    const cutting::SplitOptions options{cutting::default_snap, cutting::uncut_body(mesh)};
     const Vec3 low = mesh_box(mesh).min(), size = mesh_box(mesh).sizes();
     const auto edge = [&](int step) {
         const double x = -0.01 + 0.51 * step / num_steps;

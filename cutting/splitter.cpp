@@ -30,6 +30,10 @@ namespace {
 /// Nearer to an end than this share of an edge, rounding would decide.
 constexpr double smallest_snap = 1e-7;
 
+/// Of the distance up to which nodes may count as on the surface, that up to which they always do.
+/// What lies between keeps the shape of elements (docs/cutting.md).
+constexpr double share_always_snapped = 0.4;
+
 /// Nearer than this share of an edge to an end that is on the surface, it is no other passage but a
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
@@ -66,7 +70,8 @@ class Splitter {
           front_(front),
           scars_(scars),
           options_(options),
-          snap_(std::max(options.snap, smallest_snap)),
+          snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
+          farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
           num_old_nodes_(mesh.node_capacity()) {}
 
     Split run() {
@@ -94,10 +99,10 @@ class Splitter {
     }
 
   private:
-    /// Where the surface passes through an edge, and how far away its ends are from it there, both
-    /// in units of the edge's length at rest.
+    /// Where the surface passes through an edge, how far away its ends are from it there, and how
+    /// near an end counts as on it; all in units of the edge's length at rest.
     struct Passage {
-        double place, from_a, from_b;
+        double place, from_a, from_b, near;
         Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
     };
     using Passages = std::vector<Passage>;  // in ascending order of places
@@ -159,7 +164,7 @@ class Splitter {
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
     void divide_next();
-    bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const;
+    bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t, double share) const;
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place);
     void place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
@@ -174,7 +179,8 @@ class Splitter {
     CutFront& front_;
     Scars& scars_;
     const SplitOptions& options_;
-    const double snap_;
+    const double snap_;      // share of an edge: nearer crossings count as at its end
+    const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
     const std::size_t num_old_nodes_;
     std::optional<MeshEdit> edit_;  // from when there is something to do
 
@@ -214,6 +220,7 @@ Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const
         if (i > 0) --i;
     }
     Passages passages;
+    const double near = std::min(snap_, farthest_ / rest_length(edge));
     for (const Crossing& crossing : crossings) {
         double steepness = 1.0;
         if (mesh_.kind(element) == CellKind::tetrahedron) {
@@ -223,9 +230,9 @@ Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const
             if (size > 0.0) steepness = std::abs(normal.dot(along)) / size;
         }
         const Vec3 a = point(edge.a)[1], b = point(edge.b)[1];
-        Passage passage{crossing.place, crossing.place * steepness,
-                        (1.0 - crossing.place) * steepness, a + crossing.place * (b - a),
-                        crossing.normal.normalized()};
+        Passage passage{
+            crossing.place, crossing.place * steepness,   (1.0 - crossing.place) * steepness,
+            near,           a + crossing.place * (b - a), crossing.normal.normalized()};
         // Where the surface bends away its plane at the crossing would say too little.
         const double length = (b - a).norm(), at_a = surface_.distance(a) / length;
         if (!std::isnan(at_a)) {
@@ -334,7 +341,7 @@ Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
 
 /// Whether a passage at this share of an edge from the node counts as at the node.
 bool Splitter::is_near(NodeId n, double share, const Passage& passage) const {
-    if (share < snap_) return true;
+    if (share < passage.near) return true;
     const double size = (point(n)[1] - passage.point).norm();
     return scars_.has(n, scar_at(n, passage), size);
 }
@@ -373,7 +380,7 @@ void Splitter::settle(const Edge& edge, const Passages& passages) {
     for (const Passage& passage : passages) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
         const auto is_of = [&](double share, bool is_at_other, double other_share) {
-            return share < snap_ || !is_at_other || share <= other_share;
+            return share < passage.near || !is_at_other || share <= other_share;
         };
         if (is_at_a && is_of(passage.from_a, is_at_b, passage.from_b))
             scars_.add(edge.a, scar_at(edge.a, passage));
@@ -397,41 +404,46 @@ void Splitter::divide_next() {
             scars_.add(middle, scar_at(middle, passage));
             return;
         }
-        snap_to(passage.place < 0.5 ? edge.a : edge.b, rest_length(edge));
+        snap_to(passage.from_a < passage.from_b ? edge.a : edge.b, rest_length(edge));
     }
     settle(edge, pending.passages);
 }
 
-/// Whether the halves of all elements round the edge, divided there, are large enough.
-bool Splitter::is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t) const {
+/// Whether the halves of all elements round the edge, divided there, are larger than this share of
+/// what the uncut body had.
+bool Splitter::is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t,
+                      double share) const {
     const Vec3 middle = (1.0 - t) * mesh_.rest_position(edge.a) + t * mesh_.rest_position(edge.b);
     for (const ElementId e : ring) {
-        const auto least = options_.min_step_length.find(mesh_.region(e));
-        if (least == options_.min_step_length.end()) continue;
+        const auto uncut = options_.uncut.step_length.find(mesh_.region(e));
+        if (uncut == options_.uncut.step_length.end()) continue;
         for (const NodeId replaced : {edge.a, edge.b}) {
             std::array<Vec3, 4> x;
             for (std::size_t k = 0; k < 4; ++k) {
                 const NodeId n = mesh_.corners(e)[k];
                 x[k] = n == replaced ? middle : mesh_.rest_position(n);
             }
-            if (!(own_step_length(x) >= least->second)) return false;
+            if (!(own_step_length(x) >= share * uncut->second)) return false;
         }
     }
     return true;
 }
 
-/// Where to divide the edge: on the surface; if a half would be too small, nearer to the middle by
-/// as much as nodes may be off the surface; negative if it would be too small there too.
+/// Where to divide the edge: on the surface; if a half would be too small, as much nearer to the
+/// middle as nodes may be off the surface. Negative if the nearer end is to count as on it.
 double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
     const double place = passage.place;
     if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
-    if (options_.min_step_length.empty()) return place;
+    if (options_.uncut.step_length.empty()) return place;
     ring_.clear();
     topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
-    if (is_fit(edge, ring_, place)) return place;
-    const double reach = snap_ / (passage.from_a + passage.from_b);
+    if (is_fit(edge, ring_, place, options_.snap)) return place;
+    const double length = rest_length(edge);
+    const double reach = farthest_ / length / (passage.from_a + passage.from_b);
     const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
-    return is_fit(edge, ring_, moved) ? moved : -1.0;
+    if (is_fit(edge, ring_, moved, options_.snap)) return moved;
+    const bool is_end_near = std::min(passage.from_a, passage.from_b) * length <= farthest_;
+    return !is_end_near && is_fit(edge, ring_, moved, 0.5 * options_.snap) ? moved : -1.0;
 }
 
 /// Returns the new node.

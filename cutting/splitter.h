@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 
 #include "cutting/cut_front.h"
 #include "cutting/cut_surface.h"
 #include "cutting/scars.h"
+#include "cutting/step_length.h"
 #include "cutting/tissue_motion.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
@@ -15,16 +15,16 @@
 namespace incise::cutting {
 
 /// Measured: docs/cutting.md.
-inline constexpr double default_snap = 0.2;
+inline constexpr double default_snap = 0.5;
 
 struct SplitOptions {
-    /// A node nearer to the surface than this share of an edge that the surface crosses counts as
-    /// lying on it; nothing is moved. In [0, 0.5).
+    /// How far off the surface nodes of the cut may be, in edge lengths of the uncut body; nothing
+    /// is moved. In [0, 0.5]. A node nearer to the surface than 0.4 `snap` of an edge that the
+    /// surface crosses counts as lying on it; up to `snap` away it does where an element would
+    /// otherwise be left with less than `snap` of the uncut body's step length. Where not even
+    /// that does, half as much is allowed.
     double snap = default_snap;
-    /// By region, the least step length (step_length.h) that a divided element may be left with, m.
-    /// Where the surface would leave less, the new node may be off it by `snap`; if that does not
-    /// do, the nearer end of the edge counts as on the surface. Regions not named: no limit.
-    std::map<int, double> min_step_length;
+    UncutBody uncut = {};
 };
 
 /// What a cut did.

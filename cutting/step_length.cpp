@@ -58,12 +58,32 @@ double step_length(const topology::Mesh& mesh) {
     return least;
 }
 
-std::map<int, double> min_step_lengths(double snap, const std::map<int, double>& step_length) {
-    const double share = std::min(2.5 * snap, 0.5);
-    std::map<int, double> least;
-    if (share > 0.0)
-        for (const auto& [region, length] : step_length) least[region] = share * length;
-    return least;
+double mean_edge_length(const topology::Mesh& mesh) {
+    std::vector<std::pair<topology::NodeId, topology::NodeId>> edges;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        const topology::CellTraits& cell = traits(mesh.kind(e));
+        const auto corners = mesh.corners(e);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(cell.num_edges); ++k)
+            edges.push_back(std::minmax({corners[static_cast<std::size_t>(cell.edges[k][0])],
+                                         corners[static_cast<std::size_t>(cell.edges[k][1])]}));
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    double sum = 0.0;
+    for (const auto& [a, b] : edges) sum += (mesh.rest_position(b) - mesh.rest_position(a)).norm();
+    return edges.empty() ? std::numeric_limits<double>::infinity()
+                         : sum / static_cast<double>(edges.size());
+}
+
+UncutBody uncut_body(const topology::Mesh& mesh) {
+    UncutBody body{mean_edge_length(mesh), {}};
+    const double length = step_length(mesh);
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i); mesh.is_alive(e))
+            body.step_length[mesh.region(e)] = length;
+    return body;
 }
 
 }  // namespace incise::cutting

@@ -1,8 +1,9 @@
-// How large a time step an element's shape allows.
+// How large a time step an element's shape allows, and what cuts leave of it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 
 #include "topology/mesh.h"
@@ -20,10 +21,19 @@ double own_step_length(const std::array<Vec3, 4>& corners);
 /// speed of waves in it, m. Infinite without elements. Cost: O(n).
 double step_length(const topology::Mesh& mesh);
 
-/// The limits by which cuts leave a body at least a share of its stable step, however many there
-/// are: that share is 2.5 times what nodes may be off the surface, and at most a half.
-/// @param step_length  by region: the body's stable step before the first cut times the speed of
-///                     waves in the region
-std::map<int, double> min_step_lengths(double snap, const std::map<int, double>& step_length);
+/// What limits of cuts are shares of: the body at rest before the first of them.
+struct UncutBody {
+    /// Mean over its edges, m.
+    double edge_length = std::numeric_limits<double>::infinity();
+    /// By region, the body's stable step times the speed of waves in the region, m. Elements of
+    /// regions that are not named may become as small as the cut leaves them.
+    std::map<int, double> step_length;
+};
+
+/// Mean length at rest over all edges, m; infinite without any. Cost: O(n log n).
+double mean_edge_length(const topology::Mesh& mesh);
+
+/// Of a mesh of tetrahedra of one material. Cost: O(n log n).
+UncutBody uncut_body(const topology::Mesh& mesh);
 
 }  // namespace incise::cutting

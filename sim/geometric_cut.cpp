@@ -200,11 +200,7 @@ class Cutter {
           boxes_(mesh, mesh.rest_positions()),
           mode_(options.mode),
           split_options_{options.snap, {}} {
-        if (mode_ != CutMode::split) return;
-        std::map<int, double> lengths;
-        const double length = cutting::step_length(mesh);
-        for_each_element(mesh, [&](ElementId e) { lengths[mesh.region(e)] = length; });
-        split_options_.min_step_length = cutting::min_step_lengths(options.snap, lengths);
+        if (mode_ == CutMode::split) split_options_.uncut = cutting::uncut_body(mesh);
     }
 
     CutCounts apply(const CutTool& tool) {

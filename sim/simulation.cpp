@@ -21,21 +21,21 @@ topology::Mesh take_mesh(const MeshSpec& spec, std::vector<std::string>& warning
     return std::move(built.mesh);
 }
 
-/// By region, the stable step times the speed of waves there, m. The speed is that which relates
-/// the stable step of an element to the lengths in it.
-std::map<int, double> step_lengths(const physics::Model& model) {
+/// The speed of waves in a region is that which relates the stable step of an element to the
+/// lengths in it.
+cutting::UncutBody uncut_body(const physics::Model& model) {
     const topology::Mesh& mesh = model.mesh();
-    std::map<int, double> lengths;
+    cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const topology::ElementId e(i);
         if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
         const double speed = cutting::own_step_length(x) / model.own_step(e);
-        double& length = lengths[mesh.region(e)];
+        double& length = body.step_length[mesh.region(e)];
         length = std::max(length, speed * model.stable_step());
     }
-    return lengths;
+    return body;
 }
 
 /// Blades get a mode that suits the mesh, unless they have one.
@@ -64,9 +64,9 @@ Simulation::Simulation(const Scenario& scenario)
              build_surroundings(scenario, mesh_)),
       ledger_(model_),
       boxes_(mesh_, model_.positions()) {
-    const auto step_length = step_lengths(model_);
+    const cutting::UncutBody uncut = uncut_body(model_);
     for (const ToolSpec& spec : scenario.tools)
-        tools_.emplace_back(with_mode(spec, mesh_), step_length, warnings_);
+        tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_);
     step_limit();  // a fixed step that is too large is refused before anything is written
 }
 

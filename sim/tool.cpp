@@ -8,7 +8,6 @@
 #include "cutting/cut_plan.h"
 #include "cutting/plane.h"
 #include "cutting/separator.h"
-#include "cutting/step_length.h"
 #include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
 #include "io/surface_reader.h"
@@ -68,11 +67,9 @@ CutMode usual_mode(const topology::Mesh& mesh) {
     return CutMode::split;
 }
 
-Tool::Tool(const ToolSpec& spec, const std::map<int, double>& step_length,
+Tool::Tool(const ToolSpec& spec, const cutting::UncutBody& uncut,
            std::vector<std::string>& warnings)
-    : spec_(spec) {
-    options_.snap = snap_of(spec);
-    options_.min_step_length = cutting::min_step_lengths(options_.snap, step_length);
+    : spec_(spec), options_{snap_of(spec), uncut} {
     if (const auto* cut = std::get_if<Cut>(&spec.kind)) surface_ = load_surface(*cut, warnings);
 }
 

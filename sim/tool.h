@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,18 +15,17 @@
 
 namespace incise::sim {
 
-/// Follows its path: position linear between keys, orientation along the shortest turn.
 /// How blades cut if they are not told: they split, unless the mesh has other elements than
 /// tetrahedra. Cost: O(#elements).
 CutMode usual_mode(const topology::Mesh& mesh);
 
+/// Follows its path: position linear between keys, orientation along the shortest turn.
 class Tool {
   public:
     /// @param spec  of a blade whose mode is given
-    /// @param step_length  by region, what cuts keep a share of: see cutting::min_step_lengths
+    /// @param uncut  the body before the first cut
     /// Throws InputError if the file of its surface cannot be read. Warnings name that file.
-    Tool(const ToolSpec& spec, const std::map<int, double>& step_length,
-         std::vector<std::string>& warnings);
+    Tool(const ToolSpec& spec, const cutting::UncutBody& uncut, std::vector<std::string>& warnings);
 
     const std::string& name() const { return spec_.name; }
     cutting::Pose pose(double time) const;

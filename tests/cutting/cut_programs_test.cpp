@@ -118,7 +118,7 @@ class Patient {
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
           rest_volume_(rest_volume(mesh_)) {
-        constexpr std::array<double, 3> snaps = {0.0, 0.1, 0.25};
+        constexpr std::array<double, 3> snaps = {0.0, 0.25, 0.5};
         const double snap = snaps[random_.below(3)];
         options_ = random_.below(2) == 0 ? guarded(mesh_, snap) : SplitOptions{snap, {}};
         Box box;
@@ -133,7 +133,7 @@ class Patient {
 
     std::string describe() const {
         return "snap " + std::to_string(options_.snap) +
-               (options_.min_step_length.empty() ? "" : ", guarded") +
+               (options_.uncut.step_length.empty() ? "" : ", guarded") +
                (is_at_rest_ ? ", at rest" : ", deformed");
     }
 
@@ -221,9 +221,11 @@ class Patient {
     }
 
     /// A node may be off the surface by this share of an edge: at rest; where the body is strained,
-    /// what is near at rest may be farther. The guard may have to count the nearer end of an edge
-    /// as on the surface.
-    double how_far_off() const { return options_.snap > 0.0 ? 0.5 : 0.0; }
+    /// what is near at rest may be farther.
+    double how_far_off() const {
+        if (is_at_rest_) return options_.snap;
+        return options_.snap > 0.0 ? 0.5 : 0.0;
+    }
 
     /// No piece is on both sides of a plane, whatever the body was: but for what is snapped.
     void expect_parted(const RandomCut& cut) const {

@@ -125,13 +125,7 @@ Box SplitBody::box() const {
     return box;
 }
 
-SplitOptions guarded(const Mesh& mesh, double snap) {
-    std::map<int, double> lengths;
-    const double length = step_length(mesh);
-    for (std::size_t e = 0; e < mesh.element_capacity(); ++e)
-        lengths[mesh.region(ElementId(e))] = length;
-    return {snap, min_step_lengths(snap, lengths)};
-}
+SplitOptions guarded(const Mesh& mesh, double snap) { return {snap, uncut_body(mesh)}; }
 
 std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes) {
     for (const auto& record : changes.nodes_added) {
