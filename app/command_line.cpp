@@ -150,7 +150,7 @@ void declare_cut(CLI::App& app, Action& action) {
     verb->add_option(
             "--snap", options->snap,
             "Mode split: how far off the cut its nodes may be, in mean edge lengths; from 0, "
-            "exact but with slivers, to 0.5 (default: " +
+            "exact but with slivers, to 1 (default: " +
                 io::format_number(cutting::default_snap) + ")")
         ->type_name("LENGTHS");
     verb->add_option("--region-array", options->region_array,

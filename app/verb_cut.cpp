@@ -39,9 +39,9 @@ struct Job {
 
 double parse_snap(const std::string& text) {
     const auto snap = io::parse_number<double>(text);
-    if (snap && *snap >= 0.0 && *snap <= 0.5) return *snap;
+    if (snap && *snap >= 0.0 && *snap <= 1.0) return *snap;
     throw InputError("--snap: " + sim::in_quotes(text) +
-                     " is not allowed; it must be a number from 0 to 0.5");
+                     " is not allowed; it must be a number from 0 to 1");
 }
 
 Job parse(const CutOptions& options) {

@@ -32,7 +32,7 @@ constexpr double smallest_snap = 1e-7;
 
 /// Of the distance up to which nodes may count as on the surface, that up to which they always do.
 /// What lies between keeps the shape of elements (docs/cutting.md).
-constexpr double share_always_snapped = 0.4;
+constexpr double share_always_snapped = 1.0 / 3.0;
 
 /// Nearer than this share of an edge to an end that is on the surface, it is no other passage but a
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
@@ -437,13 +437,14 @@ double Splitter::place_to_divide(const Edge& edge, ElementId element, const Pass
     if (options_.uncut.step_length.empty()) return place;
     ring_.clear();
     topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
-    if (is_fit(edge, ring_, place, options_.snap)) return place;
+    const double share = least_step_share(options_.snap);
+    if (is_fit(edge, ring_, place, share)) return place;
     const double length = rest_length(edge);
     const double reach = farthest_ / length / (passage.from_a + passage.from_b);
     const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
-    if (is_fit(edge, ring_, moved, options_.snap)) return moved;
+    if (is_fit(edge, ring_, moved, share)) return moved;
     const bool is_end_near = std::min(passage.from_a, passage.from_b) * length <= farthest_;
-    return !is_end_near && is_fit(edge, ring_, moved, 0.5 * options_.snap) ? moved : -1.0;
+    return !is_end_near && is_fit(edge, ring_, moved, 0.5 * share) ? moved : -1.0;
 }
 
 /// Returns the new node.
@@ -541,6 +542,8 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
 }
 
 }  // namespace
+
+double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
             const SplitOptions& options, Scars* scars) {

@@ -15,14 +15,18 @@
 namespace incise::cutting {
 
 /// Measured: docs/cutting.md.
-inline constexpr double default_snap = 0.5;
+inline constexpr double default_snap = 0.6;
+
+/// Of the uncut body's step length (step_length.h), what cuts try to leave every element: 0.55 from
+/// a snap of 0.6 on, less in proportion below.
+double least_step_share(double snap);
 
 struct SplitOptions {
-    /// How far off the surface nodes of the cut may be, in edge lengths of the uncut body; nothing
-    /// is moved. In [0, 0.5]. A node nearer to the surface than 0.4 `snap` of an edge that the
-    /// surface crosses counts as lying on it; up to `snap` away it does where an element would
-    /// otherwise be left with less than `snap` of the uncut body's step length. Where not even
-    /// that does, half as much is allowed.
+    /// How far off the surface nodes of the cut may be, in mean edge lengths of the uncut body;
+    /// nothing is moved. In [0, 1]. A node nearer to the surface than a third of `snap` of an edge
+    /// that the surface crosses counts as lying on it; up to `snap` away it does where elements
+    /// would otherwise be left with too little of the uncut body's step length: less than
+    /// least_step_share(), or half of that where all that is nearer would be smaller still.
     double snap = default_snap;
     UncutBody uncut = {};
 };

@@ -319,9 +319,9 @@ TEST_F(Cut, RefusesWhatItCannotUnderstand) {
              {"--mode spit --plane 0,0,0,1,0,0",
               "--mode: 'spit' is not known; did you mean "
               "'split'?"},
-             {"--snap 0.6 --plane 0,0,0,1,0,0",
-              "--snap: '0.6' is not allowed; it must be a number "
-              "from 0 to 0.5"},
+             {"--snap 1.5 --plane 0,0,0,1,0,0",
+              "--snap: '1.5' is not allowed; it must be a number "
+              "from 0 to 1"},
              {"--snap nan --plane 0,0,0,1,0,0", "--snap: 'nan' is not allowed"},
              {"--json out.vtu --plane 0,0,0,1,0,0", "--json: out.vtu is the mesh"},
              {"--json ./box.vtu --plane 0,0,0,1,0,0", "--json: box.vtu is the mesh"},

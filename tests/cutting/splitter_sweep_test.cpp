@@ -118,7 +118,7 @@ TEST(SplitByBlade, PartOfTheWayInManyStepsDividesTheEdgesOfOneStep) {
 TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
     for (const auto* family : test::tetrahedral_families()) {
         if (family->name != "cube" && family->name != "ball") continue;
-        for (const double snap : {0.0, 0.25, 0.5})
+        for (const double snap : {0.0, 0.25, 0.6})
             for (const int num_steps : {1, 5, 30})
                 for (std::uint64_t seed = 0; seed < 4; ++seed) {
                     SCOPED_TRACE(testing::Message()
@@ -127,7 +127,7 @@ TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
                     Random random(seed);
                     SplitBody body(family->data);
                     const BladePath path(body.box(), random);
-                    const double off = 0.4 * snap * longest_edge(body.mesh, body.positions);
+                    const double off = snap / 3.0 * longest_edge(body.mesh, body.positions);
                     const auto volume = [&](double height, int side) {
                         return volume_above(body.mesh, body.positions,
                                             path.point + height * path.normal, side * path.normal);
@@ -170,7 +170,7 @@ TEST(SplitByBlade, TheWayBackAndTheSameStrokeAgainChangeNothing) {
 
 // At any time, what is open is what the blade has left behind, but for one element at the front.
 TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
-    for (const double snap : {0.0, 0.5})
+    for (const double snap : {0.0, 0.6})
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
             SplitBody body(test::jittered_cube(8, 0.2, seed));
@@ -186,12 +186,12 @@ TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
                 area += body.cut(step, front, {snap, {}}, body.positions).report.cut_area;
                 const double passed = std::clamp(to, 0.0, 1.0);
                 // Nodes that are snapped make the sheet uneven.
-                EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + 0.4 * snap * edge));
+                EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + snap / 3.0 * edge));
                 EXPECT_GE(area, passed - (1.0 + snap) * edge);
                 for (const NodeId n : nodes_of_cut(body.mesh).front) {
                     const double z = body.positions[n.index()].z();
                     EXPECT_GE(z, to - (1.0 + snap) * edge);
-                    EXPECT_LE(z, to + 0.4 * snap * edge + 1e-12);
+                    EXPECT_LE(z, to + snap / 3.0 * edge + 1e-12);
                 }
                 largest = std::max(largest, front.size());
             }
@@ -254,7 +254,7 @@ TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
             for (const int num_steps : {2, 7, 15, 30, 60, 120}) {
                 SCOPED_TRACE(testing::Message() << "strength " << strength << ", seed " << seed
                                                 << ", " << num_steps << " steps");
-                for (const double snap : {0.0, 0.5}) {
+                for (const double snap : {0.0, 0.6}) {
                     const auto volumes = cut.volumes(data, num_steps, {snap, {}});
                     ASSERT_EQ(volumes.size(), 2u) << "snap " << snap;
                     EXPECT_NEAR(volumes[0] + volumes[1], 1.0, 1e-12);
@@ -294,7 +294,7 @@ TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
     for (const int n : {4, 8})
         for (const double at : {0.35, 0.41, 0.5})
             for (const double part : {0.05, 0.1})
-                for (const double snap : {0.0, 0.25, 0.5})
+                for (const double snap : {0.0, 0.25, 0.6})
                     for (const bool along_x : {true, false}) {
                         SCOPED_TRACE(testing::Message()
                                      << n << " bricks, at " << at << ", parts of " << part

@@ -124,7 +124,7 @@ TEST(Split, AlongAPlaneWithoutSnappingLeavesTheTwoHalves) {
 
 TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
     for (const auto* family : convex_families())
-        for (const double snap : {0.1, 0.2, 0.35, 0.5})
+        for (const double snap : {0.1, 0.2, 0.35, 0.6})
             for (const bool is_guarded : {false, true})
                 for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
                     SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) +
@@ -135,7 +135,7 @@ TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
                     const Halves halves(body.positions, random);
                     const double off = is_guarded
                                            ? (1.0 + 1e-9) * snap * mean_edge_length(body.mesh)
-                                           : 0.4 * snap * longest_edge(body.mesh, body.positions);
+                                           : snap / 3.0 * longest_edge(body.mesh, body.positions);
                     const auto volume = [&](double height, int side) {
                         return volume_above(body.mesh, body.positions, halves.raised(height),
                                             side * halves.normal);
@@ -165,7 +165,7 @@ TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
 
 TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
     for (const auto* family : test::tetrahedral_families())
-        for (const double snap : {0.0, 0.1, 0.2, 0.35, 0.5})
+        for (const double snap : {0.0, 0.1, 0.2, 0.35, 0.6})
             for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));
@@ -183,12 +183,12 @@ TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
 }
 
 TEST(Split, AlongTwoCrossingPlanesLeavesFourPieces) {
-    for (const double snap : {0.0, 0.25, 0.5})
+    for (const double snap : {0.0, 0.25, 0.6})
         for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
             SCOPED_TRACE("snap " + std::to_string(snap) + ", seed " + std::to_string(seed));
             Random random(seed);
             SplitBody body(test::jittered_cube(5, 0.2, seed));
-            const double off = 0.4 * snap * longest_edge(body.mesh, body.positions);
+            const double off = snap / 3.0 * longest_edge(body.mesh, body.positions);
             const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
             const Vec3 n = random.vector(1.0).normalized();
             const std::array<Vec3, 2> normals = {n, n.unitOrthogonal()};
@@ -264,7 +264,7 @@ TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
 
 TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
     for (const auto* family : test::tetrahedral_families())
-        for (const double snap : {0.0, 0.5})
+        for (const double snap : {0.0, 0.6})
             for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));
@@ -318,14 +318,14 @@ TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
 // What a step length is worth to the whole body's stable step: tests of physics.
 TEST(Split, NeverDividesAnElementBelowTheLimit) {
     for (const auto* family : test::tetrahedral_families())
-        for (const double snap : {0.1, 0.2, 0.35, 0.5})
+        for (const double snap : {0.1, 0.2, 0.35, 0.6})
             for (std::uint64_t seed = 0; seed < 3; ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));
                 Random random(seed);
                 SplitBody body(family->data);
                 const SplitOptions options = guarded(body.mesh, snap);
-                const double limit = 0.5 * snap * options.uncut.step_length.at(0);
+                const double limit = 0.5 * least_step_share(snap) * options.uncut.step_length.at(0);
                 ASSERT_GT(limit, 0.0);
                 const auto own = [&](ElementId e) {
                     std::array<Vec3, 4> x;

@@ -313,9 +313,9 @@ TEST(ScenarioErrors, OfTools) {
     EXPECT_EQ(error_of(blade + "mode = \"slit\"\n"),
               "scene.toml:13:8: key 'tool[0].mode': 'slit': is not known; did you mean 'split'? "
               "Known here: split, separate");
-    EXPECT_EQ(error_of(blade + "snap = 0.6\n"),
-              "scene.toml:13:8: key 'tool[0].snap': 0.6 is not allowed: must be at least 0 and "
-              "at most 0.5");
+    EXPECT_EQ(error_of(blade + "snap = 1.5\n"),
+              "scene.toml:13:8: key 'tool[0].snap': 1.5 is not allowed: must be at least 0 and "
+              "at most 1");
     EXPECT_EQ(error_of(blade + "mode = \"separate\"\nsnap = 0.1\n"),
               "scene.toml:14:8: key 'tool[0].snap': belongs to mode = \"split\": leave it out");
     EXPECT_EQ(error_of(blade + "time = 1\n"),
