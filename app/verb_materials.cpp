@@ -29,12 +29,14 @@ std::vector<const MaterialModel*> all_models() {
 /// Each parameter of the model once, in the order of the table.
 std::vector<const sim::ParameterInfo*> parameters_of(const MaterialModel& model) {
     std::vector<const sim::ParameterInfo*> rows;
-    for (const auto& row : sim::parameters())
-        for (const auto& set : model.parameter_sets)
-            if (std::find(set.begin(), set.end(), row.parameter) != set.end()) {
-                rows.push_back(&row);
-                break;
-            }
+    for (const auto& row : sim::parameters()) {
+        const auto takes = [&](const sim::ParameterSet& set) {
+            return std::find(set.begin(), set.end(), row.parameter) != set.end();
+        };
+        if (takes(model.optional) ||
+            std::any_of(model.parameter_sets.begin(), model.parameter_sets.end(), takes))
+            rows.push_back(&row);
+    }
     return rows;
 }
 
@@ -64,6 +66,10 @@ nlohmann::ordered_json as_json(const MaterialModel& model) {
                                       {"unit", row->unit},
                                       {"meaning", row->meaning},
                                       {"allowed", row->limits.text()}});
+    json["optional"] = nlohmann::ordered_json::array();
+    for (const auto parameter : model.optional)
+        json["optional"].push_back(sim::info(parameter).key);
+    json["fibres"] = model.has_fibres;
     json["admissible"] = model.admissible;
     json["use"] = model.use;
     json["limits"] = model.limits;
@@ -75,7 +81,7 @@ nlohmann::ordered_json as_json(const Tissue& tissue) {
     json["name"] = tissue.key;
     json["kind"] = "tissue";
     json["title"] = tissue.title;
-    json["law"] = sim::model(tissue.law).key;
+    json["law"] = tissue.law;
     json["density"] = tissue.density;
     auto& parameters = json["parameters"] = nlohmann::ordered_json::object();
     for (const auto& row : sim::parameters())
@@ -119,7 +125,7 @@ void print_summary(const MaterialModel& model) {
     std::cout << model.key << "\n";
     print_wrapped(model.title, "    ");
     print_wrapped(model.use, "    ");
-    print_wrapped("takes " + sim::list_of_sets(model.parameter_sets), "    ");
+    print_wrapped("takes " + sim::list_of_parameters(model), "    ");
 }
 
 void print_summary(const Tissue& tissue) {
@@ -139,8 +145,10 @@ void print_detail(const MaterialModel& model) {
     std::cout << model.key << ": " << model.title << '\n';
     section("In a scenario", scenario_line(model));
     section("Energy", model.energy);
-    section("Takes exactly one of these sets, besides density",
-            sim::list_of_sets(model.parameter_sets));
+    section("Takes exactly one of these sets, besides density", sim::list_of_parameters(model));
+    if (model.has_fibres)
+        section("Direction of the fibres at rest, one of",
+                "fibre = [x, y, z], or fibre_array = \"NAME\", a cell array of the mesh file");
     std::cout << "\nParameters\n";
     for (const auto* row : parameters_of(model))
         std::cout << "    " << row->key << std::string(16 - row->key.size(), ' ') << row->meaning

@@ -76,12 +76,12 @@ class GmshReader {
         if (!has_format_) throw InputError(file_.name() + ": has no $MeshFormat section");
         if (!has_nodes_) throw InputError(file_.name() + ": has no $Nodes section");
         if (!has_elements_) throw InputError(file_.name() + ": has no $Elements section");
-        auto& [mesh, warnings] = result_;
+        auto& warnings = result_.warnings;
         if (num_shared_entities_ > 0)
             warnings.push_back(std::to_string(num_shared_entities_) +
                                " volumes are in several physical groups; the first of each is "
                                "taken as the region");
-        collector_.finish(mesh, warnings);
+        collector_.finish(result_.mesh, warnings);
         return std::move(result_);
     }
 

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "io/legacy_vtk_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <concepts>
@@ -96,9 +97,12 @@ class LegacyVtkReader {
                              std::to_string(piece_.connectivity.size()) + " entries");
         if (!has_regions_ && options_.must_have_regions() && !piece_.types.empty())
             refuse_missing_regions(file_.name(), options_.region_array, other_cell_arrays_);
+        for (const auto& name : options_.vector_arrays)
+            if (!piece_.vectors.contains(name) && !piece_.types.empty())
+                refuse_missing_vectors(file_.name(), name, other_vector_arrays_);
         MeshFile result;
         auto collector = make_vtk_collector(file_.name());
-        append_piece(piece_, file_.name(), result.mesh, collector);
+        append_piece(piece_, file_.name(), result, collector);
         collector.finish(result.mesh, result.warnings);
         return result;
     }
@@ -302,12 +306,27 @@ class LegacyVtkReader {
                    num_components == 3) {
             require_tuples(name, num_tuples, piece_.coordinates.size() / 3, "points");
             piece_.coordinates = read_values<double>(type, count, "the rest positions");
+        } else if (association_ == Association::cells && is_wanted_vector(name)) {
+            if (num_components != 3)
+                scanner_.fail("array " + in_quotes(name) +
+                              ": vectors need 3 components, this array has " +
+                              std::to_string(num_components));
+            require_tuples(name, num_tuples, piece_.types.size(), "cells");
+            piece_.vectors[name] = read_values<double>(type, count, "array " + in_quotes(name));
         } else {
+            if (association_ == Association::cells && num_components == 3 &&
+                type.layout == ValueType::Layout::number)
+                other_vector_arrays_.push_back(name);
             if (association_ == Association::cells && num_components == 1 &&
                 type.layout == ValueType::Layout::number && is_integer(type.scalar))
                 other_cell_arrays_.push_back(name);
             skip_values(type, count, "array " + in_quotes(name));
         }
+    }
+
+    bool is_wanted_vector(const std::string& name) const {
+        const auto& wanted = options_.vector_arrays;
+        return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
     }
 
     void require_tuples(const std::string& name, std::size_t found, std::size_t expected,
@@ -398,7 +417,8 @@ class LegacyVtkReader {
     const ReadOptions& options_;
     Scanner scanner_;
     VtkPiece piece_;
-    std::vector<std::string> other_cell_arrays_;  ///< of whole numbers, one a cell
+    std::vector<std::string> other_cell_arrays_;    ///< of whole numbers, one a cell
+    std::vector<std::string> other_vector_arrays_;  ///< of three components a cell
     Association association_ = Association::none;
     std::size_t num_tuples_ = 0;
     bool has_offsets_ = false;  ///< the file is of version 5

@@ -55,7 +55,13 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
         throw InputError(file.name() +
                          ": begins like no mesh format known here; convert it to one of: " + known);
     }
-    return format->read(file, options);
+    MeshFile result = format->read(file, options);
+    for (const auto& name : options.vector_arrays)
+        if (!result.cell_vectors.contains(name))
+            throw InputError(file.name() + ": has no cell array " + in_quotes(name) +
+                             ": none is read from meshes of the format " + format->name +
+                             "; use VTU or legacy VTK");
+    return result;
 }
 
 }  // namespace incise::io

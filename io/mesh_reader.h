@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,12 +20,17 @@ struct ReadOptions {
     /// there. Gmsh: without meaning, regions are the physical groups.
     std::string region_array{usual_region_array};
 
+    /// VTU and legacy VTK: cell arrays of three components that are read too. Each must be there.
+    std::vector<std::string> vector_arrays = {};
+
     bool must_have_regions() const { return region_array != usual_region_array; }
 };
 
 struct MeshFile {
     topology::MeshData mesh;
     std::vector<std::string> warnings;  ///< one sentence each, without the name of the file
+    /// Of the options' vector_arrays: by name, one vector a cell of `mesh`, unchecked.
+    std::map<std::string, std::vector<Vec3>> cell_vectors = {};
 };
 
 /// Reads the tetrahedra, hexahedra, wedges and pyramids of a file, in the file's order.

@@ -94,16 +94,28 @@ std::optional<int> region_of(double value) {
     return static_cast<int>(value);
 }
 
+std::string quoted_list(const std::vector<std::string>& names) {
+    std::string list;
+    for (const auto& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+    return list;
+}
+
 }  // namespace
+
+void refuse_missing_vectors(const std::string& place, const std::string& name,
+                            const std::vector<std::string>& others) {
+    throw InputError(place + ": has no cell array " + in_quotes(name) + " of three components" +
+                     (others.empty()
+                          ? ", nor another; add it to the file's cell data"
+                          : "; its cell arrays of three components: " + quoted_list(others)));
+}
 
 void refuse_missing_regions(const std::string& place, const std::string& name,
                             const std::vector<std::string>& others) {
-    std::string list;
-    for (const auto& other : others) list += (list.empty() ? "" : ", ") + in_quotes(other);
     throw InputError(
         place + ": has no cell array " + in_quotes(name) + " to take the regions from" +
         (others.empty() ? ", nor another of whole numbers; without a name all regions are 0"
-                        : "; its cell arrays of whole numbers: " + list));
+                        : "; its cell arrays of whole numbers: " + quoted_list(others)));
 }
 
 CellCollector make_vtk_collector(const std::string& file) { return {file, "VTK cell type"}; }
@@ -118,8 +130,9 @@ void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& 
                              std::to_string(offsets[i - 1]) + "; offsets must ascend");
 }
 
-void append_piece(const VtkPiece& piece, const std::string& place, topology::MeshData& mesh,
+void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& file,
                   CellCollector& collector) {
+    topology::MeshData& mesh = file.mesh;
     const auto first_point = static_cast<std::int64_t>(mesh.points.size());
     const auto num_points = static_cast<std::int64_t>(piece.coordinates.size() / 3);
     mesh.points.reserve(mesh.points.size() + piece.coordinates.size() / 3);
@@ -158,6 +171,8 @@ void append_piece(const VtkPiece& piece, const std::string& place, topology::Mes
                              " is not a whole number of 32 bits; name another array as the "
                              "region array");
         collector.keep(*form, std::span(nodes).first(size), *region, mesh);
+        for (const auto& [name, values] : piece.vectors)
+            file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }
 }
 

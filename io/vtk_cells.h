@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "io/cell_form.h"
+#include "io/mesh_reader.h"
 #include "topology/mesh_data.h"
 
 namespace incise::io {
@@ -15,26 +17,33 @@ namespace incise::io {
 /// The arrays of one piece of an unstructured grid, with lengths that fit one another and
 /// contents unchecked.
 struct VtkPiece {
-    std::vector<double> coordinates;         ///< three a point
-    std::vector<std::int64_t> types;         ///< one a cell
-    std::vector<std::int64_t> offsets;       ///< #cells + 1, from 0
-    std::vector<std::int64_t> connectivity;  ///< points of the cells
-    std::vector<double> regions;             ///< one a cell, or empty: all 0
+    std::vector<double> coordinates;                     ///< three a point
+    std::vector<std::int64_t> types;                     ///< one a cell
+    std::vector<std::int64_t> offsets;                   ///< #cells + 1, from 0
+    std::vector<std::int64_t> connectivity;              ///< points of the cells
+    std::vector<double> regions;                         ///< one a cell, or empty: all 0
+    std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
 };
 
 /// Throws InputError unless offsets ascend from 0: then all are in range if the last is.
 /// `place` is what the message begins with.
 void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& place);
 
-/// Appends the points and the volume cells of the piece; checks kinds, sizes, point numbers and
-/// regions. `place` is what messages begin with: the file, and the piece if there are several.
+/// Appends the points, the volume cells and their vectors of the piece; checks kinds, sizes, point
+/// numbers and regions. `place` is what messages begin with: the file, and the piece if there are
+/// several.
 /// @pre check_offsets has passed, and the last offset is connectivity.size()
-void append_piece(const VtkPiece& piece, const std::string& place, topology::MeshData& mesh,
+void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& file,
                   CellCollector& collector);
 
 /// Throws InputError: the file has no cell array `name`, which was asked for. `others` are those
 /// from which regions could be taken: of whole numbers, one a cell.
 [[noreturn]] void refuse_missing_regions(const std::string& place, const std::string& name,
+                                         const std::vector<std::string>& others);
+
+/// Throws InputError: the file has no cell array `name` of vectors, which was asked for. `others`
+/// are those that it has.
+[[noreturn]] void refuse_missing_vectors(const std::string& place, const std::string& name,
                                          const std::vector<std::string>& others);
 
 /// A collector with VTK's words.

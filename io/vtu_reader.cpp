@@ -153,8 +153,18 @@ class VtuReader {
                 refuse_missing_regions(place, options_.region_array,
                                        whole_number_arrays(arrays, node.child("CellData")));
             }
+            for (const auto& name : options_.vector_arrays) {
+                const auto array = named(node.child("CellData"), name);
+                if (!array)
+                    refuse_missing_vectors(place, name,
+                                           vector_arrays(arrays, node.child("CellData")));
+                if (arrays.num_components(array) != 3)
+                    arrays.fail(array, "vectors need 3 components, this array has " +
+                                           std::to_string(arrays.num_components(array)));
+                piece.vectors[name] = arrays.reals(array, 3 * num_cells);
+            }
         }
-        append_piece(piece, place, result_.mesh, collector_);
+        append_piece(piece, place, result_, collector_);
     }
 
     /// The array of the points at rest: those of a frame of a run are in rest_position.
@@ -183,6 +193,15 @@ class VtuReader {
                 arrays.num_components(array) == 1)
                 names.emplace_back(array.attribute("Name").value());
         }
+        return names;
+    }
+
+    static std::vector<std::string> vector_arrays(const VtkXmlArrays& arrays,
+                                                  pugi::xml_node cell_data) {
+        std::vector<std::string> names;
+        for (const auto array : cell_data.children("DataArray"))
+            if (arrays.num_components(array) == 3)
+                names.emplace_back(array.attribute("Name").value());
         return names;
     }
 

@@ -59,11 +59,12 @@ class ElementBlock {
     virtual double rest_volume(ElementId e) const = 0;
 
     /// Takes the element in and precomputes it from the rest positions (by node id).
+    /// @param fibre  direction of its fibres at rest; of no account without fibres
     virtual void insert(ElementId e, std::span<const NodeId> corners,
-                        std::span<const Vec3> rest_positions) = 0;
+                        std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
     /// Recomputes an element that it has, with other corners.
     virtual void replace(ElementId e, std::span<const NodeId> corners,
-                         std::span<const Vec3> rest_positions) = 0;
+                         std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
     virtual void erase(ElementId e) = 0;
 
   protected:
@@ -79,6 +80,12 @@ class ElementBlock {
 template <class Kernel>
 concept HasHistory = requires(Kernel& kernel) {
     kernel.begin_step(0.0);
+};
+
+/// A kernel that has to know the direction of fibres.
+template <class Kernel>
+concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, Vec3 fibre) {
+    kernel.precompute(X, fibre);
 };
 
 /// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
@@ -154,17 +161,17 @@ class KernelBlock final : public ElementBlock {
     ElementShares shares(ElementId e) const override { return rows_[slot_of(e)].shares; }
     double rest_volume(ElementId e) const override { return rows_[slot_of(e)].rest.volume; }
 
-    void insert(ElementId e, std::span<const NodeId> corners,
-                std::span<const Vec3> rest_positions) override {
+    void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                const Vec3& fibre) override {
         const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
         rows_.insert(rows_.begin() + (place - elements_.begin()),
-                     make_row(corners, rest_positions));
+                     make_row(corners, rest_positions, fibre));
         elements_.insert(place, e);
     }
 
-    void replace(ElementId e, std::span<const NodeId> corners,
-                 std::span<const Vec3> rest_positions) override {
-        rows_[slot_of(e)] = make_row(corners, rest_positions);
+    void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 const Vec3& fibre) override {
+        rows_[slot_of(e)] = make_row(corners, rest_positions, fibre);
     }
 
     void erase(ElementId e) override {
@@ -180,7 +187,8 @@ class KernelBlock final : public ElementBlock {
         ElementShares shares;
     };
 
-    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions) const {
+    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 [[maybe_unused]] const Vec3& fibre) const {
         assert(corners.size() == num_corners);
         Row row;
         Corners X;
@@ -188,7 +196,10 @@ class KernelBlock final : public ElementBlock {
             row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
             X[k] = rest_positions[corners[k].index()];
         }
-        row.rest = kernel_.precompute(X);
+        if constexpr (TakesFibre<Kernel>)
+            row.rest = kernel_.precompute(X, fibre);
+        else
+            row.rest = kernel_.precompute(X);
         row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
         const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
         std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/element_store.h"
 
+#include <cmath>
+
 #include "physics/heml_kernel.h"
 #include "physics/hybmss_kernel.h"
+#include "physics/inheritance.h"
 #include "physics/mass_spring_kernel.h"
 #include "physics/viscous_kernel.h"
 #include "topology/error.h"
@@ -50,6 +53,7 @@ std::string remedy(CellKind kind) {
 }  // namespace
 
 ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
+    if (!table_.fibres.empty()) table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
         if (const ElementId e(i); mesh.is_alive(e)) {
             require_law(mesh, e);
@@ -69,6 +73,10 @@ void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
     if (kind != wanted)
         throw InputError(name + ", of region " + std::to_string(mesh.region(e)) + ", is a " +
                          traits(kind).name + remedy(kind));
+    constexpr double rounding = 1e-12;
+    if (material.has_fibres() && !(std::abs(fibre_of(e).norm() - 1.0) <= rounding))
+        throw InputError(name + ", of region " + std::to_string(mesh.region(e)) +
+                         ", has no direction of fibres of unit length, which its material needs");
     if (!hybrid) return;
     std::array<Vec3, 8> corners;
     for (std::size_t k = 0; k < corners.size(); ++k)
@@ -80,16 +88,32 @@ std::size_t ElementStore::block_index(ElementId e, int region) const {
     return e.index() / chunk_size * table_.materials.size() + table_.of_region.at(region);
 }
 
+Vec3 ElementStore::fibre_of(ElementId e) const {
+    return e.index() < table_.fibres.size() ? table_.fibres[e.index()] : Vec3::Zero();
+}
+
+void ElementStore::apply(const topology::ChangeSet& changes) {
+    auto& fibres = table_.fibres;
+    if (fibres.empty()) return;
+    fibres.resize(std::max(changes.element_capacity_before, changes.element_capacity_after),
+                  Vec3::Zero());
+    for_each_part(changes, [&](ElementId parent, ElementId part) {
+        fibres[part.index()] = fibres[parent.index()];
+    });
+    fibres.resize(changes.element_capacity_after);
+}
+
 void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     const std::size_t index = block_index(e, mesh.region(e));
     if (index >= blocks_.size()) blocks_.resize(index + 1);
     if (!blocks_[index])
         blocks_[index] = make_block(table_.materials[table_.of_region.at(mesh.region(e))]);
-    blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions());
+    blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
 }
 
 void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
-    blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions());
+    blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions(),
+                                                     fibre_of(e));
 }
 
 std::size_t ElementStore::max_prony_terms() const {

@@ -9,6 +9,7 @@
 
 #include "physics/element_block.h"
 #include "physics/material.h"
+#include "topology/change_set.h"
 #include "topology/mesh.h"
 
 namespace incise::physics {
@@ -17,6 +18,9 @@ namespace incise::physics {
 struct MaterialTable {
     std::vector<Material> materials;
     std::map<int, std::size_t> of_region;  ///< region -> index of its material
+    /// By element id, the direction of the fibres at rest, of unit length; zero where the material
+    /// has none, empty if no material has any.
+    std::vector<Vec3> fibres = {};
 };
 
 /// Elements whose ids share all but their lowest bits and that have the same material form a
@@ -24,9 +28,13 @@ struct MaterialTable {
 /// and so summed, exactly as one built afresh from the same mesh.
 class ElementStore {
   public:
-    /// Throws InputError for a region without material and for a kind of element for which the
-    /// material has no force law.
+    /// Throws InputError for a region without material, for a kind of element for which the
+    /// material has no force law, and for an element without the fibres that its material has.
     ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
+
+    /// What elements keep by their ids follows an edit: parts of a divided element inherit its
+    /// fibres. Before the elements themselves do.
+    void apply(const topology::ChangeSet& changes);
 
     void insert(const topology::Mesh& mesh, ElementId e);
     /// Recomputes an element whose corners are others now.
@@ -42,6 +50,9 @@ class ElementStore {
     double density(int region) const {
         return table_.materials[table_.of_region.at(region)].density;
     }
+
+    /// As MaterialTable has them, also of the elements that edits added.
+    std::span<const Vec3> fibres() const { return table_.fibres; }
 
     /// Of the longest series of any of the materials; 0 if none is viscous.
     std::size_t max_prony_terms() const;
@@ -63,6 +74,7 @@ class ElementStore {
 
     std::size_t block_index(ElementId e, int region) const;
     void require_law(const topology::Mesh& mesh, ElementId e) const;
+    Vec3 fibre_of(ElementId e) const;
 
     MaterialTable table_;
     std::vector<std::unique_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material

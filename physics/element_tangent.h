@@ -44,14 +44,16 @@ inline void add_scalars(const Mat3& s, Eigen::Matrix<double, 9, 9>& inner) {
 
 /// With the invariants p of strain: Vol (sum of w_pq grad p grad q^T + sum of w_p grad grad p).
 template <class LawType>
-ElementTangent<4> element_tangent(const HemlKernel<LawType>& kernel, const LinkElement& e,
+ElementTangent<4> element_tangent(const HemlKernel<LawType>& kernel,
+                                  const typename HemlKernel<LawType>::Element& e,
                                   const std::array<Vec3, 4>& x) {
+    constexpr bool has_fibres = HasFibres<LawType>;
+    constexpr int num_invariants = has_fibres ? 4 : 3;
     const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
     const Vec6 dl = squared_links(x) - e.rest_links;
     const Vec6 Mdl = e.Mtr * dl;
-    const LinkStrain strain{e.vtr.dot(dl), dl.dot(Mdl), kernel.volume_ratio(e, x)};
-    const LawResponse<Dual> r =
-        kernel.law.response(with_derivatives(strain), kernel.inversion_threshold);
+    const LawResponse<Dual> r = kernel.law.response(with_derivatives(kernel.strain(e, dl, Mdl, x)),
+                                                    kernel.inversion_threshold);
 
     // Gradients of the squared links by corners 1 to 3.
     Eigen::Matrix<double, 9, 6> L = Eigen::Matrix<double, 9, 6>::Zero();
@@ -69,18 +71,23 @@ ElementTangent<4> element_tangent(const HemlKernel<LawType>& kernel, const LinkE
     between(4, 1, 2, v3 - v2);
     between(5, 2, 0, v1 - v3);
 
-    Eigen::Matrix<double, 9, 3> gradients;  // of a, b and J
+    Eigen::Matrix<double, 9, num_invariants> gradients;  // of a, b, J and f
     gradients.col(0) = L * e.vtr;
     gradients.col(1) = 2.0 * (L * Mdl);
     gradients.col(2) << v2.cross(v3), v3.cross(v1), v1.cross(v2);
     gradients.col(2) /= 6.0 * e.volume;
-    Mat3 w;
-    w << r.w_a.gradient.head<3>(), r.w_b.gradient.head<3>(), r.w_J.gradient.head<3>();
+    if constexpr (has_fibres) gradients.col(3) = L * e.fibre_links;
+    Eigen::Matrix<double, num_invariants, num_invariants> w;
+    w.col(0) = r.w_a.gradient.template head<num_invariants>();
+    w.col(1) = r.w_b.gradient.template head<num_invariants>();
+    w.col(2) = r.w_J.gradient.template head<num_invariants>();
+    if constexpr (has_fibres) w.col(3) = r.w_f.gradient;
     w = (0.5 * (w + w.transpose())).eval();
 
     Eigen::Matrix<double, 9, 9> inner = gradients * w * gradients.transpose();
     inner += 2.0 * r.w_b.value * (L * e.Mtr * L.transpose());
-    const Vec6 t = 2.0 * (r.w_a.value * e.vtr + 2.0 * r.w_b.value * Mdl);
+    Vec6 t = 2.0 * (r.w_a.value * e.vtr + 2.0 * r.w_b.value * Mdl);
+    if constexpr (has_fibres) t += 2.0 * r.w_f.value * e.fibre_links;
     Mat3 tension;
     tension << t[0] + t[3] + t[5], -t[3], -t[5],  //
         -t[3], t[1] + t[3] + t[4], -t[4],         //

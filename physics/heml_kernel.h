@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "physics/law.h"
 #include "topology/geometry.h"
@@ -74,32 +75,57 @@ inline LinkElement link_element(const std::array<Vec3, 4>& X) {
     return element;
 }
 
+/// Of a law with fibres.
+struct FibredLinkElement : LinkElement {
+    Vec3 fibre;        ///< a0: their direction at rest, of unit length
+    Vec6 fibre_links;  ///< a0 . C_k a0, so that I4 = sum of l_k a0 . C_k a0: 1/m2
+};
+
+/// Pure in the rest positions and the direction. With u = V^-1 a0, a0 . C_k a0 = u . D_k u.
+inline FibredLinkElement fibred_link_element(const std::array<Vec3, 4>& X, const Vec3& fibre) {
+    FibredLinkElement element{link_element(X), fibre, {}};
+    Mat3 V;
+    V << X[1] - X[0], X[2] - X[0], X[3] - X[0];
+    const Vec3 u = V.inverse() * fibre;
+    element.fibre_links << u.sum() * u, -u[0] * u[1], -u[1] * u[2], -u[2] * u[0];
+    return element;
+}
+
 /// HEML with a given law, for blocks of tetrahedra (element_block.h).
 template <class LawType>
 struct HemlKernel {
     static constexpr std::size_t num_corners = 4;
+    static constexpr bool has_fibres = HasFibres<LawType>;
     using Corners = std::array<Vec3, 4>;
-    using Element = LinkElement;
+    using Element = std::conditional_t<has_fibres, FibredLinkElement, LinkElement>;
 
     LawType law;
     double inversion_threshold;
 
-    Element precompute(const Corners& X) const { return link_element(X); }
+    Element precompute(const Corners& X) const requires(!has_fibres) { return link_element(X); }
+    /// @param fibre  their direction at rest, of unit length
+    Element precompute(const Corners& X, const Vec3& fibre) const requires has_fibres {
+        return fibred_link_element(X, fibre);
+    }
 
     double volume_ratio(const Element& e, const Corners& x) const {
         return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]) / e.volume;
     }
 
-    /// P-wave modulus at rest times rest volume, joules.
+    /// Highest P-wave modulus at rest times rest volume, joules.
     double stiffness_energy(const Element& e) const {
-        return (law.rest_lambda() + 2.0 * law.rest_mu()) * e.volume;
+        double modulus = law.rest_lambda() + 2.0 * law.rest_mu();
+        if constexpr (has_fibres) {
+            const double along = 1.0 - 2.0 * law.dispersion;  // a0 . H a0
+            modulus += law.rest_fibre_modulus() * along * along;
+        }
+        return modulus * e.volume;
     }
 
     /// Elastic energy, joules.
     double energy(const Element& e, const Corners& x) const {
         const Vec6 dl = squared_links(x) - e.rest_links;
-        const LinkStrain strain{e.vtr.dot(dl), dl.dot(e.Mtr * dl), volume_ratio(e, x)};
-        return e.volume * law.response(strain, inversion_threshold).w;
+        return e.volume * law.response(strain(e, dl, e.Mtr * dl, x), inversion_threshold).w;
     }
 
     /// Nodal forces: minus the gradient of energy(), eq. (11):
@@ -108,10 +134,10 @@ struct HemlKernel {
         const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
         const Vec6 dl = squared_links(x) - e.rest_links;
         const Vec6 Mdl = e.Mtr * dl;
-        const LawResponse r = law.response(
-            LinkStrain{e.vtr.dot(dl), dl.dot(Mdl), volume_ratio(e, x)}, inversion_threshold);
+        const LawResponse r = law.response(strain(e, dl, Mdl, x), inversion_threshold);
         // Tension of the links, Vol dw/dl, doubled as the DLM_i have it.
-        const Vec6 t = 2.0 * e.volume * (r.w_a * e.vtr + 2.0 * r.w_b * Mdl);
+        Vec6 t = 2.0 * e.volume * (r.w_a * e.vtr + 2.0 * r.w_b * Mdl);
+        if constexpr (has_fibres) t += 2.0 * e.volume * r.w_f * e.fibre_links;
         const double p = r.w_J / 6.0;  // w_J dvol/dx_i, eq. (C.4)
         const Vec3 f1 = -((t[0] + t[3] + t[5]) * v1 - t[3] * v2 - t[5] * v3 + p * v2.cross(v3));
         const Vec3 f2 = -((t[1] + t[3] + t[4]) * v2 - t[3] * v1 - t[4] * v3 + p * v3.cross(v1));
@@ -120,18 +146,41 @@ struct HemlKernel {
     }
 
     /// Each corner's part s_i = (lambda + 2 mu) V (1/h_i) sum_j 1/h_j of the nodal bound on the
-    /// stiffness at rest (stable_step.h), N/m; h are the altitudes.
+    /// stiffness at rest (stable_step.h), N/m; h are the altitudes. Fibres that are stretched add
+    /// c V |H g_i| sum_j |H g_j|, for c and H see HasFibres, g_i the gradient of corner i's shape
+    /// function, of length 1/h_i.
     std::array<double, 4> stiffness_bounds(const Element& e, const Corners& X) const {
         std::array<double, 4> inverse_altitude;
+        [[maybe_unused]] std::array<double, 4> fibre_part;  // |H g_i|
         double sum = 0.0;
+        [[maybe_unused]] double fibre_sum = 0.0;
         for (std::size_t i = 0; i < 4; ++i) {
             const Vec3 &a = X[(i + 1) % 4], &b = X[(i + 2) % 4], &c = X[(i + 3) % 4];
             inverse_altitude[i] = (b - a).cross(c - a).norm() / (6.0 * e.volume);
             sum += inverse_altitude[i];
+            if constexpr (has_fibres) {
+                const Vec3 gradient = (b - a).cross(c - a) / (6.0 * e.volume);
+                const double kappa = law.dispersion;
+                fibre_part[i] =
+                    (kappa * gradient + (1.0 - 3.0 * kappa) * e.fibre.dot(gradient) * e.fibre)
+                        .norm();
+                fibre_sum += fibre_part[i];
+            }
         }
         const double modulus = (law.rest_lambda() + 2.0 * law.rest_mu()) * e.volume;
         std::array<double, 4> s;
         for (std::size_t i = 0; i < 4; ++i) s[i] = modulus * inverse_altitude[i] * sum;
+        if constexpr (has_fibres)
+            for (std::size_t i = 0; i < 4; ++i)
+                s[i] += law.rest_fibre_modulus() * e.volume * fibre_part[i] * fibre_sum;
+        return s;
+    }
+
+    /// @param Mdl  Mtr times dl, the changes of the squared links
+    LinkStrain<double> strain(const Element& e, const Vec6& dl, const Vec6& Mdl,
+                              const Corners& x) const {
+        LinkStrain<double> s{e.vtr.dot(dl), dl.dot(Mdl), volume_ratio(e, x)};
+        if constexpr (has_fibres) s.f = e.fibre_links.dot(dl);
         return s;
     }
 };

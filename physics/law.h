@@ -1,14 +1,15 @@
-// Hyperelastic laws as functions of link lengths. A new law is one struct here and one alternative
-// of Law; docs/architecture.md lists what gives it its name and parameters in a scenario. Responses
-// are templates over the kind of number, so that tangents come from the same formulas: LawResponse.
+// Hyperelastic laws as functions of link lengths. A new law is one struct and one alternative of
+// Law, both here, and the row of sim/material_catalog.cpp that gives it its name and parameters in
+// a scenario: docs/adding-a-law.md shows it on Yeoh's law. Responses are templates over the kind of
+// number, so that tangents come from the same formulas: LawResponse.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <variant>
 
+#include "physics/holzapfel_gasser_ogden.h"
 #include "physics/law_response.h"
 #include "physics/ogden.h"
 
@@ -80,21 +81,6 @@ struct CiarletNeoHookean {
     }
 };
 
-/// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion
-/// there, so that crushed elements have finite forces.
-template <class T>
-struct Exponential {
-    T value, first;
-
-    explicit Exponential(const T& x) {
-        using std::exp, std::expm1;
-        const T last = 20.0;
-        const T at = std::min(x, last), d = x - at, e = exp(at);
-        value = expm1(at) + e * d * (1.0 + 0.5 * d);
-        first = e * (1.0 + d);
-    }
-};
-
 /// w = mu/(2 gamma) (exp(gamma (I1 - 3)) - 1) - mu ln J + lambda/2 (ln J)^2: stiffens with strain.
 /// At rest the Lame constants are lambda + 2 mu gamma and mu. HEML 2006, Table 1, corrected.
 struct FungDemiray {
@@ -151,7 +137,31 @@ struct IsochoricFungDemiray {
     }
 };
 
-using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean,
-                         FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden>;
+/// w = c1 i + c2 i^2 + c3 i^3 + K/2 (J - 1)^2 with i = I1 J^-2/3 - 3: stiffens as a polynomial. At
+/// rest mu = 2 c1. Source: O. H. Yeoh, Rubber Chemistry and Technology 66 (1993) 754-771.
+struct Yeoh {
+    double c1, c2, c3, bulk_modulus;  ///< Pa
+
+    double rest_mu() const { return 2.0 * c1; }
+    double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        const VolumeTerm<T> p =
+            extended([](const T& J) { return power_of_volume(J, 2.0 / 3.0); }, s.J, J0);
+        const VolumeTerm<T> v = quadratic_volume_term(s.J, bulk_modulus);
+        const T I1 = 3.0 + s.a, i = I1 * p.value - 3.0;
+        const T slope = c1 + i * (2.0 * c2 + i * 3.0 * c3);
+        return {i * (c1 + i * (c2 + i * c3)) + v.value, slope * p.value, 0.0,
+                slope * I1 * p.first + v.first};
+    }
+};
+
+using Law =
+    std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean, FungDemiray,
+                 IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh, HolzapfelGasserOgden>;
+
+inline bool has_fibres(const Law& law) {
+    return std::visit([]<class L>(const L&) { return HasFibres<L>; }, law);
+}
 
 }  // namespace incise::physics

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/dual.h"
@@ -14,10 +15,11 @@ namespace incise::physics {
 /// lengths, E the Green-Lagrange strain and C = I + 2E:
 template <class T>
 struct LinkStrain {
-    T a;       ///< vtr . dl = tr(2E) = I1 - 3
-    T b;       ///< dl . Mtr dl = tr((2E)^2)
-    T J;       ///< current over rest volume; negative when inverted
-    T f = {};  ///< I4 - 1, the squared stretch along the fibres less 1; 0 without fibres
+    T a;  ///< vtr . dl = tr(2E) = I1 - 3
+    T b;  ///< dl . Mtr dl = tr((2E)^2)
+    T J;  ///< current over rest volume; negative when inverted
+    /// I4 - 1, I4 = a0 . C a0 being the squared stretch along the fibres; 0 without fibres.
+    T f = {};
 };
 
 /// The same strain in numbers that carry their derivatives by it.
@@ -29,7 +31,17 @@ inline LinkStrain<Dual> with_derivatives(const LinkStrain<double>& s) {
 /// Energy density per rest volume (J/m3) and its derivatives.
 template <class T>
 struct LawResponse {
-    T w, w_a, w_b, w_J, w_f = {};
+    T w, w_a, w_b, w_J;
+    T w_f = {};  ///< of laws with fibres
+};
+
+/// A law with one family of fibres, which asks for their direction at rest in each element. About
+/// rest they add c/2 (H : strain)^2 to the energy density where they are stretched, with
+/// H = dispersion 1 + (1 - 3 dispersion) a0 x a0 and c the modulus asked for here, Pa.
+template <class Law>
+concept HasFibres = requires(const Law& law) {
+    law.rest_fibre_modulus();
+    law.dispersion;
 };
 
 /// A function of J with its first two derivatives.
@@ -67,6 +79,21 @@ VolumeTerm<T> power_of_volume(const T& J, double p) {
     const T power = pow(J, -p);
     return {power, -p * power / J, p * (p + 1.0) * power / (J * J)};
 }
+
+/// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion
+/// there, so that crushed elements have finite forces.
+template <class T>
+struct Exponential {
+    T value, first;
+
+    explicit Exponential(const T& x) {
+        using std::exp, std::expm1;
+        const T last = 20.0;
+        const T at = std::min(x, last), d = x - at, e = exp(at);
+        value = expm1(at) + e * d * (1.0 + 0.5 * d);
+        first = e * (1.0 + d);
+    }
+};
 
 /// K/2 (J - 1)^2: finite for any J.
 template <class T>

@@ -45,6 +45,12 @@ struct HybridSprings {
 struct Material {
     double density = 0.0;  ///< kg/m3
     std::variant<HyperElasticLinks, MassSprings, HybridSprings> method;
+
+    /// Whether its elements have to have fibres.
+    bool has_fibres() const {
+        const auto* links = std::get_if<HyperElasticLinks>(&method);
+        return links && physics::has_fibres(links->law);
+    }
 };
 
 }  // namespace incise::physics

@@ -237,6 +237,7 @@ void Model::apply(const ChangeSet& changes) {
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
     history_.apply(changes);
+    elements_.apply(changes);
 
     std::vector<NodeId> touched;
     const auto touch = [&](std::span<const NodeId> nodes) {

@@ -79,10 +79,11 @@ class Model {
     /// momentum. Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of
     /// mass and the elastic energy of all laws (not of springs), but lumped masses lose angular
     /// momentum m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2
-    /// / 2, m being a quarter of the mass of the elements round the edge. Parts of a viscous
-    /// element inherit its history. The inverse of an edit, applied before anything moved, gives
-    /// the former state back to the bit. Forces are those of before until compute_forces is called.
-    /// Throws InputError for a change out of turn. Cost: proportional to the stars touched.
+    /// / 2, m being a quarter of the mass of the elements round the edge. Parts of an element
+    /// inherit its fibres and its history of viscosity. The inverse of an edit, applied before
+    /// anything moved, gives the former state back to the bit. Forces are those of before until
+    /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
+    /// the stars touched.
     void apply(const topology::ChangeSet& changes);
 
     /// How far the fastest node went in the last step, m.
@@ -111,6 +112,10 @@ class Model {
     ElementResult element_result(ElementId e) const {
         return elements_.block_of(mesh_, e).result(e, positions_, history_);
     }
+
+    /// By element id, the direction of the fibres at rest, zero where there are none; empty if no
+    /// material has fibres. Parts of a divided element have that of the whole.
+    std::span<const Vec3> fibres() const { return elements_.fibres(); }
 
     /// Density of what the elements of a region are made of, kg/m3.
     double density(int region) const { return elements_.density(region); }

@@ -95,7 +95,7 @@ template <class LawType>
 struct ViscousKernel : HemlKernel<LawType> {
     using Elastic = HemlKernel<LawType>;
     using Corners = typename Elastic::Corners;
-    struct Element : LinkElement {
+    struct Element : Elastic::Element {
         Mat3 inverse_edges;  ///< V^-1, 1/m
     };
 
@@ -108,10 +108,14 @@ struct ViscousKernel : HemlKernel<LawType> {
         for (const PronyTerm& term : terms) long_time_share -= term.alpha;
     }
 
-    Element precompute(const Corners& X) const {
+    /// @param fibre  of laws with fibres, as Elastic has it
+    template <class... Fibre>
+    requires(sizeof...(Fibre) == (Elastic::has_fibres ? 1 : 0)) Element
+        precompute(const Corners& X, const Fibre&... fibre)
+    const {
         Mat3 V;
         V << X[1] - X[0], X[2] - X[0], X[3] - X[0];
-        return {Elastic::precompute(X), V.inverse()};
+        return {Elastic::precompute(X, fibre...), V.inverse()};
     }
 
     /// Of the long-time moduli, joules: what is left when the terms have relaxed.
@@ -126,6 +130,21 @@ struct ViscousKernel : HemlKernel<LawType> {
         Corners f = forces_of_stress(matrix_of(relaxed), e.volume, e.inverse_edges, x);
         for (std::size_t k = 0; k < 4; ++k) f[k] += elastic[k];
         return f;
+    }
+
+    /// Second Piola-Kirchhoff stress of the law alone, without viscosity, Pa.
+    Mat3 stress(const Element& e, const Corners& x) const {
+        // The invariants come from C itself, which is needed anyway: this spares reading Mtr.
+        const Mat3 C_minus_1 =
+            change_of_right_cauchy_green(squared_links(x) - e.rest_links, e.inverse_edges);
+        LinkStrain<double> strain{C_minus_1.trace(), C_minus_1.squaredNorm(),
+                                  this->volume_ratio(e, x)};
+        if constexpr (Elastic::has_fibres) strain.f = e.fibre.dot(C_minus_1 * e.fibre);
+        const double J0 = this->inversion_threshold;
+        const LawResponse<double> r = this->law.response(strain, J0);
+        Mat3 S = second_piola_kirchhoff(r, C_minus_1, strain.J, J0);
+        if constexpr (Elastic::has_fibres) S += 2.0 * r.w_f * e.fibre * e.fibre.transpose();
+        return S;
     }
 
     void begin_step(double dt) {
@@ -154,15 +173,8 @@ struct ViscousKernel : HemlKernel<LawType> {
     }
 
   private:
-    // The invariants come from C itself, which is needed anyway: this spares reading Mtr.
     void follow(const Element& e, const Corners& x, std::span<SymmetricTensor> memory) const {
-        const Mat3 C_minus_1 =
-            change_of_right_cauchy_green(squared_links(x) - e.rest_links, e.inverse_edges);
-        const LinkStrain strain{C_minus_1.trace(), C_minus_1.squaredNorm(),
-                                this->volume_ratio(e, x)};
-        const double J0 = this->inversion_threshold;
-        const SymmetricTensor S = symmetric_tensor(
-            second_piola_kirchhoff(this->law.response(strain, J0), C_minus_1, strain.J, J0));
+        const SymmetricTensor S = symmetric_tensor(stress(e, x));
         for (std::size_t i = 0; i < terms.size(); ++i)
             memory[i + 1] = steps[i].decay * memory[i + 1] + steps[i].gain * (S - memory[0]);
         memory[0] = S;

@@ -4,10 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <set>
 
 #include "io/mesh_reader.h"
+#include "io/number_format.h"
 #include "sim/elastic_constants.h"
 #include "sim/selection.h"
 #include "topology/box_mesh.h"
@@ -17,16 +19,26 @@ namespace incise::sim {
 
 namespace {
 
-topology::BuiltMesh build_from_file(const std::filesystem::path& path, const MeshSpec& spec) {
-    io::MeshFile file = io::read_mesh(path, {.region_array = spec.region_array});
+std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
+    std::set<std::string> names;
+    for (const MaterialSpec& material : materials)
+        if (const auto* name = std::get_if<std::string>(&material.fibre)) names.insert(*name);
+    return {names.begin(), names.end()};
+}
+
+SourceMesh build_from_file(const std::filesystem::path& path, const MeshSpec& spec,
+                           const std::vector<MaterialSpec>& materials) {
+    io::MeshFile file = io::read_mesh(
+        path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
     for (Vec3& x : file.mesh.points) x *= spec.scale;
     const auto named = [&](const std::string& text) { return path.string() + ": " + text; };
     try {
         topology::BuiltMesh built = topology::Mesh::build(file.mesh);
         file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
-        built.warnings.clear();
-        for (const std::string& warning : file.warnings) built.warnings.push_back(named(warning));
-        return built;
+        for (std::string& warning : file.warnings) warning = named(warning);
+        return {std::move(built.mesh),
+                std::move(file.warnings),
+                {path.string(), std::move(file.cell_vectors)}};
     } catch (const InputError& error) {
         throw InputError(named(error.what()));
     }
@@ -121,6 +133,50 @@ physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
     return load;
 }
 
+/// Of unit length; one that is so to rounding keeps its bits, so that a frame read back as a mesh
+/// goes on alike. Zero if it has no direction.
+Vec3 unit(const Vec3& v) {
+    constexpr double rounding = 1e-15;
+    const double norm = v.stableNorm();
+    if (!std::isfinite(norm) || norm == 0.0) return Vec3::Zero();
+    return std::abs(norm - 1.0) <= rounding ? v : Vec3(v / norm);
+}
+
+std::string text_of(const Vec3& v) {
+    return "[" + io::format_number(v.x()) + ", " + io::format_number(v.y()) + ", " +
+           io::format_number(v.z()) + "]";
+}
+
+/// Directions by element id; none if no material has fibres.
+std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
+                               const physics::MaterialTable& table, const topology::Mesh& mesh,
+                               const CellVectors& cell_vectors) {
+    const auto& materials = table.materials;
+    if (std::none_of(materials.begin(), materials.end(),
+                     [](const physics::Material& m) { return m.has_fibres(); }))
+        return {};
+    std::vector<Vec3> fibres(mesh.element_capacity(), Vec3::Zero());
+    for (std::size_t i = 0; i < fibres.size(); ++i) {
+        const topology::ElementId e(i);
+        const std::size_t material = table.of_region.at(mesh.region(e));
+        if (!mesh.is_alive(e) || !materials[material].has_fibres()) continue;
+        const auto& given = specs[material].fibre;
+        if (const auto* direction = std::get_if<Vec3>(&given)) fibres[i] = *direction;
+        const auto* array = std::get_if<std::string>(&given);
+        if (!array) continue;
+        const auto label = static_cast<std::size_t>(mesh.label(e));
+        const Vec3& vector = cell_vectors.by_name.at(*array).at(label);
+        fibres[i] = unit(vector);
+        if (fibres[i].isZero(0.0))
+            throw InputError(cell_vectors.file + ": element " + std::to_string(label) +
+                             ", of region " + std::to_string(mesh.region(e)) + ", has " +
+                             text_of(vector) + " in the cell array '" + *array +
+                             "', which is no direction of fibres: its material needs one in each "
+                             "element; correct the array, or give the region a law without fibres");
+    }
+    return fibres;
+}
+
 std::string list(const std::set<int>& regions) {
     std::string text;
     for (const int region : regions) text += (text.empty() ? "" : ", ") + std::to_string(region);
@@ -129,17 +185,18 @@ std::string list(const std::set<int>& regions) {
 
 }  // namespace
 
-topology::BuiltMesh build_mesh(const MeshSpec& spec) {
+SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
     if (const auto* path = std::get_if<std::filesystem::path>(&spec.source))
-        return build_from_file(*path, spec);
+        return build_from_file(*path, spec, materials);
     const auto& box = std::get<BoxMeshSpec>(spec.source);
     require_memory_for(box);
-    return topology::Mesh::build(
+    topology::BuiltMesh built = topology::Mesh::build(
         topology::box_mesh(box.element, spec.scale * box.origin, spec.scale * box.size, box.cells));
+    return {std::move(built.mesh), std::move(built.warnings), {}};
 }
 
 physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
-                                       const topology::Mesh& mesh,
+                                       const topology::Mesh& mesh, const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings) {
     std::set<int> present;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
@@ -169,6 +226,7 @@ physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
                          "that no other names");
     for (const int region : left)
         table.of_region[region] = static_cast<std::size_t>(rest - specs.begin());
+    table.fibres = build_fibres(specs, table, mesh, cell_vectors);
     return table;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,30 @@
 
 namespace incise::sim {
 
-/// Reads or makes the scenario's mesh. Warnings name the file.
-/// Throws InputError with every problem found, each line naming the file.
-topology::BuiltMesh build_mesh(const MeshSpec& spec);
+/// Cell arrays of a mesh file.
+struct CellVectors {
+    std::string file;
+    std::map<std::string, std::vector<Vec3>> by_name;  ///< one vector for each label of an element
+};
 
-/// Which region has which material. Warns of regions that the mesh does not have.
-/// Throws InputError for a region of the mesh without material.
+/// The mesh of a scenario, with what its file says of the cells.
+struct SourceMesh {
+    topology::Mesh mesh;
+    std::vector<std::string> warnings;
+    CellVectors cell_vectors;
+};
+
+/// Reads or makes the scenario's mesh, with the cell arrays that materials name. Warnings name the
+/// file.
+/// Throws InputError with every problem found, each line naming the file.
+SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials);
+
+/// Which region has which material, and which element fibres of which direction. Warns of regions
+/// that the mesh does not have.
+/// Throws InputError for a region of the mesh without material, and for an element whose material
+/// has fibres and whose vector in the file has no direction.
 physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
-                                       const topology::Mesh& mesh,
+                                       const topology::Mesh& mesh, const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);
 
 /// Gravity, damping, supports and loads. Throws InputError for empty selections.

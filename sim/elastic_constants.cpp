@@ -22,21 +22,16 @@ ParameterSet keys_of(const ElasticParameters& given) {
 void check_parameter_set(const MaterialModel& model, const ElasticParameters& given) {
     const std::string listed = list_of(given);
     if (!is_complete(model, given))
-        throw InputError(std::string(model.key) + " takes " + list_of_sets(model.parameter_sets) +
+        throw InputError(std::string(model.key) + " takes " + list_of_parameters(model) +
                          "; given: " + (listed.empty() ? "none of them" : listed));
 }
 
-double shear_modulus(const ElasticParameters& p) {
+double shear_modulus(const MaterialModel& model, const ElasticParameters& p) {
     using enum Parameter;
     if (p[young]) return *p[young] / (2.0 * (1.0 + *p[poisson]));
     if (p[shear_modulus]) return *p[shear_modulus];
     if (p[lame_mu]) return *p[lame_mu];
-    if (p[terms]) {
-        double sum = 0.0;
-        for (const auto& term : p.terms) sum += term.mu;
-        return sum;
-    }
-    return 2.0 * (*p[c1] + p[c2].value_or(0.0));
+    return model.shear_modulus(p);
 }
 
 double rest_lambda(const ElasticParameters& p, double mu) {
@@ -62,7 +57,8 @@ physics::Law make(const MaterialModel& model, const ElasticConstants& constants,
 }  // namespace
 
 bool is_complete(const MaterialModel& model, const ElasticParameters& given) {
-    const ParameterSet keys = keys_of(given);
+    ParameterSet keys = keys_of(given);
+    for (const Parameter optional : model.optional) std::erase(keys, optional);
     return std::any_of(
         model.parameter_sets.begin(), model.parameter_sets.end(), [&](const ParameterSet& set) {
             return std::is_permutation(set.begin(), set.end(), keys.begin(), keys.end());
@@ -74,7 +70,7 @@ std::string list_of(const ElasticParameters& given) {
     return list_of_sets({&keys, 1});
 }
 
-ElasticConstants resolve(Method method, Law law, const ElasticParameters& given) {
+ElasticConstants resolve(Method method, std::string_view law, const ElasticParameters& given) {
     const MaterialModel& model = sim::model(method, law);
     check_parameter_set(model, given);
     ElasticConstants constants;
@@ -82,7 +78,7 @@ ElasticConstants resolve(Method method, Law law, const ElasticParameters& given)
         constants.lambda = constants.mu = 0.4 * *given[Parameter::young];
         return constants;
     }
-    constants.mu = shear_modulus(given);
+    constants.mu = shear_modulus(model, given);
     constants.lambda = rest_lambda(given, constants.mu);
     if (!(constants.mu > 0.0))
         refuse(model, "the shear modulus is " + format_number(constants.mu) +
@@ -96,8 +92,8 @@ ElasticConstants resolve(Method method, Law law, const ElasticParameters& given)
     return constants;
 }
 
-physics::Law make_law(Law law, const ElasticParameters& given) {
-    return make(sim::model(law), resolve(Method::heml, law, given), given);
+physics::Law make_law(std::string_view law, const ElasticParameters& given) {
+    return make(law_named(law), resolve(Method::heml, law, given), given);
 }
 
 }  // namespace incise::sim

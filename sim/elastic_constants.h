@@ -11,15 +11,15 @@ namespace incise::sim {
 /// 1/4, lambda = mu = 2/5 young; a given mesh deviates from them.
 /// Throws InputError if the parameters are not exactly one of the sets that the model takes, or
 /// the constants are not admissible.
-ElasticConstants resolve(Method method, Law law, const ElasticParameters& given);
+ElasticConstants resolve(Method method, std::string_view law, const ElasticParameters& given);
 
-/// Whether the parameters are exactly one of the sets that the model takes.
+/// Whether the parameters are exactly one of the sets that the model takes, besides optional ones.
 bool is_complete(const MaterialModel& model, const ElasticParameters& given);
 
 /// Such as "young + poisson"; empty if there are none.
 std::string list_of(const ElasticParameters& given);
 
 /// The law of HEML itself. Throws as resolve().
-physics::Law make_law(Law law, const ElasticParameters& given);
+physics::Law make_law(std::string_view law, const ElasticParameters& given);
 
 }  // namespace incise::sim

@@ -72,6 +72,9 @@ io::Frame build_frame(const physics::Model& model, double time, std::span<const 
     auto& cells = frame.cell_fields;
     cells.push_back(
         field<std::int64_t>("element_id", 1, elements, [&](ElementId e) { return mesh.label(e); }));
+    if (const auto fibres = model.fibres(); !fibres.empty())
+        cells.push_back(
+            field<double>("fibre", 3, elements, [&](ElementId e) { return fibres[e.index()]; }));
     std::vector<physics::ElementResult> results;
     for (const ElementId e : elements) results.push_back(model.element_result(e));
     std::vector<std::size_t> rows(elements.size());

@@ -10,9 +10,9 @@
 
 namespace incise::sim {
 
-/// Points at their current positions; always rest_position, node_id, element_id and region, and
-/// the fields asked for. Ids are labels: the numbers of the source, later ones for later nodes.
-/// Cost: O(#nodes + #elements).
+/// Points at their current positions; always rest_position, node_id, element_id and region, the
+/// direction of the fibres at rest if a material has any, and the fields asked for. Ids are labels:
+/// the numbers of the source, later ones for later nodes. Cost: O(#nodes + #elements).
 io::Frame build_frame(const physics::Model& model, double time, std::span<const Field> fields);
 
 }  // namespace incise::sim

@@ -2,6 +2,7 @@
 #include "sim/material_catalog.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "io/number_format.h"
 #include "topology/error.h"
@@ -19,13 +20,24 @@ constexpr std::array<ParameterInfo, num_parameters> parameter_table = {{
     {bulk_modulus, "bulk_modulus", "Pa", "bulk modulus K = lambda + 2 mu / 3", limits::positive},
     {lame_lambda, "lame_lambda", "Pa", "Lame's first parameter lambda at rest", limits::any},
     {lame_mu, "lame_mu", "Pa", "Lame's second parameter mu, the shear modulus", limits::positive},
-    {c1, "c1", "Pa", "constant of I1: mu / 2 (neo-Hookean), mu / 2 - c2 (Mooney-Rivlin)",
-     limits::positive},
-    {c2, "c2", "Pa", "constant of I2 (Mooney-Rivlin)", limits::non_negative},
+    {c1, "c1", "Pa", "constant of I1: mu / 2, or mu / 2 - c2 (Mooney-Rivlin)", limits::positive},
+    {c2, "c2", "Pa", "constant of I2 (Mooney-Rivlin) or of the square of I1 - 3 (Yeoh)",
+     limits::non_negative},
     {gamma, "gamma", "1", "how fast the tissue stiffens (Fung-Demiray)", limits::positive},
     {terms, "terms", "Pa, 1", "list of { mu, alpha } (Ogden); the mu add up to the shear modulus",
      limits::any},
+    {c3, "c3", "Pa", "constant of the cube of I1 - 3 (Yeoh)", limits::non_negative},
+    {k1, "k1", "Pa", "stiffness of the fibres (Holzapfel-Gasser-Ogden)", limits::positive},
+    {k2, "k2", "1", "how fast the fibres stiffen (Holzapfel-Gasser-Ogden)", limits::positive},
+    {dispersion,
+     "dispersion",
+     "1",
+     "kappa: 0 for parallel fibres, which is the default, 1/3 for fibres in all directions",
+     {.low = 0.0, .high = 1.0 / 3.0, .includes_low = true, .includes_high = true}},
 }};
+
+double twice_c1(const ElasticParameters& p) { return 2.0 * *p[c1]; }
+double twice_c1_and_c2(const ElasticParameters& p) { return 2.0 * (*p[c1] + *p[c2]); }
 
 double lambda_of_logarithm(const ElasticConstants& k) {
     if (!(k.lambda >= 0.0))
@@ -33,14 +45,6 @@ double lambda_of_logarithm(const ElasticConstants& k) {
                          " at rest, but this law needs at least 0: Poisson's ratio must not be "
                          "negative");
     return k.lambda;
-}
-
-physics::Law make_saint_venant_kirchhoff(const ElasticConstants& k, const ElasticParameters&) {
-    return physics::SaintVenantKirchhoff{k.lambda, k.mu};
-}
-
-physics::Law make_neo_hookean(const ElasticConstants& k, const ElasticParameters& p) {
-    return physics::NeoHookean{p[c1].value_or(k.mu / 2.0), lambda_of_logarithm(k)};
 }
 
 physics::Law make_mooney_rivlin(const ElasticConstants& k, const ElasticParameters& p) {
@@ -63,6 +67,12 @@ physics::Law make_fung_demiray(const ElasticConstants& k, const ElasticParameter
     return physics::FungDemiray{k.mu, *p[gamma], lambda - 2.0 * k.mu * *p[gamma]};
 }
 
+double sum_of_terms(const ElasticParameters& p) {
+    double sum = 0.0;
+    for (const auto& term : p.terms) sum += term.mu;
+    return sum;
+}
+
 physics::Law make_ogden(const ElasticConstants& k, const ElasticParameters& p) {
     if (p.terms.size() > physics::Ogden::max_terms)
         throw InputError("has " + std::to_string(p.terms.size()) + " terms, but may have at most " +
@@ -74,119 +84,166 @@ physics::Law make_ogden(const ElasticConstants& k, const ElasticParameters& p) {
     return law;
 }
 
-physics::Law make_ciarlet_neo_hookean(const ElasticConstants& k, const ElasticParameters&) {
-    return physics::CiarletNeoHookean{k.mu, lambda_of_logarithm(k)};
-}
-
 /// Also neo-Hookean: c2 is 0 then.
 physics::Law make_isochoric_mooney_rivlin(const ElasticConstants& k, const ElasticParameters& p) {
     const double second = p[c2].value_or(0.0);
     return physics::IsochoricMooneyRivlin{p[c1].value_or(k.mu / 2.0), second, k.bulk_modulus()};
 }
 
-physics::Law make_isochoric_fung_demiray(const ElasticConstants& k, const ElasticParameters& p) {
-    return physics::IsochoricFungDemiray{k.mu, *p[gamma], k.bulk_modulus()};
-}
-
-const std::array<MaterialModel, 9>& law_table() {
-    static const std::array<MaterialModel, 9> table = {{
-        {"saint-venant-kirchhoff",
-         "Saint Venant-Kirchhoff: Hooke's law in Green's strain",
-         "w = lambda/2 (tr E)^2 + mu tr(E^2),  E = (F^T F - 1) / 2",
-         {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
-         "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
-         "Large rotations with small strains (some 10 %). The cheapest law.",
-         "Softens in compression and collapses below a stretch of 0.577; its energy at zero "
-         "volume is finite, so it does not resist inversion; at Poisson's ratios near 0.5 it "
-         "does not keep the volume at large strain. Prefer neo-hookean where tissue is "
-         "compressed strongly.",
-         make_saint_venant_kirchhoff},
-        {"neo-hookean",
-         "Neo-Hookean, compressible, with logarithmic volume term",
-         "w = c1 (I1 - 3) - 2 c1 ln J + lambda/2 ln^2 J,  c1 = mu / 2",
-         {{young, poisson},
-          {shear_modulus, bulk_modulus},
-          {lame_lambda, lame_mu},
-          {c1, bulk_modulus},
-          {c1, lame_lambda}},
-         "mu > 0, lambda >= 0 (Poisson's ratio from 0 to below 0.5)",
-         "Soft tissue at moderate strains (some 50 %); the sensible first choice.",
-         "ln^2 J turns concave when a volume grows beyond ln J = 1 + mu/lambda. For J below "
-         "inversion_threshold the volume term goes on as a parabola, which pushes flat or "
-         "inverted elements back; an element that collapsed to a point or a line is not "
-         "pushed back.",
-         make_neo_hookean},
-        {"mooney-rivlin",
-         "Mooney-Rivlin, compressible, with logarithmic volume term",
-         "w = c1 (I1 - 3) + c2 (I2 - 3) - (2 c1 + 4 c2) ln J + (lambda - 4 c2)/2 ln^2 J,  mu "
-         "= 2 (c1 + c2)",
-         {{c1, c2, bulk_modulus}, {c1, c2, lame_lambda}, {c1, c2, poisson}},
-         "c1 > 0, c2 >= 0, c2 <= lambda/4, where lambda and mu are the moduli at rest",
-         "Tissue for which both constants were measured; strains up to some 100 %.",
-         "As neo-hookean. Moduli alone do not determine it: c1 and c2 must be given.",
-         make_mooney_rivlin},
-        {"fung-demiray",
-         "Fung-Demiray: stiffens exponentially, with logarithmic volume term",
-         "w = mu/(2 gamma) (exp(gamma (I1 - 3)) - 1) - mu ln J + (lambda - 2 mu gamma)/2 ln^2 J",
-         {{young, poisson, gamma},
-          {shear_modulus, bulk_modulus, gamma},
-          {lame_lambda, lame_mu, gamma}},
-         "mu > 0, gamma > 0, gamma <= lambda / (2 mu), where lambda and mu are the moduli at rest",
-         "Tissue with collagen: skin, vessels, membranes, at strains up to some 50 %.",
-         "As neo-hookean. The stable step is that at rest, and stiffness grows by exp(gamma (I1 - "
-         "3)): lower dynamics.safety where gamma (I1 - 3) exceeds 1.",
-         make_fung_demiray},
-        {"ogden",
-         "Ogden: powers of the isochoric principal stretches, up to six terms",
-         "w = sum 2 mu_i / alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) + K/2 (J - 1)^2, "
-         " l_k = J^(-1/3) times the principal stretches",
-         {{bulk_modulus, terms}, {poisson, terms}, {lame_lambda, terms}},
-         "sum of the mu_i > 0, K > 0, alpha_i not 0",
-         "Tissue that was measured so: brain, fat, skin; stretches between a half and two.",
-         "The mu_i add up to the shear modulus: many papers print mu_i alpha_i / 2 in their place. "
-         "Some ten times as costly as neo-hookean. Squared stretches below the square of "
-         "inversion_threshold follow a parabola.",
-         make_ogden},
-        {"neo-hookean-ciarlet",
-         "Neo-Hookean with Ciarlet's volume term, convex in J",
-         "w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1)",
-         {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
-         "mu > 0, lambda >= 0 (Poisson's ratio from 0 to below 0.5)",
-         "As neo-hookean, where volumes grow much.",
-         "As neo-hookean, but for the growth of volume.",
-         make_ciarlet_neo_hookean},
-        {"neo-hookean-isochoric",
-         "Neo-Hookean in the isochoric strain: change of shape and of volume have energies of "
-         "their own",
-         "w = c1 (I1 J^(-2/3) - 3) + K/2 (J - 1)^2,  c1 = mu / 2",
-         {{young, poisson},
-          {shear_modulus, bulk_modulus},
-          {lame_lambda, lame_mu},
-          {c1, bulk_modulus}},
-         "mu > 0, K > 0",
-         "Nearly incompressible tissue; to compare with programs that use this form.",
-         "The energy at zero volume is finite. Below inversion_threshold the powers of J go on as "
-         "parabolas.",
-         make_isochoric_mooney_rivlin},
-        {"mooney-rivlin-isochoric",
-         "Mooney-Rivlin in the isochoric strain",
-         "w = c1 (I1 J^(-2/3) - 3) + c2 (I2 J^(-4/3) - 3) + K/2 (J - 1)^2,  mu = 2 (c1 + c2)",
-         {{c1, c2, bulk_modulus}, {c1, c2, lame_lambda}, {c1, c2, poisson}},
-         "c1 > 0, c2 >= 0, K > 0",
-         "As mooney-rivlin, nearly incompressible tissue.",
-         "As neo-hookean-isochoric.",
-         make_isochoric_mooney_rivlin},
-        {"fung-demiray-isochoric",
-         "Fung-Demiray in the isochoric strain: any gamma",
-         "w = mu/(2 gamma) (exp(gamma (I1 J^(-2/3) - 3)) - 1) + K/2 (J - 1)^2",
-         {{young, poisson, gamma},
-          {shear_modulus, bulk_modulus, gamma},
-          {lame_lambda, lame_mu, gamma}},
-         "mu > 0, gamma > 0, K > 0",
-         "As fung-demiray, nearly incompressible tissue.",
-         "As fung-demiray and neo-hookean-isochoric.",
-         make_isochoric_fung_demiray},
-    }};
+const std::vector<MaterialModel>& law_table() {
+    static const std::vector<MaterialModel> table = {
+        {.key = "saint-venant-kirchhoff",
+         .title = "Saint Venant-Kirchhoff: Hooke's law in Green's strain",
+         .energy = "w = lambda/2 (tr E)^2 + mu tr(E^2),  E = (F^T F - 1) / 2",
+         .parameter_sets = {{young, poisson},
+                            {shear_modulus, bulk_modulus},
+                            {lame_lambda, lame_mu}},
+         .admissible = "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
+         .use = "Large rotations with small strains (some 10 %). The cheapest law.",
+         .limits = "Softens in compression and collapses below a stretch of 0.577; its energy at "
+                   "zero volume is finite, so it does not resist inversion; at Poisson's ratios "
+                   "near 0.5 it does not keep the volume at large strain. Prefer neo-hookean where "
+                   "tissue is compressed strongly.",
+         .make = [](const ElasticConstants& k, const ElasticParameters&) -> physics::Law {
+             return physics::SaintVenantKirchhoff{k.lambda, k.mu};
+         }},
+        {.key = "neo-hookean",
+         .title = "Neo-Hookean, compressible, with logarithmic volume term",
+         .energy = "w = c1 (I1 - 3) - 2 c1 ln J + lambda/2 ln^2 J,  c1 = mu / 2",
+         .parameter_sets = {{young, poisson},
+                            {shear_modulus, bulk_modulus},
+                            {lame_lambda, lame_mu},
+                            {c1, bulk_modulus},
+                            {c1, lame_lambda}},
+         .admissible = "mu > 0, lambda >= 0 (Poisson's ratio from 0 to below 0.5)",
+         .use = "Soft tissue at moderate strains (some 50 %); the sensible first choice.",
+         .limits = "ln^2 J turns concave when a volume grows beyond ln J = 1 + mu/lambda. For J "
+                   "below inversion_threshold the volume term goes on as a parabola, which pushes "
+                   "flat or inverted elements back; an element that collapsed to a point or a line "
+                   "is not pushed back.",
+         .shear_modulus = twice_c1,
+         .make = [](const ElasticConstants& k, const ElasticParameters& p) -> physics::Law {
+             return physics::NeoHookean{p[c1].value_or(k.mu / 2.0), lambda_of_logarithm(k)};
+         }},
+        {.key = "mooney-rivlin",
+         .title = "Mooney-Rivlin, compressible, with logarithmic volume term",
+         .energy = "w = c1 (I1 - 3) + c2 (I2 - 3) - (2 c1 + 4 c2) ln J + (lambda - 4 c2)/2 ln^2 J, "
+                   " mu = 2 (c1 + c2)",
+         .parameter_sets = {{c1, c2, bulk_modulus}, {c1, c2, lame_lambda}, {c1, c2, poisson}},
+         .admissible =
+             "c1 > 0, c2 >= 0, c2 <= lambda/4, where lambda and mu are the moduli at rest",
+         .use = "Tissue for which both constants were measured; strains up to some 100 %.",
+         .limits = "As neo-hookean. Moduli alone do not determine it: c1 and c2 must be given.",
+         .shear_modulus = twice_c1_and_c2,
+         .make = make_mooney_rivlin},
+        {.key = "fung-demiray",
+         .title = "Fung-Demiray: stiffens exponentially, with logarithmic volume term",
+         .energy = "w = mu/(2 gamma) (exp(gamma (I1 - 3)) - 1) - mu ln J + (lambda - 2 mu gamma)/2 "
+                   "ln^2 J",
+         .parameter_sets = {{young, poisson, gamma},
+                            {shear_modulus, bulk_modulus, gamma},
+                            {lame_lambda, lame_mu, gamma}},
+         .admissible = "mu > 0, gamma > 0, gamma <= lambda / (2 mu), where lambda and mu are the "
+                       "moduli at rest",
+         .use = "Tissue with collagen: skin, vessels, membranes, at strains up to some 50 %.",
+         .limits = "As neo-hookean. The stable step is that at rest, and stiffness grows by "
+                   "exp(gamma (I1 - 3)): lower dynamics.safety where gamma (I1 - 3) exceeds 1.",
+         .make = make_fung_demiray},
+        {.key = "ogden",
+         .title = "Ogden: powers of the isochoric principal stretches, up to six terms",
+         .energy = "w = sum 2 mu_i / alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) + K/2 (J "
+                   "- 1)^2,  l_k = J^(-1/3) times the principal stretches",
+         .parameter_sets = {{bulk_modulus, terms}, {poisson, terms}, {lame_lambda, terms}},
+         .admissible = "sum of the mu_i > 0, K > 0, alpha_i not 0",
+         .use = "Tissue that was measured so: brain, fat, skin; stretches between a half and two.",
+         .limits = "The mu_i add up to the shear modulus: many papers print mu_i alpha_i / 2 in "
+                   "their place. Some ten times as costly as neo-hookean. Squared stretches below "
+                   "the square of inversion_threshold follow a parabola.",
+         .shear_modulus = sum_of_terms,
+         .make = make_ogden},
+        {.key = "neo-hookean-ciarlet",
+         .title = "Neo-Hookean with Ciarlet's volume term, convex in J",
+         .energy = "w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1)",
+         .parameter_sets = {{young, poisson},
+                            {shear_modulus, bulk_modulus},
+                            {lame_lambda, lame_mu}},
+         .admissible = "mu > 0, lambda >= 0 (Poisson's ratio from 0 to below 0.5)",
+         .use = "As neo-hookean, where volumes grow much.",
+         .limits = "As neo-hookean, but for the growth of volume.",
+         .make = [](const ElasticConstants& k, const ElasticParameters&) -> physics::Law {
+             return physics::CiarletNeoHookean{k.mu, lambda_of_logarithm(k)};
+         }},
+        {.key = "neo-hookean-isochoric",
+         .title = "Neo-Hookean in the isochoric strain: change of shape and of volume have "
+                  "energies of their own",
+         .energy = "w = c1 (I1 J^(-2/3) - 3) + K/2 (J - 1)^2,  c1 = mu / 2",
+         .parameter_sets = {{young, poisson},
+                            {shear_modulus, bulk_modulus},
+                            {lame_lambda, lame_mu},
+                            {c1, bulk_modulus}},
+         .admissible = "mu > 0, K > 0",
+         .use = "Nearly incompressible tissue; to compare with programs that use this form.",
+         .limits = "The energy at zero volume is finite. Below inversion_threshold the powers of J "
+                   "go on as parabolas.",
+         .shear_modulus = twice_c1,
+         .make = make_isochoric_mooney_rivlin},
+        {.key = "mooney-rivlin-isochoric",
+         .title = "Mooney-Rivlin in the isochoric strain",
+         .energy =
+             "w = c1 (I1 J^(-2/3) - 3) + c2 (I2 J^(-4/3) - 3) + K/2 (J - 1)^2,  mu = 2 (c1 + c2)",
+         .parameter_sets = {{c1, c2, bulk_modulus}, {c1, c2, lame_lambda}, {c1, c2, poisson}},
+         .admissible = "c1 > 0, c2 >= 0, K > 0",
+         .use = "As mooney-rivlin, nearly incompressible tissue.",
+         .limits = "As neo-hookean-isochoric.",
+         .shear_modulus = twice_c1_and_c2,
+         .make = make_isochoric_mooney_rivlin},
+        {.key = "fung-demiray-isochoric",
+         .title = "Fung-Demiray in the isochoric strain: any gamma",
+         .energy = "w = mu/(2 gamma) (exp(gamma (I1 J^(-2/3) - 3)) - 1) + K/2 (J - 1)^2",
+         .parameter_sets = {{young, poisson, gamma},
+                            {shear_modulus, bulk_modulus, gamma},
+                            {lame_lambda, lame_mu, gamma}},
+         .admissible = "mu > 0, gamma > 0, K > 0",
+         .use = "As fung-demiray, nearly incompressible tissue.",
+         .limits = "As fung-demiray and neo-hookean-isochoric.",
+         .make = [](const ElasticConstants& k, const ElasticParameters& p) -> physics::Law {
+             return physics::IsochoricFungDemiray{k.mu, *p[gamma], k.bulk_modulus()};
+         }},
+        {.key = "yeoh",
+         .title = "Yeoh: a polynomial of the isochoric I1, which stiffens with strain",
+         .energy = "w = c1 (I1 J^(-2/3) - 3) + c2 (I1 J^(-2/3) - 3)^2 + c3 (I1 J^(-2/3) - 3)^3 + "
+                   "K/2 (J - 1)^2,  c1 = mu / 2",
+         .parameter_sets = {{c1, c2, c3, bulk_modulus}, {c1, c2, c3, poisson}},
+         .admissible = "c1 > 0, c2 >= 0, c3 >= 0, K > 0",
+         .use = "Tissue that stiffens, less abruptly than by an exponential.",
+         .limits = "As neo-hookean-isochoric.",
+         .shear_modulus = twice_c1,
+         .make = [](const ElasticConstants& k, const ElasticParameters& p) -> physics::Law {
+             return physics::Yeoh{*p[c1], *p[c2], *p[c3], k.bulk_modulus()};
+         }},
+        {.key = "holzapfel-gasser-ogden",
+         .title = "Holzapfel-Gasser-Ogden: neo-Hookean ground substance, one family of fibres",
+         .energy = "w = mu/2 (I1 J^(-2/3) - 3) + K/2 (J - 1)^2 + k1/(2 k2) (exp(k2 E^2) - 1), the "
+                   "last for E > 0 only,  E = kappa (I1 - 3) + (1 - 3 kappa) (I4 - 1)",
+         .parameter_sets = {{young, poisson, k1, k2},
+                            {shear_modulus, bulk_modulus, k1, k2},
+                            {lame_lambda, lame_mu, k1, k2},
+                            {c1, bulk_modulus, k1, k2}},
+         .optional = {dispersion},
+         .admissible =
+             "mu > 0, K > 0 (both of the ground substance), k1 > 0, k2 > 0, 0 <= kappa <= 1/3",
+         .use = "Tissue with collagen fibres in one direction: skin along its lines, tendon, "
+                "muscle, one layer of a vessel. Needs fibre or fibre_array.",
+         .limits = "Fibres carry tension only. The stable step is that at rest with the fibres "
+                   "taut; they stiffen by exp(k2 E^2): lower dynamics.safety where k2 E^2 exceeds "
+                   "0.1. Below inversion_threshold the power of J goes on as a parabola.",
+         .has_fibres = true,
+         .shear_modulus = twice_c1,
+         .make = [](const ElasticConstants& k, const ElasticParameters& p) -> physics::Law {
+             return physics::HolzapfelGasserOgden{k.mu, k.bulk_modulus(), *p[k1], *p[k2],
+                                                  p[dispersion].value_or(0.0)};
+         }},
+    };
     return table;
 }
 
@@ -202,43 +259,54 @@ const ParameterInfo& info(Parameter parameter) {
 
 std::span<const MaterialModel> laws() { return law_table(); }
 
-const MaterialModel& model(Law law) { return law_table()[static_cast<std::size_t>(law)]; }
+const MaterialModel& law_named(std::string_view key) {
+    const auto& table = law_table();
+    const auto row = std::find_if(table.begin(), table.end(),
+                                  [&](const MaterialModel& law) { return law.key == key; });
+    if (row == table.end()) throw std::invalid_argument("no law '" + std::string(key) + "'");
+    return *row;
+}
 
 const MaterialModel& mass_spring_model() {
     static const MaterialModel table = {
-        "mass-spring",
-        "Springs along the edges: the classical baseline",
-        "W = sum over edges of k/2 (l - L)^2, k the sum of young V / L^2 over the elements there",
-        {{young}},
-        "young > 0",
-        "Comparison with the classical method, not for predictions.",
-        "Springs that pull along their own direction fix Poisson's ratio near 1/4 and the "
-        "volume is not kept; stiffness depends on the mesh. So a law, poisson and the other "
-        "moduli are refused."};
+        .key = "mass-spring",
+        .title = "Springs along the edges: the classical baseline",
+        .energy =
+            "W = sum over edges of k/2 (l - L)^2, k the sum of young V / L^2 over the elements "
+            "there",
+        .parameter_sets = {{young}},
+        .admissible = "young > 0",
+        .use = "Comparison with the classical method, not for predictions.",
+        .limits =
+            "Springs that pull along their own direction fix Poisson's ratio near 1/4 and the "
+            "volume is not kept; stiffness depends on the mesh. So a law, poisson and the other "
+            "moduli are refused."};
     return table;
 }
 
 const MaterialModel& hybmss_model() {
     static const MaterialModel table = {
-        "hybmss",
-        "Hybrid mass-spring system on hexahedra: springs and a term of volume",
-        "W = sum over springs of k/2 (l - L)^2 + kappa V/2 (V'/V - 1)^2 a cell, kappa = K - 5 G / "
-        "3",
-        {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
-        "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
-        "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.4 to 1; "
-        "strains of some 10 %, nearly incompressible tissue too. stiffness_ratio = inf for bodies "
-        "that are cut or stand beside other elements.",
-        "Below a Poisson's ratio of 1/4 kappa is negative and tension is lost at large strain: at "
-        "a "
-        "stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 along one axis, of 1.1, "
-        "1.16, "
-        "1.22 and 1.37 all round, sooner for negative ratios. Without face diagonals "
-        "(stiffness_ratio = 0) bodies wrinkle under any load. Inverted cells may stay inverted."};
+        .key = "hybmss",
+        .title = "Hybrid mass-spring system on hexahedra: springs and a term of volume",
+        .energy =
+            "W = sum over springs of k/2 (l - L)^2 + kappa V/2 (V'/V - 1)^2 a cell, kappa = K - 5 "
+            "G / 3",
+        .parameter_sets = {{young, poisson}, {shear_modulus, bulk_modulus}, {lame_lambda, lame_mu}},
+        .admissible = "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
+        .use =
+            "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.4 to 1; "
+            "strains of some 10 %, nearly incompressible tissue too. stiffness_ratio = inf for "
+            "bodies that are cut or stand beside other elements.",
+        .limits =
+            "Below a Poisson's ratio of 1/4 kappa is negative and tension is lost at large strain: "
+            "at a stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 along one axis, of "
+            "1.1, 1.16, 1.22 and 1.37 all round, sooner for negative ratios. Without face "
+            "diagonals (stiffness_ratio = 0) bodies wrinkle under any load. Inverted cells may "
+            "stay inverted."};
     return table;
 }
 
-const MaterialModel& model(Method method, Law law) {
+const MaterialModel& model(Method method, std::string_view law) {
     switch (method) {
         case Method::mass_spring:
             return mass_spring_model();
@@ -247,7 +315,7 @@ const MaterialModel& model(Method method, Law law) {
         case Method::heml:
             break;
     }
-    return model(law);
+    return law_named(law);
 }
 
 std::span<const std::string_view> method_names() { return method_table; }
@@ -259,6 +327,13 @@ std::string list_of_sets(std::span<const ParameterSet> sets) {
         for (std::size_t i = 0; i < set.size(); ++i)
             text += (i > 0 ? " + " : "") + std::string(info(set[i]).key);
     }
+    return text;
+}
+
+std::string list_of_parameters(const MaterialModel& model) {
+    std::string text = list_of_sets(model.parameter_sets);
+    if (!model.optional.empty())
+        text += "; " + list_of_sets({&model.optional, 1}) + " may be added";
     return text;
 }
 

@@ -20,18 +20,6 @@ namespace incise::sim {
 
 enum class Method : std::uint8_t { heml, mass_spring, hybmss };
 
-enum class Law : std::uint8_t {
-    saint_venant_kirchhoff,
-    neo_hookean,
-    mooney_rivlin,
-    fung_demiray,
-    ogden,
-    ciarlet_neo_hookean,
-    isochoric_neo_hookean,
-    isochoric_mooney_rivlin,
-    isochoric_fung_demiray
-};
-
 enum class Parameter : std::uint8_t {
     young,
     poisson,
@@ -42,9 +30,13 @@ enum class Parameter : std::uint8_t {
     c1,
     c2,
     gamma,
-    terms
+    terms,
+    c3,
+    k1,
+    k2,
+    dispersion
 };
-inline constexpr std::size_t num_parameters = 10;
+inline constexpr std::size_t num_parameters = 14;
 
 struct ParameterInfo {
     Parameter parameter;
@@ -84,9 +76,14 @@ struct MaterialModel {
     std::string_view title;
     std::string_view energy;  ///< w: per unit rest volume; W: in all
     std::vector<ParameterSet> parameter_sets;
+    ParameterSet optional = {};  ///< may be given besides one of the sets
     std::string_view admissible;
     std::string_view use;
     std::string_view limits;
+    bool has_fibres = false;  ///< asks for their direction
+    /// The shear modulus at rest by the constants of one of the sets; null if all sets have young,
+    /// shear_modulus or lame_mu.
+    double (*shear_modulus)(const ElasticParameters& given) = nullptr;
     /// Of a law of HEML: the law with these moduli at rest and what else was given of one of its
     /// sets. Throws InputError, without the law's name, if there is none.
     physics::Law (*make)(const ElasticConstants& at_rest, const ElasticParameters& given) = nullptr;
@@ -95,19 +92,21 @@ struct MaterialModel {
 std::span<const ParameterInfo> parameters();
 const ParameterInfo& info(Parameter parameter);
 
-/// Indexed by Law.
 std::span<const MaterialModel> laws();
-const MaterialModel& model(Law law);
+/// Throws std::invalid_argument if there is no such law.
+const MaterialModel& law_named(std::string_view key);
 const MaterialModel& mass_spring_model();
 const MaterialModel& hybmss_model();
 
 /// The model that a material of this method and law follows.
-const MaterialModel& model(Method method, Law law);
+const MaterialModel& model(Method method, std::string_view law);
 
 /// Indexed by Method.
 std::span<const std::string_view> method_names();
 
 /// Such as "young + poisson, or shear_modulus + bulk_modulus".
 std::string list_of_sets(std::span<const ParameterSet> sets);
+/// All that a model takes, such as "c1 + bulk_modulus + k1 + k2; dispersion may be added".
+std::string list_of_parameters(const MaterialModel& model);
 
 }  // namespace incise::sim

@@ -15,7 +15,8 @@ namespace incise::sim {
 namespace {
 
 constexpr std::string_view common_keys[] = {"regions", "method", "preset", "density"};
-constexpr std::string_view heml_keys[] = {"law", "inversion_threshold", "prony"};
+constexpr std::string_view heml_keys[] = {"law", "inversion_threshold", "prony", "fibre",
+                                          "fibre_array"};
 constexpr std::string_view hybmss_keys[] = {"face_diagonals", "stiffness_ratio",
                                             "correction_forces"};
 
@@ -92,7 +93,7 @@ void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
     refuse_keys_of_others(material, spec.method);
     if (spec.method == Method::mass_spring) {
         parameters = only_young(parameters);
-    } else if (spec.method == Method::heml && spec.law == Law::saint_venant_kirchhoff &&
+    } else if (spec.method == Method::heml && spec.law == "saint-venant-kirchhoff" &&
                material.has("inversion_threshold")) {
         material.warning("inversion_threshold",
                          in_quotes(material.path_of("inversion_threshold")) +
@@ -147,8 +148,7 @@ bool complete_parameters(const TableReader& material, const Tissue& preset, Mate
     const std::string given = list_of(spec.parameters);
     material.error("preset", in_quotes(preset.key) + " has " + list_of(preset.parameters) +
                                  (given.empty() ? "" : ", the scenario gives " + given) + "; but " +
-                                 std::string(model.key) + " takes " +
-                                 list_of_sets(model.parameter_sets) +
+                                 std::string(model.key) + " takes " + list_of_parameters(model) +
                                  ": give values for what the preset has, or one whole set");
     return false;
 }
@@ -175,7 +175,39 @@ std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
     return terms;
 }
 
-MaterialSpec read_material(const TableReader& material) {
+/// The direction of the fibres. Reports a law with fibres without one, and one without law.
+void read_fibre(const TableReader& material, const MeshSpec& mesh, MaterialSpec& spec) {
+    const bool given = material.has("fibre") || material.has("fibre_array");
+    if (spec.method != Method::heml) return;  // refused as keys of another method
+    if (!law_named(spec.law).has_fibres) {
+        for (const std::string_view key : {"fibre", "fibre_array"})
+            if (material.has(key))
+                material.error(key,
+                               "is a key of laws with fibres, as holzapfel-gasser-ogden, not of " +
+                                   std::string(spec.law) + ": leave it out");
+        return;
+    }
+    if (!given) {
+        material.error({}, std::string(spec.law) +
+                               " needs the direction of its fibres: give fibre = [x, y, z], or "
+                               "fibre_array = \"NAME\", a cell array of the mesh file");
+        return;
+    }
+    const auto key = material.one_of({"fibre", "fibre_array"});
+    if (key == "fibre") {
+        spec.fibre = material.direction("fibre", Vec3::UnitX());
+    } else if (key == "fibre_array") {
+        const std::string name = material.text("fibre_array");
+        if (name.empty() && material.is_text("fibre_array"))
+            material.error("fibre_array", "is empty: name a cell array of the mesh file");
+        else if (std::holds_alternative<BoxMeshSpec>(mesh.source))
+            material.error("fibre_array",
+                           "needs a mesh file, and the mesh is a box: use fibre = [x, y, z]");
+        spec.fibre = name;
+    }
+}
+
+MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
     if (material.has("regions")) {
         const auto regions = material.integers("regions", region_limits);
@@ -198,7 +230,7 @@ MaterialSpec read_material(const TableReader& material) {
     std::vector<std::string_view> law_names;
     for (const auto& law : laws()) law_names.push_back(law.key);
     if (const auto index = material.choice("law", {law_names}))
-        spec.law = static_cast<Law>(*index);
+        spec.law = laws()[*index].key;
     else
         is_readable = is_readable && !material.has("law");
     if (!material.has("preset"))
@@ -226,6 +258,7 @@ MaterialSpec read_material(const TableReader& material) {
                            "has no meaning without face diagonals: leave it out");
     }
     if (!is_readable) return spec;
+    read_fibre(material, mesh, spec);
     if (preset != nullptr && !complete_parameters(material, *preset, spec))
         refuse_keys_of_others(material, spec.method);
     else
@@ -235,7 +268,7 @@ MaterialSpec read_material(const TableReader& material) {
 
 }  // namespace
 
-std::vector<MaterialSpec> read_materials(const TableReader& root) {
+std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh) {
     std::vector<std::string_view> keys;
     for (const std::span<const std::string_view> some :
          {std::span<const std::string_view>(common_keys),
@@ -251,7 +284,7 @@ std::vector<MaterialSpec> read_materials(const TableReader& root) {
     if (root.require("material", remedy) && root.is_empty_array("material"))
         root.error("material", "is empty: " + remedy);
     for (const auto& material : root.tables("material", {keys})) {
-        specs.push_back(read_material(material));
+        specs.push_back(read_material(material, mesh));
         if (const auto& regions = specs.back().regions) {
             for (const int region : *regions)
                 if (std::find(claimed.begin(), claimed.end(), region) != claimed.end())

@@ -39,13 +39,16 @@ struct MaterialSpec {
     /// Without: all regions that no other material names. At most one material is without.
     std::optional<std::vector<int>> regions;
     Method method = Method::heml;
-    Law law = Law::neo_hookean;  ///< of HEML
+    std::string_view law = "neo-hookean";  ///< of HEML: the key of its row in laws()
     double density = 0.0;
     ElasticParameters parameters;           ///< as given; resolve() makes constants of them
     double inversion_threshold = 0.4;       ///< J0, in (0, 1); of HEML
     std::vector<physics::PronyTerm> prony;  ///< of HEML; empty: elastic
-    double stiffness_ratio = 1.0;           ///< A of HybMSS, 0 to infinity
-    bool correction_forces = true;          ///< of HybMSS: without, Poisson's ratio is 1/4
+    /// Of laws with fibres: their direction at rest, of unit length, or the cell array of the mesh
+    /// file that has it.
+    std::variant<std::monostate, Vec3, std::string> fibre;
+    double stiffness_ratio = 1.0;   ///< A of HybMSS, 0 to infinity
+    bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
 };
 
 struct DynamicsSpec {

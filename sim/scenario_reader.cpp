@@ -70,7 +70,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.folder = file.parent_path();
     scenario.title = root.text("title", scenario.name);
     scenario.mesh = read_mesh_spec(root, scenario.folder);
-    scenario.materials = read_materials(root);
+    scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root);
     const double end_time = scenario.dynamics.end_time;
     scenario.constraints = read_constraints(root, end_time);

@@ -14,7 +14,8 @@
 namespace incise::sim {
 
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
-std::vector<MaterialSpec> read_materials(const TableReader& root);
+/// @param mesh  that is made of them
+std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh);
 DynamicsSpec read_dynamics(const TableReader& root);
 /// @param end_time  later keys are warned of; not above 0 if it is not known
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time);

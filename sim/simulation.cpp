@@ -15,12 +15,6 @@ namespace incise::sim {
 
 namespace {
 
-topology::Mesh take_mesh(const MeshSpec& spec, std::vector<std::string>& warnings) {
-    topology::BuiltMesh built = build_mesh(spec);
-    warnings.insert(warnings.end(), built.warnings.begin(), built.warnings.end());
-    return std::move(built.mesh);
-}
-
 /// The speed of waves in a region is that which relates the stable step of an element to the
 /// lengths in it.
 cutting::UncutBody uncut_body(const physics::Model& model) {
@@ -58,9 +52,13 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
 }  // namespace
 
 Simulation::Simulation(const Scenario& scenario)
+    : Simulation(scenario, build_mesh(scenario.mesh, scenario.materials)) {}
+
+Simulation::Simulation(const Scenario& scenario, SourceMesh source)
     : scenario_(scenario),
-      mesh_(take_mesh(scenario.mesh, warnings_)),
-      model_(mesh_, build_materials(scenario.materials, mesh_, warnings_),
+      warnings_(std::move(source.warnings)),
+      mesh_(std::move(source.mesh)),
+      model_(mesh_, build_materials(scenario.materials, mesh_, source.cell_vectors, warnings_),
              build_surroundings(scenario, mesh_)),
       ledger_(model_),
       boxes_(mesh_, model_.positions()) {

@@ -16,6 +16,7 @@
 namespace incise::sim {
 
 class Simulation;
+struct SourceMesh;
 
 /// Watches a run. All functions may throw, which ends the run.
 class Observer {
@@ -55,6 +56,8 @@ class Simulation {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
+    Simulation(const Scenario& scenario, SourceMesh source);
+
     struct Interval {
         double from, to;  // s
     };

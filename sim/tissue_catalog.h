@@ -23,8 +23,8 @@ struct Range {
 struct Tissue {
     std::string_view key;
     std::string_view title;
-    Law law;
-    double density;  ///< kg/m3
+    std::string_view law;  ///< the key of its row in laws()
+    double density;        ///< kg/m3
     std::string_view density_source;
     ElasticParameters parameters;  ///< a set of `law`; before any relaxation
     std::vector<physics::PronyTerm> prony;

@@ -30,8 +30,9 @@ using topology::MeshData;
 using topology::NodeId;
 
 /// Each law of the tests, in a region of its own.
-physics::MaterialTable all_materials() {
+physics::MaterialTable all_materials(std::size_t num_elements) {
     physics::MaterialTable table;
+    table.fibres = physics::random_fibres(num_elements);
     for (const auto& named : physics::test_laws()) {
         const std::size_t i = table.materials.size();
         table.of_region[static_cast<int>(i)] = i;
@@ -56,7 +57,9 @@ double energy(const Model& model, const physics::MaterialTable& table, ElementId
     }
     const Eigen::Matrix3d F = current * rest.inverse();
     const Eigen::Matrix3d twice_E = F.transpose() * F - Eigen::Matrix3d::Identity();
-    const physics::LinkStrain strain{twice_E.trace(), twice_E.squaredNorm(), F.determinant()};
+    const Vec3& fibre = model.fibres()[e.index()];
+    const physics::LinkStrain strain{twice_E.trace(), twice_E.squaredNorm(), F.determinant(),
+                                     fibre.dot(twice_E * fibre)};
     const auto& material = table.materials[table.of_region.at(mesh.region(e))];
     const auto& links = std::get<physics::HyperElasticLinks>(material.method);
     const auto density = [&](const auto& law) {
@@ -114,7 +117,7 @@ class Patient {
     Patient(const MeshData& data, std::uint64_t seed, Repeats& repeats)
         : repeats_(repeats),
           random_(seed),
-          table_(all_materials()),
+          table_(all_materials(data.num_cells())),
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
           rest_volume_(rest_volume(mesh_)) {
@@ -215,7 +218,9 @@ class Patient {
         }
         EXPECT_LE(b.kinetic_energy, a.kinetic_energy * (1.0 + 1e-12));
 
-        Model fresh(mesh_, table_);
+        physics::MaterialTable table = table_;
+        table.fibres.assign(model_.fibres().begin(), model_.fibres().end());
+        Model fresh(mesh_, table);
         fresh.set_state(model_.positions(), model_.velocities(), 0.0);
         EXPECT_EQ(Figures(model_), Figures(fresh));
     }

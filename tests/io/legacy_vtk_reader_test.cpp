@@ -171,5 +171,29 @@ TEST(LegacyVtkReader, RefusesWhatItCannotRead) {
                 HasSubstr("has no CELL_TYPES section"));
 }
 
+TEST(LegacyVtkReader, KeepsTheVectorsAskedFor) {
+    const ReadOptions options{.vector_arrays = {"fibre"}};
+    const auto expected = ElementsAre(Vec3(1, 0, 0), Vec3(0, -2, 0.5));
+    const auto as_field = replaced(old_layout, "\n1 0 0 1 0 0\n", "\n1 0 0 0 -2 0.5\n");
+    EXPECT_THAT(read_bytes("a.vtk", as_field, options).cell_vectors.at("fibre"), expected);
+    const auto as_vectors = new_layout + "CELL_DATA 2\nVECTORS fibre double\n1 0 0 0 -2 0.5\n";
+    EXPECT_THAT(read_bytes("a.vtk", as_vectors, options).cell_vectors.at("fibre"), expected);
+    EXPECT_EQ(refusal("liver.vtk", old_layout, {.vector_arrays = {"n"}}),  // of the points
+              "liver.vtk: has no cell array 'n' of three components; its cell arrays of three "
+              "components: 'fibre'");
+    EXPECT_EQ(
+        refusal("liver.vtk", new_layout, options),
+        "liver.vtk: has no cell array 'fibre' of three components, nor another; add it to the "
+        "file's cell data");
+    EXPECT_THAT(refusal("liver.vtk", old_layout,
+                        {
+                            .vector_arrays = {"region"},
+                        }),
+                testing::AnyOf(HasSubstr("vectors need 3 components, this array has 1"),
+                               HasSubstr("has no cell array 'region'")));
+    EXPECT_THAT(refusal("liver.vtk", replaced(old_layout, "fibre 3 2", "fibre 3 1"), options),
+                HasSubstr("array 'fibre' has 1 values for 2 cells"));
+}
+
 }  // namespace
 }  // namespace incise::io

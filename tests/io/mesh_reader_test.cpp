@@ -82,6 +82,13 @@ TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
     }
 }
 
+TEST(MeshReader, RefusesVectorsOfFormatsThatAreReadWithoutThem) {
+    const auto samples = gmsh_samples();
+    EXPECT_THAT(refusal(samples.front().name, samples.front().bytes, {.vector_arrays = {"fibre"}}),
+                HasSubstr("has no cell array 'fibre': none is read from meshes of the format Gmsh; "
+                          "use VTU or legacy VTK"));
+}
+
 TEST(MeshReader, RefusesFilesThatAreCutShort) {
     for (const auto& sample : all_samples()) {
         // Legacy VTK has no end mark: what follows the cells may be missing unnoticed.

@@ -128,7 +128,7 @@ TEST(MeshWriter, OurReaderGivesBackTheSameMesh) {
         SCOPED_TRACE(suffix);
         const auto path = folder / (std::string("mesh") + suffix);
         write_mesh(path, mesh);
-        const auto [again, warnings] = read_mesh(path);
+        const auto [again, warnings, vectors] = read_mesh(path);
         EXPECT_EQ(again.points, mesh.points);
         EXPECT_EQ(again.kinds, mesh.kinds);
         EXPECT_EQ(again.offsets, mesh.offsets);

@@ -103,6 +103,29 @@ TEST(VtuReader, RefusesRegionsThatAreNoWholeNumbers) {
                 HasSubstr("cell 1: region 4294967296 is not a whole number of 32 bits"));
 }
 
+TEST(VtuReader, KeepsTheVectorsAskedFor) {
+    const ReadOptions options{.vector_arrays = {"fibre"}};
+    EXPECT_TRUE(read_bytes("a.vtu", two_tetrahedra).cell_vectors.empty());
+    // A triangle before the tetrahedra has a vector too, and is left out with it.
+    auto mixed = with(">1 0 0 1 0 0<", ">9 9 9 1 0 0 0 -2 0.5<");
+    mixed = replaced(mixed, "NumberOfCells=\"2\"", "NumberOfCells=\"3\"");
+    mixed = replaced(mixed, ">5 -6<", ">0 5 -6<");
+    mixed = replaced(mixed, ">0 1 2 3 1 2 3 4<", ">0 1 2 0 1 2 3 1 2 3 4<");
+    mixed = replaced(mixed, ">4 8<", ">3 7 11<");
+    mixed = replaced(mixed, ">10 10<", ">5 10 10<");
+    EXPECT_THAT(read_bytes("a.vtu", mixed, options).cell_vectors.at("fibre"),
+                ElementsAre(Vec3(1, 0, 0), Vec3(0, -2, 0.5)));
+    EXPECT_EQ(refusal("liver.vtu", two_tetrahedra, {.vector_arrays = {"fibers"}}),
+              "liver.vtu: has no cell array 'fibers' of three components; its cell arrays of three "
+              "components: 'fibre'");
+    EXPECT_THAT(
+        refusal("liver.vtu", two_tetrahedra, {.vector_arrays = {"tissue"}}),
+        StartsWith("liver.vtu:12: array 'tissue': vectors need 3 components, this array has "
+                   "1"));
+    EXPECT_THAT(refusal("liver.vtu", with(">1 0 0 1 0 0<", ">1 0 0 1 0<"), options),
+                StartsWith("liver.vtu:14: array 'fibre'"));
+}
+
 TEST(VtuReader, StartsFromTheRestPositionsOfAFrame) {
     const auto file = read_bytes("frame.vtu", with("<PointData>", R"(<PointData>
 <DataArray type="Float64" Name="rest_position" NumberOfComponents="3" format="ascii">

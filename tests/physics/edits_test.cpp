@@ -54,6 +54,7 @@ struct ModelSnapshot {
     std::vector<Vec3> forces;
     std::vector<double> masses, energies;
     std::vector<SymmetricTensor> history;
+    std::vector<Vec3> fibres;
     double stable_step;
     bool operator==(const ModelSnapshot&) const = default;
 
@@ -64,6 +65,7 @@ struct ModelSnapshot {
         for (const ElementId e : living_elements(model.mesh()))
             energies.push_back(model.element_result(e).energy);
         history.assign(model.history().values().begin(), model.history().values().end());
+        fibres.assign(model.fibres().begin(), model.fibres().end());
         stable_step = model.stable_step();
     }
 };
@@ -75,13 +77,14 @@ void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.forces, b.forces);
     EXPECT_EQ(a.energies, b.energies);
     EXPECT_EQ(a.history, b.history);
+    EXPECT_EQ(a.fibres, b.fibres);
     EXPECT_EQ(a.stable_step, b.stable_step);
 }
 
 /// All materials for the cells of the mesh; every other law with viscosity.
 MaterialTable table_for(const topology::MeshData& data) {
     if (data.kinds.front() == topology::CellKind::hexahedron) return table_of_hybrid_springs();
-    MaterialTable table = table_of_all_materials();
+    MaterialTable table = table_of_all_materials(data.num_cells());
     for (std::size_t i = 0; i < table.materials.size(); i += 2)
         if (auto* links = std::get_if<HyperElasticLinks>(&table.materials[i].method))
             links->prony = {{0.3, 0.01}, {0.2, 1.0}};
@@ -171,7 +174,9 @@ class EditedBody {
 
     // Also after a step, in which supports and loads show, and which lets copies part.
     void expect_equal_to_a_fresh_model(const ModelSnapshot& expected) {
-        Model fresh(mesh_, table_, surroundings(descent_.now(mesh_)));
+        MaterialTable table = table_;
+        table.fibres = expected.fibres;
+        Model fresh(mesh_, table, surroundings(descent_.now(mesh_)));
         set_state(fresh, expected.state, time);
         fresh.set_history(expected.history);
         expect_equal(ModelSnapshot(fresh, time), expected);

@@ -15,8 +15,9 @@
 namespace incise::physics {
 
 /// Laws of test_laws() and springs, each with a density of its own, in as many regions.
-inline MaterialTable table_of_all_materials() {
+inline MaterialTable table_of_all_materials(std::size_t num_elements = 5000) {
     MaterialTable table;
+    table.fibres = random_fibres(num_elements);
     double density = 900.0;
     const auto add = [&](const auto& method) {
         table.of_region[static_cast<int>(table.materials.size())] = table.materials.size();
@@ -25,7 +26,7 @@ inline MaterialTable table_of_all_materials() {
     };
     for (const NamedLaw& named : test_laws())
         // Strongly nonlinear laws do not bear states as random as those of these tests.
-        if (named.law.index() <= Law(CiarletNeoHookean{}).index())
+        if (named.law.index() <= Law(CiarletNeoHookean{}).index() || has_fibres(named.law))
             add(HyperElasticLinks{named.law});
     add(MassSprings{1e4});
     return table;
@@ -50,6 +51,7 @@ MaterialTable table_of_one_material(const Method& method, double density = 1000.
     MaterialTable table;
     table.materials.push_back({density, method});
     table.of_region[0] = 0;
+    if (table.materials[0].has_fibres()) table.fibres = random_fibres(500);
     return table;
 }
 inline MaterialTable table_of_one_law(const Law& law, double density = 1000.0) {

@@ -41,6 +41,9 @@ inline std::vector<NamedLaw> test_laws() {
         {"isochoric neo-Hookean", IsochoricMooneyRivlin{1923.0, 0.0, 8333.0}},
         {"isochoric Mooney-Rivlin", IsochoricMooneyRivlin{1346.0, 577.0, 8333.0}},
         {"isochoric Fung-Demiray", IsochoricFungDemiray{3846.0, 0.5, 8333.0}},
+        {"Yeoh", Yeoh{1923.0, 400.0, 150.0, 8333.0}},
+        {"fibres in parallel", HolzapfelGasserOgden{3846.0, 8333.0, 2000.0, 0.3, 0.0}},
+        {"dispersed fibres", HolzapfelGasserOgden{3846.0, 8333.0, 2000.0, 0.3, 0.2}},
     };
 }
 
@@ -58,14 +61,32 @@ inline std::optional<Law> law_of(const test::ReferenceLaw& reference) {
     return std::nullopt;
 }
 
+/// A kernel of a law with fibres, all in one direction, that is used as those of laws without.
+template <class Kernel>
+struct WithFibre : Kernel {
+    explicit WithFibre(const Kernel& kernel) : Kernel(kernel) {}
+    auto precompute(const typename Kernel::Corners& X) const {
+        return Kernel::precompute(X, direction());
+    }
+    static Vec3 direction() { return Vec3(2.0, -1.0, 2.0) / 3.0; }
+};
+
+template <class Kernel>
+auto with_fibre(const Kernel& kernel) {
+    if constexpr (Kernel::has_fibres)
+        return WithFibre<Kernel>(kernel);
+    else
+        return kernel;
+}
+
 /// Calls visit(name, kernel) for HEML with each law.
 template <class Visit>
 void for_each_heml_kernel(Visit visit, double inversion_threshold = 0.4) {
     for (const NamedLaw& named : test_laws())
         std::visit(
             [&](const auto& law) {
-                visit(named.name,
-                      HemlKernel<std::decay_t<decltype(law)>>{law, inversion_threshold});
+                visit(named.name, with_fibre(HemlKernel<std::decay_t<decltype(law)>>{
+                                      law, inversion_threshold}));
             },
             named.law);
 }
@@ -97,6 +118,14 @@ inline Mat3 random_rotation(test::Random& random) {
 inline Mat3 random_deformation(test::Random& random, const Vec3& stretches) {
     const Mat3 Q = random_rotation(random);
     return random_rotation(random) * Q * stretches.asDiagonal() * Q.transpose();
+}
+
+/// Directions of fibres by element id, each another, for the table of a test.
+inline std::vector<Vec3> random_fibres(std::size_t num_elements) {
+    test::Random random(77);
+    std::vector<Vec3> fibres(num_elements);
+    for (Vec3& fibre : fibres) fibre = random_rotation(random).col(0);
+    return fibres;
 }
 
 inline Tetrahedron deformed(const Tetrahedron& X, const Mat3& F) {

@@ -154,6 +154,41 @@ TEST(ScenarioErrors, OfMaterials) {
               "before it: only one material can take all that is left");
 }
 
+TEST(ScenarioErrors, SayWhatALawWithFibresNeeds) {
+    const std::string ground = "density = 1\nshear_modulus = 1\nbulk_modulus = 9\n";
+    const std::string law = ground + "law = \"holzapfel-gasser-ogden\"\nk1 = 5\nk2 = 2\n";
+    EXPECT_EQ(material_error(law + "fibre = [1, 1, 0]"), "");
+    EXPECT_EQ(material_error(law + "fibre = [1, 1, 0]\ndispersion = 0.333333"), "");
+    EXPECT_EQ(material_error(law + "fibre = [1, 1, 0]\ndispersion = 0.4"),
+              "scene.toml:9:14: key 'material[0].dispersion': 0.4 is not allowed: must be at least "
+              "0 and at most 0.3333333333333333");
+    EXPECT_EQ(
+        material_error(law),
+        "scene.toml:1:1: key 'material[0]': holzapfel-gasser-ogden needs the direction of its "
+        "fibres: give fibre = [x, y, z], or fibre_array = \"NAME\", a cell array of the mesh "
+        "file");
+    EXPECT_EQ(material_error(law + "fibre = [0, 0, 0]").substr(0, 44),
+              "scene.toml:8:9: key 'material[0].fibre': [0,");
+    EXPECT_EQ(material_error(law + "fibre = [1, 0, 0]\nfibre_array = \"a\""), "?");
+    EXPECT_EQ(
+        material_error(law + "fibre_array = \"a\""),
+        "scene.toml:8:15: key 'material[0].fibre_array': needs a mesh file, and the mesh is a "
+        "box: use fibre = [x, y, z]");
+    EXPECT_EQ(material_error(ground + "fibre = [1, 0, 0]"),
+              "scene.toml:5:9: key 'material[0].fibre': is a key of laws with fibres, as "
+              "holzapfel-gasser-ogden, not of neo-hookean: leave it out");
+    EXPECT_EQ(
+        material_error(ground + "law = \"holzapfel-gasser-ogden\"\nk1 = 5\nfibre = [1, 0, 0]"),
+        "?");
+    const std::string in_file = ScenarioFile(
+                                    "[mesh]\nfile = \"liver.vtu\"\n[dynamics]\n"
+                                    "end_time = 1\n[[material]]\n" +
+                                    law + "fibre_array = \"\"\n")
+                                    .errors()
+                                    .at(0);
+    EXPECT_EQ(in_file, "?");
+}
+
 TEST(ScenarioErrors, OfHybridSprings) {
     const std::string good = "method = \"hybmss\"\ndensity = 1\nyoung = 1\npoisson = 0.3\n";
     EXPECT_EQ(material_error(good), "");

@@ -92,7 +92,7 @@ TEST(TissueCatalog, HasSoundRowsWithSources) {
 
 /// By hand: mu = E / (2 (1 + nu)), lambda = 2 mu nu / (1 - 2 nu), mu = 2 (c1 + c2).
 TEST(TissueCatalog, HasThePublishedModuli) {
-    EXPECT_EQ(find_tissue("liver")->law, Law::saint_venant_kirchhoff);
+    EXPECT_EQ(find_tissue("liver")->law, "saint-venant-kirchhoff");
     EXPECT_NEAR(constants_of("liver").mu, 1600.0 / 2.96, 1e-9);  // 540.5
     EXPECT_NEAR(constants_of("liver").lambda, 12973.0, 0.03);
     EXPECT_NEAR(constants_of("brain").mu, 1034.5, 0.02);
@@ -146,7 +146,7 @@ TEST(TissueCatalog, IsWhatTheDocumentationLists) {
         SCOPED_TRACE(tissue.key);
         std::vector<std::string> wanted = {
             "| `" + std::string(tissue.key) + "` ",
-            "| `" + std::string(model(tissue.law).key) + "` | " + plain(tissue.density) + " |"};
+            "| `" + std::string(tissue.law) + "` | " + plain(tissue.density) + " |"};
         for (const auto& row : parameters())
             if (tissue.parameters[row.parameter] && row.parameter != terms)
                 wanted.push_back("`" + std::string(row.key) + "` " +
@@ -171,7 +171,7 @@ TEST(Preset, StandsForItsScenarioLines) {
 TEST(Preset, YieldsToWhatTheScenarioGives) {
     const auto denser = read(preset("liver") + "density = 1100");
     EXPECT_EQ(denser.density, 1100.0);
-    EXPECT_EQ(denser.law, Law::saint_venant_kirchhoff);
+    EXPECT_EQ(denser.law, "saint-venant-kirchhoff");
     EXPECT_EQ(denser.parameters[young], 1600.0);
 
     const auto stiffer = read(preset("liver") + "young = 8000");
@@ -180,7 +180,7 @@ TEST(Preset, YieldsToWhatTheScenarioGives) {
     EXPECT_EQ(stiffer.parameters[poisson], 0.48);
 
     const auto other_law = read(preset("liver") + "law = \"neo-hookean\"");
-    EXPECT_EQ(other_law.law, Law::neo_hookean);
+    EXPECT_EQ(other_law.law, "neo-hookean");
     EXPECT_EQ(other_law.parameters[young], 1600.0);
 
     const auto own_set = read(preset("liver") + "shear_modulus = 600\nbulk_modulus = 6000");
@@ -189,7 +189,7 @@ TEST(Preset, YieldsToWhatTheScenarioGives) {
 
     const auto own_law =
         read(preset("fat") + "law = \"mooney-rivlin\"\nc1 = 100\nc2 = 20\npoisson = 0.45");
-    EXPECT_EQ(own_law.law, Law::mooney_rivlin);
+    EXPECT_EQ(own_law.law, "mooney-rivlin");
     EXPECT_FALSE(own_law.parameters[bulk_modulus].has_value());
 
     // Together with the preset's c1 and bulk_modulus a set of the other law.
