@@ -39,7 +39,8 @@ struct Balance {
     }
 
     static int region_of_springs() {
-        return static_cast<int>(table_of_all_materials().materials.size()) - 1;
+        static const auto last = table_of_all_materials(0).materials.size() - 1;
+        return static_cast<int>(last);
     }
 };
 
