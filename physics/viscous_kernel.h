@@ -108,14 +108,12 @@ struct ViscousKernel : HemlKernel<LawType> {
         for (const PronyTerm& term : terms) long_time_share -= term.alpha;
     }
 
-    /// @param fibre  of laws with fibres, as Elastic has it
-    template <class... Fibre>
-    requires(sizeof...(Fibre) == (Elastic::has_fibres ? 1 : 0)) Element
-        precompute(const Corners& X, const Fibre&... fibre)
-    const {
-        Mat3 V;
-        V << X[1] - X[0], X[2] - X[0], X[3] - X[0];
-        return {Elastic::precompute(X, fibre...), V.inverse()};
+    Element precompute(const Corners& X) const requires(!Elastic::has_fibres) {
+        return {Elastic::precompute(X), inverse_edges(X)};
+    }
+    /// @param fibre  their direction at rest, of unit length
+    Element precompute(const Corners& X, const Vec3& fibre) const requires Elastic::has_fibres {
+        return {Elastic::precompute(X, fibre), inverse_edges(X)};
     }
 
     /// Of the long-time moduli, joules: what is left when the terms have relaxed.
@@ -173,6 +171,12 @@ struct ViscousKernel : HemlKernel<LawType> {
     }
 
   private:
+    static Mat3 inverse_edges(const Corners& X) {
+        Mat3 V;
+        V << X[1] - X[0], X[2] - X[0], X[3] - X[0];
+        return V.inverse();
+    }
+
     void follow(const Element& e, const Corners& x, std::span<SymmetricTensor> memory) const {
         const SymmetricTensor S = symmetric_tensor(stress(e, x));
         for (std::size_t i = 0; i < terms.size(); ++i)

@@ -158,8 +158,9 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
     std::vector<Vec3> fibres(mesh.element_capacity(), Vec3::Zero());
     for (std::size_t i = 0; i < fibres.size(); ++i) {
         const topology::ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
         const std::size_t material = table.of_region.at(mesh.region(e));
-        if (!mesh.is_alive(e) || !materials[material].has_fibres()) continue;
+        if (!materials[material].has_fibres()) continue;
         const auto& given = specs[material].fibre;
         if (const auto* direction = std::get_if<Vec3>(&given)) fibres[i] = *direction;
         const auto* array = std::get_if<std::string>(&given);
