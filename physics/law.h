@@ -156,9 +156,35 @@ struct Yeoh {
     }
 };
 
+/// w = mu/2 (I1 - 3 - ln((I1 + 1)/4)) - 3/4 mu (J - 1) + lambda/2 (J - 1)^2: defined and smooth for
+/// any deformation, also flat, inverted or collapsed ones, so that it needs no threshold. The
+/// logarithm takes the stiffness of an element collapsed to a point away, which then is no minimum
+/// of the energy, nor is a line. At rest the moduli are 3/4 mu and lambda - 5/8 mu.
+/// Source: B. Smith, F. de Goes, T. Kim, Stable Neo-Hookean Flesh Simulation, ACM Transactions on
+/// Graphics 37 (2018), eqs. (13) to (16), less the constant by which the energy at rest is 0.
+struct StableNeoHookean {
+    double mu, lambda;  ///< Pa; constants of the law
+
+    /// The law that has these Lame constants at rest, Pa.
+    static StableNeoHookean of_rest_moduli(double rest_lambda, double rest_mu) {
+        return {4.0 / 3.0 * rest_mu, rest_lambda + 5.0 / 6.0 * rest_mu};
+    }
+    double rest_lambda() const { return lambda - 0.625 * mu; }
+    double rest_mu() const { return 0.75 * mu; }
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double /*J0*/) const {
+        using std::log1p;
+        const double p = 0.75 * mu;
+        const T change = s.J - 1.0;  // of volume
+        return {0.5 * mu * (s.a - log1p(0.25 * s.a)) + change * (0.5 * lambda * change - p),
+                0.5 * mu * (1.0 - 1.0 / (4.0 + s.a)), 0.0, lambda * change - p};
+    }
+};
+
 using Law =
     std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean, FungDemiray,
-                 IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh, HolzapfelGasserOgden>;
+                 IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh, HolzapfelGasserOgden,
+                 StableNeoHookean>;
 
 inline bool has_fibres(const Law& law) {
     return std::visit([]<class L>(const L&) { return HasFibres<L>; }, law);

@@ -209,6 +209,23 @@ const std::vector<MaterialModel>& law_table() {
          .make = [](const ElasticConstants& k, const ElasticParameters& p) -> physics::Law {
              return physics::IsochoricFungDemiray{k.mu, *p[gamma], k.bulk_modulus()};
          }},
+        {.key = "stable-neo-hookean",
+         .title = "Neo-Hookean without a trap: elements come back from flat, inverted and "
+                  "collapsed states",
+         .energy = "w = mu'/2 (I1 - 3 - ln((I1 + 1)/4)) - 3/4 mu' (J - 1) + lambda'/2 (J - 1)^2,  "
+                   "mu' = 4/3 mu, lambda' = lambda + 5/6 mu",
+         .parameter_sets = {{young, poisson},
+                            {shear_modulus, bulk_modulus},
+                            {lame_lambda, lame_mu}},
+         .admissible = "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
+         .use = "Tissue that tools crush or turn inside out. Near rest it is neo-hookean.",
+         .limits = "The energy at zero volume is finite: strong compression inverts elements, which "
+                   "then come back. A body can be wound up so that no element is inverted, say "
+                   "twice round an edge: that no law undoes; the nearer Poisson's ratio is to 0.5, "
+                   "the more often it happens. inversion_threshold matters to viscosity only.",
+         .make = [](const ElasticConstants& k, const ElasticParameters&) -> physics::Law {
+             return physics::StableNeoHookean::of_rest_moduli(k.lambda, k.mu);
+         }},
         {.key = "yeoh",
          .title = "Yeoh: a polynomial of the isochoric I1, which stiffens with strain",
          .energy = "w = c1 (I1 J^(-2/3) - 3) + c2 (I1 J^(-2/3) - 3)^2 + c3 (I1 J^(-2/3) - 3)^3 + "

@@ -13,10 +13,11 @@ namespace {
 
 template <class T>
 T every_operation(const T& a, const T& b, const T& J, const T& f) {
-    using std::abs, std::exp, std::expm1, std::log, std::pow, std::sqrt;
+    using std::abs, std::exp, std::expm1, std::log, std::log1p, std::pow, std::sqrt;
     T sum = 2.0 * a - b / J + 3.0 / (1.0 + a * a) - f;
     sum += log(J) * exp(-b);
     sum -= expm1(0.5 * f) * abs(a);
+    sum += log1p(0.5 * b);
     sum *= pow(J, -2.0 / 3.0);
     sum /= sqrt(J + 4.0);
     return std::max(+sum, T(-1e6)) + std::min(a, T(0.1));

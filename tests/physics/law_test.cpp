@@ -141,6 +141,40 @@ TEST(Laws, OgdenWithThePowerTwoIsNeoHookean) {
     }
 }
 
+double energy_density_by_links(const Law& law, const Mat3& F) {
+    const Mat3 twice_E = F.transpose() * F - Mat3::Identity();
+    const LinkStrain s{twice_E.trace(), twice_E.squaredNorm(), F.determinant()};
+    return std::visit([&](const auto& one) { return one.response(s, 0.4).w; }, law);
+}
+
+// From a point energy falls all the way to rest, along with any deformation that does not invert;
+// from a line it falls as the element opens. The tangent extension has a minimum at the point.
+TEST(Laws, TheStableNeoHookeanHasNoMinimumAtAPointOrALine) {
+    test::Random random(12);
+    for (const NamedLaw& named : test_laws()) {
+        if (!std::holds_alternative<StableNeoHookean>(named.law)) continue;
+        SCOPED_TRACE(named.name);
+        const auto w = [&](const Mat3& F) { return energy_density_by_links(named.law, F); };
+        const Mat3 one = Mat3::Identity();
+        for (int i = 1; i <= 100; ++i) EXPECT_LT(w(0.01 * i * one), w(0.01 * (i - 1) * one));
+        for (int i = 0; i < 20; ++i) {
+            const Mat3 F = random_deformation(
+                random, {random.uniform(0.3, 1.5), random.uniform(0.3, 1.5), 1.0});
+            EXPECT_LT(w(1e-3 * F), w(Mat3::Zero()));
+            for (const double along : {0.01, 0.3, 1.0, 3.0, 100.0}) {
+                const Mat3 Q = random_rotation(random);
+                const auto opened = [&](double s) {
+                    return w(Q * Vec3(along, s, s).asDiagonal() * Q.transpose());
+                };
+                EXPECT_LT(opened(1e-2 / (1.0 + along)), opened(0.0)) << along;
+            }
+        }
+    }
+    const Law extended = NeoHookean{1.0, 3.0};
+    EXPECT_NEAR(energy_density_by_links(extended, Mat3::Zero()), 8.715, 1e-3);
+    EXPECT_NEAR(energy_density_by_links(extended, 0.05 * Mat3::Identity()), 8.719, 1e-3);
+}
+
 // Energy and derivatives agree at the level of the law, also beyond what elements can show at once.
 TEST(Laws, DifferentiateTheirEnergy) {
     test::Random random(5);

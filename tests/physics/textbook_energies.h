@@ -60,6 +60,14 @@ inline double energy_density(const Ogden& law, const Mat3& F) {
     return w;
 }
 
+inline double energy_density(const StableNeoHookean& law, const Mat3& F) {
+    const double alpha = 1.0 + 0.75 * law.mu / law.lambda;
+    const auto w = [&](double I1, double J) {
+        return 0.5 * law.mu * (I1 - 3.0 - std::log(I1 + 1.0)) +
+               0.5 * law.lambda * (J - alpha) * (J - alpha);
+    };
+    return w(F.squaredNorm(), F.determinant()) - w(3.0, 1.0);
+}
 inline double energy_density(const Yeoh& law, const Mat3& F) {
     const double J = F.determinant(), i = std::pow(J, -2.0 / 3.0) * F.squaredNorm() - 3.0;
     return law.c1 * i + law.c2 * i * i + law.c3 * i * i * i +

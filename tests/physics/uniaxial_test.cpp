@@ -162,6 +162,33 @@ TEST(UniaxialBars, HaveTheStressOfTheTextbookEnergy) {
     }
 }
 
+// With a stretch e along the axis and t across, the side is free where
+// mu (1 - 1/(e^2 + 2 t^2 + 1)) + lambda (e t^2 - alpha) e = 0: a quadratic equation for t^2.
+TEST(UniaxialStretch, OfTheStableNeoHookeanLawIsItsClosedForm) {
+    for (const auto& [rest_lambda, rest_mu] :
+         {std::pair(5769.0, 3846.0), std::pair(0.0, 5000.0), std::pair(1.6e5, 3356.0)}) {
+        const double mu = 4.0 / 3.0 * rest_mu, lambda = rest_lambda + 5.0 / 6.0 * rest_mu;
+        const double alpha = 1.0 + 0.75 * mu / lambda;
+        UniaxialCube cube(StableNeoHookean::of_rest_moduli(rest_lambda, rest_mu));
+        for (const double e : {0.3, 0.6, 0.9, 1.0, 1.2, 1.6, 3.0}) {
+            SCOPED_TRACE(e);
+            const double square = e * e + 1.0;
+            const double a = 2.0 * lambda * e * e,
+                         b = 2.0 * mu + lambda * e * (e * square - 2.0 * alpha),
+                         c = mu * e * e - lambda * e * alpha * square;
+            const double lateral = (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);  // squared
+            const double stress = mu * (1.0 - 1.0 / (square + 2.0 * lateral)) * e +
+                                  lambda * (e * lateral - alpha) * lateral;
+            const double scale = (rest_lambda + 2.0 * rest_mu) * side * side;
+            EXPECT_NEAR(cube.free_lateral_stretch(e), std::sqrt(lateral), tolerance);
+            cube.stretch(e, std::sqrt(lateral));
+            EXPECT_LE(cube.largest_free_force(), 1e-12 * scale);
+            EXPECT_NEAR(-cube.face_force(2).z(), stress * side * side, 1e-12 * scale);
+            EXPECT_NEAR(cube.model().min_volume_ratio(), e * lateral, 1e-12);
+        }
+    }
+}
+
 // The work of the end force from rest is the elastic energy: Simpson's rule over the table's own
 // stretches, whose force is not known between them, is good to the fourth power of their distance.
 TEST(UniaxialReference, EnergyIsTheWorkOfTheEndForce) {
