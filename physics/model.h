@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/element_store.h"
@@ -69,8 +70,8 @@ class Model {
     /// One step of semi-implicit Euler, from the forces last computed:
     /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
     /// to be at time + dt. Source: HEML 2015, eq. (32).
-    /// Throws PhysicsError, naming an element and the likely cause, if the state is no longer
-    /// finite or a node has moved by more than the body's size in this step.
+    /// Throws PhysicsError, naming an element, the time, the likely cause and what to do, if the
+    /// state is no longer finite or a node has moved by more than the body's size in this step.
     void integrate(double time, double dt);
 
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
@@ -149,7 +150,9 @@ class Model {
     void take_from_sources(const topology::NodeRecord& record);
     void merge(NodeId absorbed, NodeId survivor);
     bool take_back_merge(NodeId absorbed);
-    [[noreturn]] void explain_failure(double dt) const;
+    [[noreturn]] void explain_failure(double time, double dt) const;
+    /// Of the elements at the node the one with the lowest volume ratio before the last step.
+    std::pair<ElementId, double> most_crushed_before(NodeId n, double dt) const;
 
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
