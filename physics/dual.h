@@ -50,9 +50,7 @@ struct Dual {
     friend Dual expm1(const Dual& x) {
         return {std::expm1(x.value), std::exp(x.value) * x.gradient};
     }
-    friend Dual log1p(const Dual& x) {
-        return {std::log1p(x.value), x.gradient / (1.0 + x.value)};
-    }
+    friend Dual log1p(const Dual& x) { return {std::log1p(x.value), x.gradient / (1.0 + x.value)}; }
     friend Dual sqrt(const Dual& x) {
         const double root = std::sqrt(x.value);
         return {root, x.gradient / (2.0 * root)};

@@ -7,6 +7,7 @@
 #include "physics/hybmss_kernel.h"
 #include "physics/inheritance.h"
 #include "physics/mass_spring_kernel.h"
+#include "physics/nodal_viscous_kernel.h"
 #include "physics/viscous_kernel.h"
 #include "topology/error.h"
 
@@ -27,13 +28,25 @@ std::unique_ptr<ElementBlock> make_block(const Material& material) {
         [&](const auto& law) -> std::unique_ptr<ElementBlock> {
             using Elastic = HemlKernel<std::decay_t<decltype(law)>>;
             using Viscous = ViscousKernel<std::decay_t<decltype(law)>>;
+            using NodalViscous = NodalViscousKernel<std::decay_t<decltype(law)>>;
             const Elastic elastic{law, links.inversion_threshold};
             if (links.prony.empty())
                 return std::make_unique<KernelBlock<Elastic>>(elastic, material.density);
+            if (links.prony_rule == PronyRule::nodal)
+                return std::make_unique<KernelBlock<NodalViscous>>(
+                    NodalViscous(elastic, links.prony), material.density);
             return std::make_unique<KernelBlock<Viscous>>(Viscous(elastic, links.prony),
                                                           material.density);
         },
         links.law);
+}
+
+/// Numbers that an element of the material remembers, whatever its law.
+std::size_t history_size(const HyperElasticLinks& links) {
+    if (links.prony.empty()) return 0;
+    return links.prony_rule == PronyRule::nodal
+               ? NodalViscousKernel<NeoHookean>::history_size(links.prony.size())
+               : ViscousKernel<NeoHookean>::history_size(links.prony.size());
 }
 
 /// What to do where a material's method is not for this kind of cell.
@@ -116,11 +129,11 @@ void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
                                                      fibre_of(e));
 }
 
-std::size_t ElementStore::max_prony_terms() const {
+std::size_t ElementStore::history_size() const {
     std::size_t most = 0;
     for (const Material& material : table_.materials)
         if (const auto* links = std::get_if<HyperElasticLinks>(&material.method))
-            most = std::max(most, links->prony.size());
+            most = std::max(most, physics::history_size(*links));
     return most;
 }
 

@@ -54,8 +54,8 @@ class ElementStore {
     /// As MaterialTable has them, also of the elements that edits added.
     std::span<const Vec3> fibres() const { return table_.fibres; }
 
-    /// Of the longest series of any of the materials; 0 if none is viscous.
-    std::size_t max_prony_terms() const;
+    /// The most numbers that an element of any of the materials remembers; 0 if none is viscous.
+    std::size_t history_size() const;
 
     /// Brings the history of all elements from the positions `before` to `positions`, dt later;
     /// see ElementBlock. Returns the energy that viscosity took, J.

@@ -181,10 +181,9 @@ struct StableNeoHookean {
     }
 };
 
-using Law =
-    std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean, FungDemiray,
-                 IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh, HolzapfelGasserOgden,
-                 StableNeoHookean>;
+using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean,
+                         FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh,
+                         HolzapfelGasserOgden, StableNeoHookean>;
 
 inline bool has_fibres(const Law& law) {
     return std::visit([]<class L>(const L&) { return HasFibres<L>; }, law);

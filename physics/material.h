@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <variant>
 #include <vector>
 
@@ -16,12 +17,16 @@ struct PronyTerm {
     bool operator==(const PronyTerm&) const = default;
 };
 
+/// What relaxes: the second Piola-Kirchhoff stress, or, to compare with HEML 2015, nodal forces.
+enum class PronyRule : std::uint8_t { stress, nodal };
+
 /// Hyper-elastic mass links on tetrahedra.
 struct HyperElasticLinks {
     Law law;                           ///< of instantaneous strain, where there is viscosity
     double inversion_threshold = 0.4;  ///< J0: below it volume terms are extended linearly in force
     /// Empty: elastic. The long-time moduli are 1 less the sum of the alphas of those of the law.
     std::vector<PronyTerm> prony = {};
+    PronyRule prony_rule = PronyRule::stress;
 };
 
 /// The classical mass-spring model on the edges of tetrahedra, as a baseline. Each element brings

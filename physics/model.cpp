@@ -28,7 +28,7 @@ Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surrounding
     : mesh_(mesh),
       epoch_(mesh.epoch()),
       elements_(mesh, table),
-      history_(elements_.max_prony_terms(), mesh.element_capacity()),
+      history_(elements_.history_size(), mesh.element_capacity()),
       gravity_(surroundings.gravity),
       damping_(surroundings.damping),
       body_size_(diagonal(mesh)),

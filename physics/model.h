@@ -61,7 +61,7 @@ class Model {
     const ViscousHistory& history() const { return history_; }
     /// Replaces it after set_state(); values as of history().values(). Forces are those of before
     /// until compute_forces is called.
-    void set_history(std::span<const SymmetricTensor> values) { history_.set_values(values); }
+    void set_history(std::span<const double> values) { history_.set_values(values); }
 
     /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
     /// and of the history as it stands.

@@ -14,9 +14,11 @@
 
 #include "physics/heml_kernel.h"
 #include "physics/material.h"
-#include "physics/viscous_history.h"
 
 namespace incise::physics {
+
+/// A symmetric tensor by its components 11, 22, 33, 12, 23, 31.
+using SymmetricTensor = Eigen::Matrix<double, 6, 1>;
 
 inline Mat3 matrix_of(const SymmetricTensor& t) {
     Mat3 matrix;
@@ -108,6 +110,10 @@ struct ViscousKernel : HemlKernel<LawType> {
         for (const PronyTerm& term : terms) long_time_share -= term.alpha;
     }
 
+    /// Numbers that an element remembers: S after the last step, then the H_i, in the frame of
+    /// rest.
+    static constexpr std::size_t history_size(std::size_t num_terms) { return 6 * (num_terms + 1); }
+
     Element precompute(const Corners& X) const requires(!Elastic::has_fibres) {
         return {Elastic::precompute(X), inverse_edges(X)};
     }
@@ -121,9 +127,9 @@ struct ViscousKernel : HemlKernel<LawType> {
         return long_time_share * Elastic::energy(e, x);
     }
 
-    Corners forces(const Element& e, const Corners& x,
-                   std::span<const SymmetricTensor> memory) const {
-        const SymmetricTensor relaxed = sum_of_terms(memory) - (1.0 - long_time_share) * memory[0];
+    Corners forces(const Element& e, const Corners& x, std::span<const double> memory) const {
+        const SymmetricTensor relaxed =
+            sum_of_terms(memory) - (1.0 - long_time_share) * tensor(memory, 0);
         const Corners elastic = Elastic::forces(e, x);
         Corners f = forces_of_stress(matrix_of(relaxed), e.volume, e.inverse_edges, x);
         for (std::size_t k = 0; k < 4; ++k) f[k] += elastic[k];
@@ -153,7 +159,7 @@ struct ViscousKernel : HemlKernel<LawType> {
     /// Returns the work done on the element less the growth of energy(), joules: what the terms
     /// took up. It is the work of their stresses over the change of E, by the trapezoidal rule.
     double advance(const Element& e, const Corners& before, const Corners& x,
-                   std::span<SymmetricTensor> memory) const {
+                   std::span<double> memory) const {
         const double J0 = this->inversion_threshold;
         if (std::min(this->volume_ratio(e, before), this->volume_ratio(e, x)) < J0) {
             // The stress remembered is not all of the law's: work and energy as they are.
@@ -177,16 +183,25 @@ struct ViscousKernel : HemlKernel<LawType> {
         return V.inverse();
     }
 
-    void follow(const Element& e, const Corners& x, std::span<SymmetricTensor> memory) const {
-        const SymmetricTensor S = symmetric_tensor(stress(e, x));
-        for (std::size_t i = 0; i < terms.size(); ++i)
-            memory[i + 1] = steps[i].decay * memory[i + 1] + steps[i].gain * (S - memory[0]);
-        memory[0] = S;
+    static Eigen::Map<SymmetricTensor> tensor(std::span<double> memory, std::size_t i) {
+        return Eigen::Map<SymmetricTensor>(memory.data() + 6 * i);
+    }
+    static Eigen::Map<const SymmetricTensor> tensor(std::span<const double> memory, std::size_t i) {
+        return Eigen::Map<const SymmetricTensor>(memory.data() + 6 * i);
     }
 
-    SymmetricTensor sum_of_terms(std::span<const SymmetricTensor> memory) const {
+    void follow(const Element& e, const Corners& x, std::span<double> memory) const {
+        const SymmetricTensor S = symmetric_tensor(stress(e, x));
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            auto H = tensor(memory, i + 1);
+            H = steps[i].decay * H + steps[i].gain * (S - tensor(memory, 0));
+        }
+        tensor(memory, 0) = S;
+    }
+
+    SymmetricTensor sum_of_terms(std::span<const double> memory) const {
         SymmetricTensor sum = SymmetricTensor::Zero();
-        for (std::size_t i = 0; i < terms.size(); ++i) sum += memory[i + 1];
+        for (std::size_t i = 0; i < terms.size(); ++i) sum += tensor(memory, i + 1);
         return sum;
     }
 

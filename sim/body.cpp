@@ -69,8 +69,9 @@ physics::Material build_material(const MaterialSpec& spec) {
                 spec.stiffness_ratio};
             break;
         case Method::heml:
-            material.method = physics::HyperElasticLinks{make_law(spec.law, spec.parameters),
-                                                         spec.inversion_threshold, spec.prony};
+            material.method =
+                physics::HyperElasticLinks{make_law(spec.law, spec.parameters),
+                                           spec.inversion_threshold, spec.prony, spec.prony_rule};
             break;
     }
     return material;

@@ -15,8 +15,8 @@ namespace incise::sim {
 namespace {
 
 constexpr std::string_view common_keys[] = {"regions", "method", "preset", "density"};
-constexpr std::string_view heml_keys[] = {"law", "inversion_threshold", "prony", "fibre",
-                                          "fibre_array"};
+constexpr std::string_view heml_keys[] = {"law",   "inversion_threshold", "prony", "prony_rule",
+                                          "fibre", "fibre_array"};
 constexpr std::string_view hybmss_keys[] = {"face_diagonals", "stiffness_ratio",
                                             "correction_forces"};
 
@@ -207,6 +207,9 @@ void read_fibre(const TableReader& material, const MeshSpec& mesh, MaterialSpec&
     }
 }
 
+/// Indexed by physics::PronyRule.
+constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
+
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
     if (material.has("regions")) {
@@ -248,6 +251,13 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     spec.prony = read_prony(material);
     if (preset != nullptr && spec.method == Method::heml && !material.has("prony"))
         spec.prony = preset->prony;
+    if (const auto index = material.choice("prony_rule", {prony_rule_names})) {
+        spec.prony_rule = static_cast<physics::PronyRule>(*index);
+        if (spec.method == Method::heml && spec.prony.empty() && !material.has("prony"))
+            material.error("prony_rule",
+                           "has no meaning without viscosity: give prony = [{ alpha = 0.3, tau = "
+                           "0.5 }], or leave it out");
+    }
     spec.correction_forces = material.flag("correction_forces", true);
     spec.stiffness_ratio = material.number("stiffness_ratio", spec.stiffness_ratio,
                                            {.low = 0.0, .includes_high = true});

@@ -44,6 +44,7 @@ struct MaterialSpec {
     ElasticParameters parameters;           ///< as given; resolve() makes constants of them
     double inversion_threshold = 0.4;       ///< J0, in (0, 1); of HEML
     std::vector<physics::PronyTerm> prony;  ///< of HEML; empty: elastic
+    physics::PronyRule prony_rule = physics::PronyRule::stress;
     /// Of laws with fibres: their direction at rest, of unit length, or the cell array of the mesh
     /// file that has it.
     std::variant<std::monostate, Vec3, std::string> fibre;

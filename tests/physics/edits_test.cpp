@@ -53,7 +53,7 @@ struct ModelSnapshot {
     BodyState state;
     std::vector<Vec3> forces;
     std::vector<double> masses, energies;
-    std::vector<SymmetricTensor> history;
+    std::vector<double> history;
     std::vector<Vec3> fibres;
     double stable_step;
     bool operator==(const ModelSnapshot&) const = default;

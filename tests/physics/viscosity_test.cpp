@@ -20,7 +20,7 @@ using topology::Mesh;
 using topology::MeshEdit;
 
 using Series = std::vector<PronyTerm>;
-using Memory = std::vector<SymmetricTensor>;
+using Memory = std::vector<double>;
 
 const Series two_terms{{0.3, 0.2}, {0.4, 5.0}};
 const NeoHookean law{1923.0, 5769.0};
@@ -40,7 +40,7 @@ double relaxation(const Series& series, double t) {
 }
 
 Memory no_memory(const Series& series) {
-    return Memory(series.size() + 1, SymmetricTensor::Zero());
+    return Memory(ViscousKernel<NeoHookean>::history_size(series.size()), 0.0);
 }
 
 /// Calls visit(name, kernel) for HEML with each law and two terms.
