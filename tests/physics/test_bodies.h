@@ -24,10 +24,11 @@ inline MaterialTable table_of_all_materials(std::size_t num_elements = 5000) {
         table.materials.push_back({density, method});
         density += 37.0;
     };
-    for (const NamedLaw& named : test_laws())
-        // Strongly nonlinear laws do not bear states as random as those of these tests.
-        if (named.law.index() <= Law(CiarletNeoHookean{}).index() || has_fibres(named.law))
-            add(HyperElasticLinks{named.law});
+    for (const NamedLaw& named : test_laws()) {
+        const auto* ogden = std::get_if<Ogden>(&named.law);
+        if (ogden != nullptr && ogden->num_terms > 1) continue;  // each costs as much as ten laws
+        add(HyperElasticLinks{named.law});
+    }
     add(MassSprings{1e4});
     return table;
 }
@@ -59,9 +60,11 @@ inline MaterialTable table_of_one_law(const Law& law, double density = 1000.0) {
 }
 
 /// Gives the cells the regions 0 to num_regions - 1 in turn, so that every node sees several.
-inline topology::MeshData with_regions(topology::MeshData data, std::size_t num_regions) {
+/// @param first of the first cell
+inline topology::MeshData with_regions(topology::MeshData data, std::size_t num_regions,
+                                       std::size_t first = 0) {
     for (std::size_t c = 0; c < data.num_cells(); ++c)
-        data.regions[c] = static_cast<int>(c % num_regions);
+        data.regions[c] = static_cast<int>((first + c) % num_regions);
     return data;
 }
 
