@@ -270,6 +270,22 @@ TEST(ScenarioErrors, OfViscosity) {
     EXPECT_EQ(material_error(good + "prony = [{ alpha = 0.5, tau = 1 }, { alpha = 0.5, tau = 2 }]"),
               "scene.toml:5:9: key 'material[0].prony': has shares alpha that add up to 1: their "
               "sum must be below 1, or no stress would last");
+    for (const std::string rule : {"stress", "nodal"}) {
+        const std::string line = "prony_rule = \"" + rule + "\"\n";
+        EXPECT_EQ(material_error(good + line + "prony = [{ alpha = 0.3, tau = 0.5 }]"), "");
+        EXPECT_EQ(material_error("preset = \"fat\"\n" + line), "");
+        EXPECT_EQ(material_error(good + line),
+                  "scene.toml:5:14: key 'material[0].prony_rule': has no meaning without viscosity: "
+                  "give prony = [{ alpha = 0.3, tau = 0.5 }], or leave it out");
+    }
+    EXPECT_EQ(material_error(good + "prony = [{ alpha = 0.3, tau = 0.5 }]\nprony_rule = \"node\""),
+              "scene.toml:6:14: key 'material[0].prony_rule': 'node' is not allowed; did you mean "
+              "'nodal'? Allowed: stress, nodal");
+    EXPECT_NE(material_error("method = \"mass-spring\"\ndensity = 1\nyoung = 1\nprony_rule = "
+                             "\"nodal\"")
+                  .find("key 'material[0].prony_rule': is a key of the method heml, not of "
+                        "mass-spring: leave it out"),
+              std::string::npos);
     for (const std::string method : {"mass-spring", "hybmss"})
         EXPECT_NE(material_error("density = 1\nyoung = 1\nprony = [{ alpha = 0.3, tau = 0.5 }]\n"
                                  "method = \"" +

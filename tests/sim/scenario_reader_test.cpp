@@ -26,6 +26,7 @@ c2 = 1175.0
 bulk_modulus = 1e5
 inversion_threshold = 0.3
 prony = [{ alpha = 0.3, tau = 0.5 }, { alpha = 0.25, tau = 20 }]
+prony_rule = "nodal"
 [[material]]
 method = "mass-spring"
 density = 900
@@ -105,7 +106,9 @@ TEST(ScenarioReader, ReadsEverySection) {
     EXPECT_EQ(s.materials[0].inversion_threshold, 0.3);
     EXPECT_EQ(s.materials[0].prony, (std::vector<physics::PronyTerm>{{0.3, 0.5}, {0.25, 20.0}}));
     EXPECT_FALSE(s.materials[1].regions.has_value());
+    EXPECT_EQ(s.materials[0].prony_rule, physics::PronyRule::nodal);
     EXPECT_TRUE(s.materials[1].prony.empty());
+    EXPECT_EQ(s.materials[1].prony_rule, physics::PronyRule::stress);
     EXPECT_EQ(s.materials[1].method, Method::mass_spring);
 
     EXPECT_EQ(s.dynamics.end_time, 2.0);

@@ -263,6 +263,8 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 0.2, by = [0.01, 0, 0.02] }]
     std::string viscous_cube = soft_cube;
     viscous_cube.insert(viscous_cube.find("poisson"),
                         "prony = [{ alpha = 0.3, tau = 0.05 }, { alpha = 0.3, tau = 1 }]\n");
+    std::string nodal_cube = viscous_cube;
+    nodal_cube.insert(nodal_cube.find("prony"), "prony_rule = \"nodal\"\n");
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
              {"undamped", soft_cube + dynamics(0.5, gravity)},
              {"damped", soft_cube + dynamics(0.5, gravity + "damping = 5")},
@@ -270,6 +272,8 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 0.2, by = [0.01, 0, 0.02] }]
              {"moved and damped", soft_cube + moved + dynamics(0.5, gravity + "damping = 5")},
              {"viscous", viscous_cube + dynamics(0.5, gravity)},
              {"viscous, moved", viscous_cube + moved + dynamics(0.5, gravity)},
+             {"viscous by nodes, moved", nodal_cube + moved + dynamics(0.5, gravity)},
+             {"viscous by nodes, cut", nodal_cube + two_tools + dynamics(0.5, gravity)},
              {"viscous, cut", viscous_cube + two_tools + dynamics(0.5, gravity)},
              {"cut", soft_cube + two_tools + dynamics(0.5, gravity + "damping = 5")}}) {
         Scenario scenario = scenario_of(text);
