@@ -219,10 +219,11 @@ const std::vector<MaterialModel>& law_table() {
                             {lame_lambda, lame_mu}},
          .admissible = "mu > 0, K > 0 (any Poisson's ratio between -1 and 0.5)",
          .use = "Tissue that tools crush or turn inside out. Near rest it is neo-hookean.",
-         .limits = "The energy at zero volume is finite: strong compression inverts elements, which "
-                   "then come back. A body can be wound up so that no element is inverted, say "
-                   "twice round an edge: that no law undoes; the nearer Poisson's ratio is to 0.5, "
-                   "the more often it happens. inversion_threshold matters to viscosity only.",
+         .limits =
+             "The energy at zero volume is finite: strong compression inverts elements, which "
+             "then come back. A body can be wound up so that no element is inverted, say "
+             "twice round an edge: that no law undoes; the nearer Poisson's ratio is to 0.5, "
+             "the more often it happens. inversion_threshold matters to viscosity only.",
          .make = [](const ElasticConstants& k, const ElasticParameters&) -> physics::Law {
              return physics::StableNeoHookean::of_rest_moduli(k.lambda, k.mu);
          }},
