@@ -1,0 +1,83 @@
+// A number that counts what is done with it, to recount the operations of formulas.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <utility>
+
+namespace incise::bench {
+
+/// Operations on numbers. A change of sign is none, nor is a comparison.
+struct Operations {
+    std::int64_t additions = 0;  ///< and subtractions
+    std::int64_t multiplications = 0;
+    std::int64_t divisions = 0;
+    std::int64_t functions = 0;  ///< square roots, logarithms
+
+    /// Everything, each as one.
+    std::int64_t total() const { return additions + multiplications + divisions + functions; }
+    bool operator==(const Operations&) const = default;
+};
+
+/// A double that books its operations. What it is made of and converted to is free.
+class Counted {
+  public:
+    Counted() = default;
+    Counted(double value) : value_(value) {}  // NOLINT: constants in formulas, as for double
+
+    double value() const { return value_; }
+
+    /// What has been booked since the last call, in this thread. A number has no room for a
+    /// reference to its book, so there is one for all.
+    static Operations take() { return std::exchange(booked_, {}); }
+
+    friend Counted operator+(Counted a, Counted b) {
+        ++booked_.additions;
+        return a.value_ + b.value_;
+    }
+    friend Counted operator-(Counted a, Counted b) {
+        ++booked_.additions;
+        return a.value_ - b.value_;
+    }
+    friend Counted operator*(Counted a, Counted b) {
+        ++booked_.multiplications;
+        return a.value_ * b.value_;
+    }
+    friend Counted operator/(Counted a, Counted b) {
+        ++booked_.divisions;
+        return a.value_ / b.value_;
+    }
+    friend Counted operator-(Counted a) { return -a.value_; }
+    Counted& operator+=(Counted b) { return *this = *this + b; }
+    Counted& operator-=(Counted b) { return *this = *this - b; }
+    Counted& operator*=(Counted b) { return *this = *this * b; }
+    Counted& operator/=(Counted b) { return *this = *this / b; }
+    friend auto operator<=>(const Counted&, const Counted&) = default;
+
+    friend Counted sqrt(Counted a) {
+        ++booked_.functions;
+        return std::sqrt(a.value_);
+    }
+    friend Counted log(Counted a) {
+        ++booked_.functions;
+        return std::log(a.value_);
+    }
+
+  private:
+    static inline thread_local Operations booked_;
+    double value_ = 0.0;
+};
+
+}  // namespace incise::bench
+
+template <>
+struct Eigen::NumTraits<incise::bench::Counted> : Eigen::GenericNumTraits<double> {
+    using Real = incise::bench::Counted;
+    using NonInteger = incise::bench::Counted;
+    using Nested = incise::bench::Counted;
+    using Literal = incise::bench::Counted;
+    enum { RequireInitialization = 1 };
+};
