@@ -22,8 +22,8 @@ using topology::FaceId;
 using topology::Mesh;
 using topology::NodeId;
 
-constexpr double displacement_tolerance = 1e-7;  // of the largest displacement
-constexpr double reaction_tolerance = 1e-6;      // of the reaction
+constexpr double displacement_tolerance = 1e-9;  // of the largest displacement
+constexpr double reaction_tolerance = 1e-9;      // of the reaction
 constexpr double ramp_time = 0.2;                // s, of the moved points
 constexpr double damping = 60.0;                 // 1/s, near critical for the lowest modes
 

@@ -61,6 +61,8 @@ inline std::optional<Law> law_of(const test::ReferenceLaw& reference) {
     if (reference.name == "fd_iso") return IsochoricFungDemiray{at("mu"), at("g"), at("K")};
     if (reference.name == "fd_ln") return FungDemiray{at("mu"), at("g"), at("lam")};
     if (reference.name == "mr_ln") return MooneyRivlin{at("C1"), at("C2"), at("lam")};
+    if (reference.name == "ogden")
+        return Ogden{{{{at("mu1"), at("alpha1")}, {at("mu2"), at("alpha2")}}}, 2, at("K")};
     return std::nullopt;
 }
 

@@ -69,19 +69,19 @@ class UniaxialCube {
 
 template <class Visit>
 void for_each_reference(Visit visit) {
-    std::size_t num_laws = 0;
+    std::size_t num_tables = 0;
     for (const auto& reference : test::uniaxial_references()) {
         const auto law = law_of(reference.law);
         if (!law) continue;
         SCOPED_TRACE(reference.law.name);
-        ++num_laws;
+        ++num_tables;
         UniaxialCube cube(*law);
         for (const auto& row : reference.rows) {
             SCOPED_TRACE(row.stretch);
             visit(reference, row, cube);
         }
     }
-    EXPECT_EQ(num_laws, test::uniaxial_references().size()) << "a table without a law";
+    EXPECT_EQ(num_tables, test::uniaxial_references().size()) << "a table without a law";
 }
 
 TEST(UniaxialReference, ForcesAtTheLateralStretchOfTheTable) {
