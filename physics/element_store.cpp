@@ -3,12 +3,8 @@
 
 #include <cmath>
 
-#include "physics/heml_kernel.h"
-#include "physics/hybmss_kernel.h"
 #include "physics/inheritance.h"
-#include "physics/mass_spring_kernel.h"
-#include "physics/nodal_viscous_kernel.h"
-#include "physics/viscous_kernel.h"
+#include "physics/kernel_block.h"
 #include "topology/error.h"
 
 namespace incise::physics {

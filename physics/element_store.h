@@ -62,6 +62,11 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    ViscousHistory& history);
 
+    /// Adds the forces at the end of a step, N, by node id; see ElementBlock.
+    void add_forces(const EndOfStep& end, std::span<Vec3> forces) const {
+        for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
+    }
+
     /// Calls visit(block) for each block in ascending order.
     template <class Visit>
     void for_each_block(Visit visit) const {

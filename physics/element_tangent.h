@@ -1,6 +1,7 @@
-// Tangent stiffness of one element: minus the derivative of its nodal forces by nodal positions,
-// and so the symmetric second derivative of its energy, N/m. Rows and columns go by corner, then by
-// axis. Source: docs/theory.md, Tangents. SPDX-License-Identifier: LGPL-3.0-or-later
+// Tangent stiffness of one element: minus the derivative of its nodal forces by nodal positions, so
+// the symmetric second derivative of its energy, N/m. Rows and columns go by corner, then by axis.
+// Source: docs/theory.md, Tangents.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +11,7 @@
 #include "physics/heml_kernel.h"
 #include "physics/hybmss_kernel.h"
 #include "physics/mass_spring_kernel.h"
+#include "physics/nodal_viscous_kernel.h"
 #include "physics/viscous_kernel.h"
 
 namespace incise::physics {
@@ -110,6 +112,29 @@ inline ElementTangent<4> tangent_of_stress(const Mat3& S, double volume,
     Eigen::Matrix<double, 9, 9> inner = Eigen::Matrix<double, 9, 9>::Zero();
     add_scalars(volume * (inverse_edges * S * inverse_edges.transpose()), inner);
     return with_first_corner(inner);
+}
+
+/// At the end of a step, as forces() of the same arguments.
+template <class LawType>
+ElementTangent<4> element_tangent(const ViscousKernel<LawType>& kernel,
+                                  const typename ViscousKernel<LawType>::Element& e,
+                                  const std::array<Vec3, 4>& x,
+                                  const typename ViscousKernel<LawType>::EndOfStep& end) {
+    const HemlKernel<LawType>& elastic = kernel;
+    const typename HemlKernel<LawType>::Element& element = e;
+    return end.share * element_tangent(elastic, element, x) +
+           tangent_of_stress(end.stress, e.volume, e.inverse_edges);
+}
+
+/// Likewise; the constant stress of the nodal rule does not depend on the positions.
+template <class LawType>
+ElementTangent<4> element_tangent(const NodalViscousKernel<LawType>& kernel,
+                                  const typename NodalViscousKernel<LawType>::Element& e,
+                                  const std::array<Vec3, 4>& x,
+                                  const typename NodalViscousKernel<LawType>::EndOfStep& end) {
+    const HemlKernel<LawType>& elastic = kernel;
+    const typename HemlKernel<LawType>::Element& element = e;
+    return end.share * element_tangent(elastic, element, x);
 }
 
 /// Adds a spring between the corners i and j; one without length has no tangent.

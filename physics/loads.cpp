@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/loads.h"
 
+#include <Eigen/Geometry>
+#include <array>
 #include <map>
 
 namespace incise::physics {
@@ -70,6 +72,31 @@ struct Adder {
     }
 };
 
+/// Tangents of one pressure load on one face.
+void visit_tangent(const topology::Mesh& mesh, FaceId f, double pressure, std::span<const Vec3> x,
+                   TangentSink& sink) {
+    const int size = mesh.face_size(f);
+    std::array<std::uint32_t, 4> nodes{};
+    for (int p = 0; p < size; ++p)
+        nodes[static_cast<std::size_t>(p)] =
+            static_cast<std::uint32_t>(mesh.face_corner(f, p).index());
+    const auto at = [&](int p) -> const Vec3& {
+        return x[nodes[static_cast<std::size_t>(p % size)]];
+    };
+    // With the area vector's derivative by corner p, v -> edge x v / 2, in all rows alike.
+    Eigen::MatrixXd K(3 * size, 3 * size);
+    for (int p = 0; p < size; ++p) {
+        const Vec3 edge = size == 3 ? Vec3(at(p + 2) - at(p + 1)) : Vec3(at(p + 3) - at(p + 1));
+        Eigen::Matrix3d by_corner;
+        for (int c = 0; c < 3; ++c)
+            by_corner.col(c) = 0.5 * pressure / size * edge.cross(Vec3::Unit(c));
+        for (int row = 0; row < size; ++row) K.block<3, 3>(3 * row, 3 * p) = by_corner;
+    }
+    K = (0.5 * (K + K.transpose())).eval();
+    sink.add(std::span(nodes).first(static_cast<std::size_t>(size)),
+             {K.data(), static_cast<std::size_t>(K.size())});
+}
+
 // Anew for every family of copies with a member among `touched`.
 void share(NodalLoad& load, const LoadedBody& body, std::span<const NodeId> touched) {
     const auto& members = load.nodes.members();
@@ -107,6 +134,18 @@ void Loads::add(const LoadedBody& body, double time, std::span<Vec3> forces) con
     for (const Load& load : loads_) {
         const double factor = load.factor.is_empty() ? 1.0 : load.factor.at(time);
         if (factor != 0.0) std::visit(Adder{body, factor, forces}, load.kind);
+    }
+}
+
+void Loads::visit_tangents(const LoadedBody& body, double time, TangentSink& sink) const {
+    for (const Load& load : loads_) {
+        const auto* pressure = std::get_if<PressureLoad>(&load.kind);
+        const double factor = load.factor.is_empty() ? 1.0 : load.factor.at(time);
+        if (!pressure || factor == 0.0) continue;
+        for (const FaceSet::Member& member : pressure->faces.members())
+            if (!member.left_to.is_valid() && is_on_boundary(body.mesh, member.face))
+                visit_tangent(body.mesh, member.face, factor * pressure->pressure, body.positions,
+                              sink);
     }
 }
 

@@ -65,6 +65,10 @@ class Loads {
     /// faces that have come to lie inside, carry nothing. Cost: proportional to the selections.
     void add(const LoadedBody& body, double time, std::span<Vec3> forces) const;
 
+    /// Hands over the symmetric part of minus the derivative of the forces by the positions: of
+    /// pressure, as the others do not depend on these.
+    void visit_tangents(const LoadedBody& body, double time, TangentSink& sink) const;
+
     /// Carries the selections through an edit that the body has followed: parts of loaded faces and
     /// elements are loaded as these were.
     /// @param touched nodes whose mass may have changed

@@ -80,8 +80,13 @@ void Model::compute_forces(double time) {
     elements_.for_each_block([&](const ElementBlock& block) {
         block.add_forces(positions_, history_, elastic_forces_);
     });
-    for (std::size_t n = 0; n < masses_.size(); ++n) outer_forces_[n] = masses_[n] * gravity_;
-    loads_.add(loaded_body(), time, outer_forces_);
+    outer_forces_at(positions_, time, outer_forces_);
+}
+
+void Model::outer_forces_at(std::span<const Vec3> positions, double time,
+                            std::span<Vec3> forces) const {
+    for (std::size_t n = 0; n < masses_.size(); ++n) forces[n] = masses_[n] * gravity_;
+    loads_.add({mesh_, elements_, positions, masses_}, time, forces);
 }
 
 void Model::integrate(double time, double dt) {
@@ -130,6 +135,43 @@ void Model::integrate(double time, double dt) {
     if (!is_finite || largest_move_ > body_size_) explain_failure(time, dt);
     if (!history_.is_empty())
         dissipated_energy_ += elements_.advance(previous_positions_, positions_, dt, history_);
+}
+
+void Model::begin_step() {
+    std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
+    std::fill(reaction_moments_.begin(), reaction_moments_.end(), Vec3::Zero());
+    largest_move_ = 0.0;
+}
+
+double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                        std::span<const Vec3> reactions, double dt) {
+    const double largest_move = largest_move_;
+    begin_step();
+    double largest_square = 0.0;
+    for (std::size_t n = 0; n < masses_.size(); ++n) {
+        if (masses_[n] == 0.0) continue;  // dead
+        largest_square = std::max(largest_square, (positions[n] - positions_[n]).squaredNorm());
+        if (const auto* support_of = supports_.of_node(n))
+            for (int c = 0; c < 3; ++c) {
+                const int s = (*support_of)[static_cast<std::size_t>(c)];
+                if (s < 0) continue;
+                const auto support = static_cast<std::size_t>(s);
+                reactions_[support][c] += reactions[n][c];
+                reaction_moments_[support] += (positions[n] - supports_.point(support))
+                                                  .cross(reactions[n][c] * Vec3::Unit(c));
+            }
+    }
+    largest_move_ = largest_move + std::sqrt(largest_square);
+    double taken = 0.0;
+    if (!history_.is_empty()) taken = elements_.advance(positions_, positions, dt, history_);
+    std::copy(positions.begin(), positions.end(), positions_.begin());
+    std::copy(velocities.begin(), velocities.end(), velocities_.begin());
+    return taken;
+}
+
+void Model::book(double external_work, double dissipated_energy) {
+    external_work_ += external_work;
+    dissipated_energy_ += dissipated_energy;
 }
 
 std::pair<ElementId, double> Model::most_crushed_before(NodeId n, double dt) const {
@@ -260,6 +302,7 @@ void Model::apply(const ChangeSet& changes) {
                          std::to_string(epoch_) + " and the mesh at " +
                          std::to_string(mesh_.epoch()));
     epoch_ = changes.epoch_after;
+    ++num_edits_;
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
     history_.apply(changes);
@@ -347,6 +390,17 @@ Totals Model::totals() const {
             t.centre_of_mass[c] = moment[static_cast<std::size_t>(c)].value() / t.mass;
     }
     return t;
+}
+
+double Model::elastic_energy() const {
+    Sum elastic;
+    std::vector<double> energies;
+    elements_.for_each_block([&](const ElementBlock& block) {
+        energies.clear();
+        block.append_energies(positions_, energies);
+        for (const double w : energies) elastic += w;
+    });
+    return elastic.value();
 }
 
 double Model::stiffness_energy() const {

@@ -74,6 +74,18 @@ class Model {
     /// state is no longer finite or a node has moved by more than the body's size in this step.
     void integrate(double time, double dt);
 
+    /// For implicit integration and statics, which find the end of a step by themselves and hand it
+    /// over. A step may come in several parts: begin_step() goes before the first.
+    void begin_step();
+    /// Goes to the given positions and velocities (m, m/s, by node id), dt after the present ones;
+    /// infinite in statics. Viscous elements follow, whose energy comes back, J; forces are those
+    /// of before until compute_forces is called.
+    /// @param reactions of supports on their nodes, N, by node id, zero in free components
+    double take_step(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                     std::span<const Vec3> reactions, double dt);
+    /// Adds to external_work() and dissipated_energy(), J.
+    void book(double external_work, double dissipated_energy);
+
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
     /// the edited mesh with the same state and history. Copied nodes copy their state, a node
     /// between others takes a mean of theirs with the weights of the record, merged ones keep
@@ -86,6 +98,24 @@ class Model {
     /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
     /// the stars touched.
     void apply(const topology::ChangeSet& changes);
+
+    const ElementStore& elements() const { return elements_; }
+    const Supports& supports() const { return supports_; }
+    double damping() const { return damping_; }  ///< 1/s
+    double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
+    std::span<const Vec3> outer_forces() const { return outer_forces_; }  ///< N, loads and gravity
+    /// Sets `forces` (N, by node id) to loads and gravity at other positions (m) and `time`.
+    void outer_forces_at(std::span<const Vec3> positions, double time,
+                         std::span<Vec3> forces) const;
+    /// See Loads::visit_tangents.
+    void visit_load_tangents(std::span<const Vec3> positions, double time,
+                             TangentSink& sink) const {
+        loads_.visit_tangents({mesh_, elements_, positions, masses_}, time, sink);
+    }
+    /// J; of viscous elements that of the long-time moduli.
+    double elastic_energy() const;
+    /// How many edits it has followed, undone ones counted twice.
+    std::uint64_t num_edits() const { return num_edits_; }
 
     /// How far the fastest node went in the last step, m.
     double largest_move() const { return largest_move_; }
@@ -156,6 +186,7 @@ class Model {
 
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
+    std::uint64_t num_edits_ = 0;
     ElementStore elements_;
     ViscousHistory history_;
     Vec3 gravity_;

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -23,6 +24,7 @@ struct NodalPronyStep {
 };
 
 inline NodalPronyStep nodal_prony_step(const PronyTerm& term, double dt) {
+    if (std::isinf(dt)) return {0.0, term.alpha};
     return {term.tau / (dt + term.tau), dt * term.alpha / (dt + term.tau)};
 }
 
@@ -77,6 +79,42 @@ struct NodalViscousKernel : HemlKernel<LawType> {
             const Vec3 part = relaxed.col(static_cast<int>(k) - 1);
             f[k] += part;
             f[0] -= part;
+        }
+        return f;
+    }
+
+    /// What an element does at the end of a step as a function of its positions there: the share of
+    /// the law's forces, and a first Piola-Kirchhoff stress that stays as it is, Pa.
+    struct EndOfStep {
+        double share;
+        Mat3 stress;
+    };
+    /// By the recursion from the memory of the step before, dt (s) earlier; for an infinite dt, the
+    /// long-time moduli alone.
+    EndOfStep end_of_step(std::span<const double> memory, double dt) const {
+        EndOfStep end{1.0, Mat3::Zero()};
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const NodalPronyStep rule = nodal_prony_step(terms[i], dt);
+            end.share -= rule.gain;
+            end.stress -= rule.decay * tensor(memory, i + 1);
+        }
+        return end;
+    }
+    /// Whose gradient are minus the forces, J.
+    double potential(const Element& e, const Corners& x, const EndOfStep& end) const {
+        Mat3 v;
+        v << x[1] - x[0], x[2] - x[0], x[3] - x[0];
+        return end.share * Elastic::energy(e, x) +
+               e.volume * end.stress.cwiseProduct(v * e.inverse_edges).sum();
+    }
+    Corners forces(const Element& e, const Corners& x, const EndOfStep& end) const {
+        const Mat3 held = e.volume * (end.stress * e.inverse_edges.transpose());
+        Corners f = Elastic::forces(e, x);
+        for (Vec3& force : f) force *= end.share;
+        for (std::size_t k = 1; k < 4; ++k) {
+            const Vec3 part = held.col(static_cast<int>(k) - 1);
+            f[k] -= part;
+            f[0] += part;
         }
         return f;
     }

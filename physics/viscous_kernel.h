@@ -151,6 +151,39 @@ struct ViscousKernel : HemlKernel<LawType> {
         return S;
     }
 
+    /// What an element does at the end of a step as a function of its positions there: the share of
+    /// the law's forces, and a stress that stays as it is (Pa, frame of rest).
+    struct EndOfStep {
+        double share;
+        Mat3 stress;
+    };
+    /// By the exact rule from the memory of the step before, dt (s) earlier: with
+    /// H_i' = decay H_i + gain (S' - S) the stress is (share) S' + sum of (decay H_i - gain S).
+    /// For an infinite dt, the long-time moduli alone.
+    EndOfStep end_of_step(std::span<const double> memory, double dt) const {
+        double share = long_time_share;
+        SymmetricTensor stress = SymmetricTensor::Zero();
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const PronyStep rule = prony_step(terms[i], dt);
+            share += rule.gain;
+            stress += rule.decay * tensor(memory, i + 1) - rule.gain * tensor(memory, 0);
+        }
+        return {share, matrix_of(stress)};
+    }
+    /// Whose gradient are minus the forces, J.
+    double potential(const Element& e, const Corners& x, const EndOfStep& end) const {
+        const Mat3 twice_E =
+            change_of_right_cauchy_green(squared_links(x) - e.rest_links, e.inverse_edges);
+        return end.share * Elastic::energy(e, x) +
+               0.5 * e.volume * end.stress.cwiseProduct(twice_E).sum();
+    }
+    Corners forces(const Element& e, const Corners& x, const EndOfStep& end) const {
+        const Corners elastic = Elastic::forces(e, x);
+        Corners f = forces_of_stress(end.stress, e.volume, e.inverse_edges, x);
+        for (std::size_t k = 0; k < 4; ++k) f[k] += end.share * elastic[k];
+        return f;
+    }
+
     void begin_step(double dt) {
         for (std::size_t i = 0; i < terms.size(); ++i) steps[i] = prony_step(terms[i], dt);
     }

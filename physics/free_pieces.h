@@ -1,0 +1,37 @@
+// Pieces of a body that supports do not hold in every way: statics has no unique answer for these.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "physics/supports.h"
+#include "topology/mesh.h"
+
+namespace incise::physics {
+
+/// A piece that can move as a rigid body, and the ways in which it can.
+struct FreePiece {
+    std::vector<topology::NodeId> nodes;
+    std::size_t num_elements = 0;
+    Vec3 centre = Vec3::Zero();  ///< of its nodes, m
+    double size = 0.0;           ///< farthest node from the centre, m
+    /// Ways it can move, orthonormal in the columns: velocity at the centre, then turning about it
+    /// times `size`.
+    Eigen::Matrix<double, 6, Eigen::Dynamic> modes;
+    /// As few components as take these ways from it (statically determinate): held there, it
+    /// stays where it is, and the reactions are zero as long as its loads are in equilibrium.
+    std::vector<std::pair<topology::NodeId, int>> pins;
+};
+
+/// Of the present positions (m, by node id). Cost: O(#nodes + #elements).
+std::vector<FreePiece> find_free_pieces(const topology::Mesh& mesh, std::span<const Vec3> positions,
+                                        const Supports& supports);
+
+/// Throws PhysicsError, naming the piece and the remedy, if forces (N, by node id) would move it.
+void require_equilibrium(const topology::Mesh& mesh, const FreePiece& piece,
+                         std::span<const Vec3> positions, std::span<const Vec3> forces);
+
+}  // namespace incise::physics

@@ -1,0 +1,203 @@
+// A block whose elements all use one kernel.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+#include "physics/element_block.h"
+#include "physics/element_tangent.h"
+#include "physics/sum.h"
+
+namespace incise::physics {
+
+/// A kernel whose elements have a history: ViscousKernel.
+template <class Kernel>
+concept HasHistory = requires(Kernel& kernel) {
+    kernel.begin_step(0.0);
+};
+
+/// A kernel that has to know the direction of fibres.
+template <class Kernel>
+concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, Vec3 fibre) {
+    kernel.precompute(X, fibre);
+};
+
+/// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
+/// a kernel has to have, and element_tangent.h), or ViscousKernel for what it has besides.
+template <class Kernel>
+class KernelBlock final : public ElementBlock {
+  public:
+    static constexpr std::size_t num_corners = Kernel::num_corners;
+    using Corners = std::array<Vec3, num_corners>;
+
+    KernelBlock(const Kernel& kernel, double density) : kernel_(kernel), density_(density) {}
+
+    void add_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                    std::span<Vec3> forces) const override {
+        for (std::size_t s = 0; s < rows_.size(); ++s) {
+            const Corners f = forces_of(s, gather(s, positions), history);
+            for (std::size_t k = 0; k < num_corners; ++k) forces[rows_[s].nodes[k]] += f[k];
+        }
+    }
+
+    void add_forces(const EndOfStep& end, std::span<Vec3> forces) const override {
+        for (std::size_t s = 0; s < rows_.size(); ++s) {
+            const Corners f = at_end_of_step(s, end, [&](const auto&... state) {
+                return kernel_.forces(rows_[s].rest, state...);
+            });
+            for (std::size_t k = 0; k < num_corners; ++k) forces[rows_[s].nodes[k]] += f[k];
+        }
+    }
+
+    double potential(const EndOfStep& end) const override {
+        Sum sum;
+        for (std::size_t s = 0; s < rows_.size(); ++s)
+            sum += at_end_of_step(s, end, [&](const auto&... state) {
+                if constexpr (HasHistory<Kernel>)
+                    return kernel_.potential(rows_[s].rest, state...);
+                else
+                    return kernel_.energy(rows_[s].rest, state...);
+            });
+        return sum.value();
+    }
+
+    void visit_tangents(const EndOfStep& end, TangentKind kind, TangentSink& sink) const override {
+        for (std::size_t s = 0; s < rows_.size(); ++s) {
+            auto K = at_end_of_step(s, end, [&](const auto&... state) {
+                return element_tangent(kernel_, rows_[s].rest, state...);
+            });
+            if (kind == TangentKind::positive) K = positive_part(K);
+            sink.add(rows_[s].nodes, {K.data(), static_cast<std::size_t>(K.size())});
+        }
+    }
+
+    double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
+                   ViscousHistory& history) override {
+        double energy = 0.0;
+        if constexpr (HasHistory<Kernel>) {
+            kernel_.begin_step(dt);
+            for (std::size_t s = 0; s < rows_.size(); ++s)
+                energy += kernel_.advance(rows_[s].rest, gather(s, before), gather(s, positions),
+                                          history.of(elements_[s]));
+        }
+        return energy;
+    }
+
+    void append_energies(std::span<const Vec3> positions,
+                         std::vector<double>& energies) const override {
+        for (std::size_t s = 0; s < rows_.size(); ++s)
+            energies.push_back(kernel_.energy(rows_[s].rest, gather(s, positions)));
+    }
+
+    double stiffness_energy() const override {
+        double sum = 0.0;
+        for (const Row& row : rows_) sum += kernel_.stiffness_energy(row.rest);
+        return sum;
+    }
+
+    double min_volume_ratio(std::span<const Vec3> positions) const override {
+        double lowest = std::numeric_limits<double>::infinity();
+        for (std::size_t s = 0; s < rows_.size(); ++s)
+            lowest = std::min(lowest, kernel_.volume_ratio(rows_[s].rest, gather(s, positions)));
+        return lowest;
+    }
+
+    /// The Cauchy stress is the virial of the element's own forces, -sum of f_i x_i^T over its
+    /// volume: exact for linear elements, and the mean stress for springs.
+    ElementResult result(ElementId e, std::span<const Vec3> positions,
+                         const ViscousHistory& history) const override {
+        const std::size_t s = slot_of(e);
+        const Corners x = gather(s, positions);
+        ElementResult result;
+        result.energy = kernel_.energy(rows_[s].rest, x);
+        result.volume = rows_[s].rest.volume;
+        result.volume_ratio = kernel_.volume_ratio(rows_[s].rest, x);
+        const Corners f = forces_of(s, x, history);
+        for (std::size_t k = 1; k < num_corners; ++k)
+            result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
+        const double volume = result.volume * result.volume_ratio;
+        if (volume == 0.0)  // flat: no volume to spread the stress over
+            result.cauchy_stress.setZero();
+        else
+            result.cauchy_stress /= volume;
+        return result;
+    }
+
+    ElementShares shares(ElementId e) const override { return rows_[slot_of(e)].shares; }
+    double rest_volume(ElementId e) const override { return rows_[slot_of(e)].rest.volume; }
+
+    void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                const Vec3& fibre) override {
+        const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
+        rows_.insert(rows_.begin() + (place - elements_.begin()),
+                     make_row(corners, rest_positions, fibre));
+        elements_.insert(place, e);
+    }
+
+    void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 const Vec3& fibre) override {
+        rows_[slot_of(e)] = make_row(corners, rest_positions, fibre);
+    }
+
+    void erase(ElementId e) override {
+        const auto s = static_cast<std::ptrdiff_t>(slot_of(e));
+        rows_.erase(rows_.begin() + s);
+        elements_.erase(elements_.begin() + s);
+    }
+
+  private:
+    struct Row {
+        std::array<std::uint32_t, num_corners> nodes;
+        typename Kernel::Element rest;
+        ElementShares shares;
+    };
+
+    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 [[maybe_unused]] const Vec3& fibre) const {
+        assert(corners.size() == num_corners);
+        Row row;
+        Corners X;
+        for (std::size_t k = 0; k < num_corners; ++k) {
+            row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
+            X[k] = rest_positions[corners[k].index()];
+        }
+        if constexpr (TakesFibre<Kernel>)
+            row.rest = kernel_.precompute(X, fibre);
+        else
+            row.rest = kernel_.precompute(X);
+        row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
+        const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
+        std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
+        return row;
+    }
+
+    /// evaluate(corners), or for a kernel with history evaluate(corners, kernel's end of step).
+    template <class Evaluate>
+    auto at_end_of_step(std::size_t s, const EndOfStep& end, Evaluate evaluate) const {
+        if constexpr (HasHistory<Kernel>)
+            return evaluate(gather(s, end.positions),
+                            kernel_.end_of_step(end.history.of(elements_[s]), end.dt));
+        else
+            return evaluate(gather(s, end.positions));
+    }
+
+    Corners forces_of(std::size_t s, const Corners& x,
+                      [[maybe_unused]] const ViscousHistory& history) const {
+        if constexpr (HasHistory<Kernel>)
+            return kernel_.forces(rows_[s].rest, x, history.of(elements_[s]));
+        else
+            return kernel_.forces(rows_[s].rest, x);
+    }
+
+    Corners gather(std::size_t s, std::span<const Vec3> positions) const {
+        Corners x;
+        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[rows_[s].nodes[k]];
+        return x;
+    }
+
+    Kernel kernel_;
+    double density_;
+    std::vector<Row> rows_;
+};
+
+}  // namespace incise::physics

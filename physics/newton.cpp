@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/sum.h"
+
+namespace incise::physics {
+
+namespace {
+
+constexpr int max_iterations = 60;
+constexpr double tolerance = 1e-11;  // of all forces
+// Rounding leaves this much, of the force that a strain of the order of one would take.
+constexpr double rounding = 1e-14;
+// Where rounding is what is left, the imbalance falls no more; so far above the tolerance it may
+// be.
+constexpr double stagnation = 1e3;
+
+/// Pins of a piece that is held in part go with its supports, by the mean of what these go.
+void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec3>& increments) {
+    Vec3 sum = Vec3::Zero(), count = Vec3::Zero();
+    for (const topology::NodeId n : piece.nodes)
+        if (const auto* support_of = model.supports().of_node(n.index()))
+            for (int c = 0; c < 3; ++c)
+                if ((*support_of)[static_cast<std::size_t>(c)] >= 0) {
+                    sum[c] += increments[n.index()][c];
+                    count[c] += 1.0;
+                }
+    for (const auto& [node, c] : piece.pins)
+        if (count[c] > 0.0) increments[node.index()][c] = sum[c] / count[c];
+}
+
+}  // namespace
+
+/// At a state: what is out of balance, by row of the tangent, and how large it all is.
+struct NewtonSolver::Forces {
+    Eigen::VectorXd net;
+    double imbalance = 0.0, scale = 0.0;
+};
+
+void NewtonSolver::follow(const Model& model) {
+    if (num_edits_ == model.num_edits()) return;
+    const topology::Mesh& mesh = model.mesh();
+    is_free_.assign(mesh.node_capacity(), {true, true, true});
+    for (std::size_t n = 0; n < is_free_.size(); ++n)
+        if (const auto* support_of = model.supports().of_node(n))
+            for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*support_of)[c] < 0;
+    if (pins_free_pieces_) {
+        free_pieces_ = find_free_pieces(mesh, model.positions(), model.supports());
+        for (const FreePiece& piece : free_pieces_)
+            for (const auto& [node, component] : piece.pins)
+                is_free_[node.index()][static_cast<std::size_t>(component)] = false;
+    }
+    tangent_.set_pattern(mesh, is_free_);
+    for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_})
+        scratch->assign(mesh.node_capacity(), Vec3::Zero());
+    num_edits_ = model.num_edits();
+}
+
+NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProblem& problem,
+                                            const std::vector<Vec3>& x) {
+    std::fill(elastic_.begin(), elastic_.end(), Vec3::Zero());
+    model.elements().add_forces({x, model.history(), problem.dt}, elastic_);
+    model.outer_forces_at(x, problem.time, outer_);
+    Forces forces;
+    forces.net.setZero(static_cast<Eigen::Index>(tangent_.num_unknowns()));
+    double elastic = 0.0, outer = 0.0, inertial = 0.0;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+        const double mass = model.masses()[n];
+        if (mass == 0.0) continue;  // dead
+        Vec3 net = elastic_[n] + outer_[n];
+        elastic += elastic_[n].squaredNorm();
+        outer += outer_[n].squaredNorm();
+        if (problem.inertia > 0.0) {
+            const Vec3 force = problem.inertia * mass * (x[n] - problem.anchor[n]);
+            inertial += force.squaredNorm();
+            net -= force;
+        }
+        if (!problem.holding.empty()) net += problem.holding[n];
+        for (int c = 0; c < 3; ++c)
+            if (const auto row = tangent_.row_of(n, c); row >= 0) forces.net[row] = net[c];
+    }
+    forces.imbalance = forces.net.norm();
+    forces.scale = std::sqrt(elastic) + std::sqrt(outer) + std::sqrt(inertial);
+    return forces;
+}
+
+void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
+                            const std::vector<Vec3>& x, TangentKind kind,
+                            std::span<const Vec3> increments) {
+    tangent_.clear(increments);
+    model.elements().for_each_block([&](const ElementBlock& block) {
+        block.visit_tangents({x, model.history(), problem.dt}, kind, tangent_);
+    });
+    if (kind == TangentKind::exact) model.visit_load_tangents(x, problem.time, tangent_);
+    if (problem.inertia > 0.0)
+        for (std::size_t n = 0; n < x.size(); ++n)
+            if (model.masses()[n] > 0.0)
+                tangent_.add_diagonal(n, problem.inertia * model.masses()[n]);
+}
+
+void NewtonSolver::factorise(const Model& model, const StepProblem& problem,
+                             const std::vector<Vec3>& x, std::span<const Vec3> increments) {
+    assemble(model, problem, x, TangentKind::exact, increments);
+    if (tangent_.factorise()) return;
+    assemble(model, problem, x, TangentKind::positive, increments);
+    // Flattened elements and slack springs may leave ways without stiffness.
+    double shift = 1e-10 * tangent_.largest_diagonal();
+    while (!tangent_.factorise()) {
+        tangent_.shift(shift);
+        shift *= 10.0;
+        if (!std::isfinite(shift)) break;  // a state that is not finite
+    }
+}
+
+double NewtonSolver::potential(const Model& model, const StepProblem& problem,
+                               const std::vector<Vec3>& x) const {
+    Sum sum;
+    model.elements().for_each_block([&](const ElementBlock& block) {
+        sum += block.potential({x, model.history(), problem.dt});
+    });
+    if (problem.inertia > 0.0)
+        for (std::size_t n = 0; n < x.size(); ++n)
+            if (model.masses()[n] > 0.0)
+                sum += 0.5 * problem.inertia * model.masses()[n] *
+                       (x[n] - problem.anchor[n]).squaredNorm();
+    return sum.value();
+}
+
+// Along the straight way, by Simpson's rule: exact, as pressure is quadratic in the positions.
+double NewtonSolver::work_of_loads(const Model& model, const StepProblem& problem,
+                                   const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    Sum work;
+    const auto add = [&](const std::vector<Vec3>& at, double weight) {
+        model.outer_forces_at(at, problem.time, outer_);
+        for (std::size_t n = 0; n < from.size(); ++n)
+            if (model.masses()[n] > 0.0) work += weight * outer_[n].dot(to[n] - from[n]);
+    };
+    for (std::size_t n = 0; n < from.size(); ++n) middle_[n] = 0.5 * (from[n] + to[n]);
+    add(from, 1.0 / 6.0);
+    add(middle_, 4.0 / 6.0);
+    add(to, 1.0 / 6.0);
+    if (!problem.holding.empty())
+        for (std::size_t n = 0; n < from.size(); ++n)
+            work += problem.holding[n].dot(to[n] - from[n]);
+    return work.value();
+}
+
+NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
+                                 std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
+    const double floor = rounding * model.stiffness_energy() / model.size();
+    // Where supports go; the first iteration takes the rest of the body along.
+    std::vector<Vec3> increments(x.size(), Vec3::Zero());
+    bool supports_move = false;
+    for (std::size_t n = 0; n < x.size(); ++n)
+        if (const auto* support_of = model.supports().of_node(n);
+            support_of && model.masses()[n] > 0.0) {
+            Vec3 target = x[n];
+            model.supports().place(*support_of, model.mesh().rest_positions()[n], problem.time,
+                                   target);
+            increments[n] = target - x[n];
+            supports_move = supports_move || !increments[n].isZero(0.0);
+        }
+
+    for (const FreePiece& piece : free_pieces_) follow_supports(piece, model, increments);
+
+    NewtonReport report;
+    Forces forces = evaluate(model, problem, x);
+    double last_imbalance = std::numeric_limits<double>::infinity();
+    for (;; ++report.iterations) {
+        report.imbalance = forces.imbalance;
+        report.scale = forces.scale;
+        const double goal = tolerance * forces.scale + floor;
+        const bool falls = forces.imbalance < 0.5 * last_imbalance;
+        report.has_converged =
+            !supports_move &&
+            (forces.imbalance <= goal || (!falls && forces.imbalance <= stagnation * goal));
+        if (report.has_converged || report.iterations == max_iterations ||
+            !std::isfinite(forces.imbalance))
+            break;
+        last_imbalance = supports_move ? std::numeric_limits<double>::infinity() : forces.imbalance;
+
+        factorise(model, problem, x,
+                  supports_move ? std::span<const Vec3>(increments) : std::span<const Vec3>());
+        const Eigen::VectorXd way = tangent_.solve(forces.net + tangent_.load());
+        const auto go = [&](double share) {
+            for (std::size_t n = 0; n < x.size(); ++n) {
+                trial_[n] = x[n];
+                for (int c = 0; c < 3; ++c)
+                    if (const auto row = tangent_.row_of(n, c); row >= 0)
+                        trial_[n][c] += share * way[row];
+            }
+        };
+        if (supports_move) {
+            go(1.0);
+            for (std::size_t n = 0; n < x.size(); ++n) x[n] = trial_[n] + increments[n];
+            supports_move = false;
+            forces = evaluate(model, problem, x);
+            continue;
+        }
+
+        // Down in energy, as far as rounding lets see; the first trial nearly always does.
+        constexpr double enough = 1e-4, shortest = 1e-6;
+        const double slope = -forces.net.dot(way);
+        const double start = potential(model, problem, x);
+        double share = 1.0;
+        for (; share > shortest; share *= 0.5) {
+            go(share);
+            const double end = potential(model, problem, trial_);
+            const double work = work_of_loads(model, problem, x, trial_);
+            const double noise = 1e-14 * (std::abs(start) + std::abs(end) + std::abs(work));
+            if (end - start - work <= enough * share * slope + noise) break;
+        }
+        if (share <= shortest) break;
+        x = trial_;
+        forces = evaluate(model, problem, x);
+    }
+    elastic_forces = elastic_;
+    return report;
+}
+
+}  // namespace incise::physics

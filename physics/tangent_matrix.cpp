@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/tangent_matrix.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace incise::physics {
+
+using topology::Mesh;
+using topology::NodeId;
+
+namespace {
+
+/// Pairs of nodes of one element, the first not above the second; each once, in ascending order.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> coupled_nodes(const Mesh& mesh) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        for (const NodeId a : mesh.corners(e))
+            for (const NodeId b : mesh.corners(e))
+                if (a <= b)
+                    pairs.emplace_back(static_cast<std::uint32_t>(a.index()),
+                                       static_cast<std::uint32_t>(b.index()));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+}  // namespace
+
+void TangentMatrix::set_pattern(const Mesh& mesh, std::span<const std::array<bool, 3>> is_free) {
+    rows_.assign(mesh.node_capacity(), {-1, -1, -1});
+    std::int32_t num_rows = 0;
+    for (std::size_t n = 0; n < rows_.size(); ++n)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (mesh.is_alive(NodeId(n)) && is_free[n][c]) rows_[n][c] = num_rows++;
+
+    std::vector<Eigen::Triplet<double, std::int32_t>> entries;
+    for (const auto& [a, b] : coupled_nodes(mesh))
+        for (const std::int32_t column : rows_[a])
+            for (const std::int32_t row : rows_[b])
+                if (column >= 0 && row >= column) entries.emplace_back(row, column, 0.0);
+    lower_.resize(num_rows, num_rows);
+    lower_.setFromTriplets(entries.begin(), entries.end());
+    load_.setZero(num_rows);
+    factor_.analyzePattern(lower_);
+}
+
+void TangentMatrix::clear(std::span<const Vec3> increments) {
+    std::fill_n(lower_.valuePtr(), lower_.nonZeros(), 0.0);
+    increments_ = increments;
+    load_.setZero();
+}
+
+void TangentMatrix::add(std::span<const std::uint32_t> nodes, std::span<const double> tangent) {
+    const std::size_t size = 3 * nodes.size();
+    const int* const starts = lower_.outerIndexPtr();
+    const int* const inner = lower_.innerIndexPtr();
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double* const values = tangent.data() + (3 * j + c) * size;
+            const std::int32_t column = rows_[nodes[j]][c];
+            if (column < 0) {
+                if (increments_.empty()) continue;
+                const double u = increments_[nodes[j]][static_cast<Eigen::Index>(c)];
+                if (u == 0.0) continue;
+                for (std::size_t i = 0; i < nodes.size(); ++i)
+                    for (std::size_t d = 0; d < 3; ++d)
+                        if (const std::int32_t row = rows_[nodes[i]][d]; row >= 0)
+                            load_[row] -= values[3 * i + d] * u;
+                continue;
+            }
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                // The free components of a node stand together.
+                const int* place = nullptr;
+                for (std::size_t d = 0; d < 3; ++d) {
+                    const std::int32_t row = rows_[nodes[i]][d];
+                    if (row < column) continue;
+                    if (!place)
+                        place = std::lower_bound(inner + starts[column], inner + starts[column + 1],
+                                                 row);
+                    lower_.valuePtr()[place - inner] += values[3 * i + d];
+                    ++place;
+                }
+            }
+        }
+}
+
+void TangentMatrix::add_diagonal(std::size_t node, double value) {
+    for (const std::int32_t row : rows_[node])
+        if (row >= 0) lower_.valuePtr()[lower_.outerIndexPtr()[row]] += value;
+}
+
+void TangentMatrix::shift(double value) {
+    for (int row = 0; row < lower_.cols(); ++row)
+        lower_.valuePtr()[lower_.outerIndexPtr()[row]] += value;
+}
+
+bool TangentMatrix::factorise() {
+    factor_.factorize(lower_);
+    // Pivots that rounding alone may have left are none to divide by.
+    constexpr double smallest = 1e-14;
+    return factor_.info() == Eigen::Success &&
+           (num_unknowns() == 0 ||
+            factor_.vectorD().minCoeff() > smallest * factor_.vectorD().maxCoeff());
+}
+
+}  // namespace incise::physics

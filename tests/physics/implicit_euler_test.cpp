@@ -1,0 +1,212 @@
+// Implicit Euler: what holds at any step, and that small steps lead where explicit ones do.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/integrator.h"
+#include "physics/test_bodies.h"
+#include "topology/box_mesh.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::Mesh;
+using topology::NodeId;
+
+const NeoHookean law{1.5e3, 4e3};
+
+Mesh bar(CellKind kind = CellKind::tetrahedron) {
+    return Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {0.2, 0.1, 0.1}, {4, 2, 2})).mesh;
+}
+NodeSet left_end(const Mesh& mesh) {
+    return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
+}
+
+struct NamedMaterial {
+    std::string name;
+    CellKind kind;
+    MaterialTable table;
+};
+std::vector<NamedMaterial> materials() {
+    const auto tet = CellKind::tetrahedron;
+    return {{"neo-Hookean", tet, table_of_one_law(law)},
+            {"viscous", tet,
+             table_of_one_material(HyperElasticLinks{law, 0.4, {{0.3, 0.02}, {0.2, 0.2}}})},
+            {"springs", tet, table_of_one_material(MassSprings{8e3})},
+            {"hybrid springs", CellKind::hexahedron,
+             table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
+}
+
+/// Held at one end, falling at the other.
+Surroundings cantilever(const Mesh& mesh, double damping = 0.0) {
+    Surroundings s;
+    s.gravity = {0.0, 0.0, -5.0};
+    s.damping = damping;
+    s.supports = {holding("clamp", left_end(mesh))};
+    return s;
+}
+
+void run(Model& model, double dt, int num_steps) {
+    ImplicitEuler integrator;
+    for (int i = 0; i < num_steps; ++i) {
+        integrator.step(model, i * dt, dt);
+        model.compute_forces((i + 1) * dt);
+    }
+}
+
+TEST(ImplicitEuler, LetsABodyFallAsTheRuleSays) {
+    const Mesh mesh = bar();
+    Surroundings s;
+    s.gravity = {0.0, 0.0, -10.0};
+    Model model(mesh, table_of_one_law(law), s);
+    const double dt = 0.1;
+    run(model, dt, 5);
+    for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
+        EXPECT_NEAR(model.velocities()[n].z(), -10.0 * 5 * dt, 1e-10);
+        EXPECT_NEAR(model.positions()[n].z(),
+                    mesh.rest_positions()[n].z() - 10.0 * dt * dt * (1 + 2 + 3 + 4 + 5), 1e-10);
+    }
+}
+
+TEST(ImplicitEuler, KeepsMomentumOfAFreeBody) {
+    for (const NamedMaterial& m : materials()) {
+        SCOPED_TRACE(m.name);
+        const Mesh mesh = bar(m.kind);
+        Model model(mesh, m.table);
+        test::Random random(1);
+        set_state(model, random_state(mesh, random, 0.003, 0.5));
+        const Vec3 before = model.totals().momentum;
+        run(model, 0.01, 10);
+        EXPECT_LE((model.totals().momentum - before).norm(), 1e-9 * before.norm());
+    }
+}
+
+TEST(ImplicitEuler, IsStableFarBeyondTheExplicitBound) {
+    for (const NamedMaterial& m : materials()) {
+        SCOPED_TRACE(m.name);
+        const Mesh mesh = bar(m.kind);
+        Model model(mesh, m.table, cantilever(mesh, 5.0)), still(mesh, m.table, cantilever(mesh));
+        run(model, 100.0 * model.stable_step(), 40);
+        Statics().step(still, 0.0, 1.0);
+        double farthest = 0.0;
+        for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
+            farthest = std::max(farthest, (model.positions()[n] - still.positions()[n]).norm());
+        EXPECT_LE(farthest, 1e-4 * still.max_displacement());
+    }
+}
+
+TEST(ImplicitEuler, ConvergesWithFirstOrderToTheExplicitMotion) {
+    for (const NamedMaterial& m : materials()) {
+        SCOPED_TRACE(m.name);
+        const Mesh mesh = bar(m.kind);
+        const double end = 0.1;
+        // Semi-implicit Euler has an error of its own; that of the mean of two runs is of higher
+        // order.
+        const auto explicit_end = [&](int num_steps) {
+            Model model(mesh, m.table, cantilever(mesh));
+            double time = 0.0;
+            for (int i = 0; i < num_steps; ++i) step(model, time, end / num_steps);
+            return std::vector<Vec3>(model.positions().begin(), model.positions().end());
+        };
+        const auto coarse = explicit_end(1000), fine = explicit_end(2000);
+        std::vector<double> errors;
+        for (const int num_steps : {20, 40, 80}) {
+            Model model(mesh, m.table, cantilever(mesh));
+            run(model, end / num_steps, num_steps);
+            double largest = 0.0;
+            for (std::size_t n = 0; n < coarse.size(); ++n)
+                largest =
+                    std::max(largest, (model.positions()[n] - (2.0 * fine[n] - coarse[n])).norm());
+            errors.push_back(largest / model.max_displacement());
+        }
+        EXPECT_LT(errors[2], 0.05);
+        EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.35);
+        EXPECT_NEAR(errors[1] / errors[2], 2.0, 0.2);
+    }
+}
+
+TEST(ImplicitEuler, BooksAllEnergy) {
+    for (const NamedMaterial& m : materials()) {
+        SCOPED_TRACE(m.name);
+        const Mesh mesh = bar(m.kind);
+        Surroundings s = cantilever(mesh, 3.0);
+        s.supports[0].displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.1, {0, 0.02, 0}}});
+        Model model(mesh, m.table, s);
+        double last = 0.0;
+        ImplicitEuler integrator;
+        for (int i = 0; i < 20; ++i) {
+            integrator.step(model, 0.01 * i, 0.01);
+            model.compute_forces(0.01 * (i + 1));
+            const auto totals = model.totals();
+            const double kept = totals.kinetic_energy + totals.elastic_energy;
+            EXPECT_NEAR(model.external_work() - model.dissipated_energy(), kept, 1e-9 * kept);
+            EXPECT_GT(model.dissipated_energy(), last);  // the rule never gives
+            last = model.dissipated_energy();
+        }
+    }
+}
+
+// The reaction of a strained viscous body relaxes as the Prony series says, whatever the step.
+TEST(ImplicitEuler, RelaxesViscousStress) {
+    const Mesh mesh = bar();
+    const double tau = 0.5;
+    Surroundings s;
+    Support hand = holding(
+        "hand",
+        NodeSet(nodes_where(mesh, [](const Vec3& X) { return std::abs(X.x() - 0.2) < 1e-9; })));
+    hand.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1e-6, {0.02, 0, 0}}});
+    s.supports = {holding("clamp", left_end(mesh)), hand};
+    const auto table = table_of_one_material(HyperElasticLinks{law, 0.4, {{0.4, tau}}});
+    Model elastic(mesh, table_of_one_law(law), s), body(mesh, table, s);
+    Statics().step(elastic, 0.0, 1.0);
+    ImplicitEuler integrator;
+    // So fast that little relaxes, then in large steps, two of which take the swing out.
+    double time = 0.0;
+    for (int i = 0; i < 30; ++i, time += 1e-3) integrator.step(body, time, 1e-3);
+    const double begin = time;
+    for (int i = 0; i < 8; ++i, time += 0.25) {
+        integrator.step(body, time, 0.25);
+        if (i < 2) continue;
+        const double share = 0.6 + 0.4 * std::exp(-(time + 0.25 - 0.5 * begin) / tau);
+        EXPECT_NEAR(body.reaction(1).x(), share * elastic.reaction(1).x(),
+                    0.01 * elastic.reaction(1).x());
+    }
+}
+
+TEST(ImplicitEuler, FollowsEditsAsABodyBuiltAfresh) {
+    for (const NamedMaterial& m : materials()) {
+        SCOPED_TRACE(m.name);
+        Mesh mesh = bar(m.kind);
+        Model model(mesh, m.table, cantilever(mesh));
+        ImplicitEuler integrator;
+        for (int i = 0; i < 3; ++i) integrator.step(model, 0.02 * i, 0.02);
+        topology::MeshEdit edit(mesh);
+        for (const ElementId e : living_elements(mesh))
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                bool is_chosen = mesh.neighbor({e, f}).is_valid();
+                for (int p = 0; p < mesh.face_size({e, f}); ++p) {
+                    const Vec3& X = mesh.rest_position(mesh.face_corner({e, f}, p));
+                    is_chosen &= std::abs(X.x() - 0.1) < 1e-9 && X.z() > 0.0499;
+                }
+                if (is_chosen) edit.open({e, f});
+            }
+        model.apply(edit.commit());
+        Model fresh(mesh, m.table, cantilever(mesh));
+        set_state(fresh, state_of(model), 0.06);
+        fresh.set_history(model.history().values());
+        ImplicitEuler other;
+        for (int i = 0; i < 2; ++i) {
+            integrator.step(model, 0.06 + 0.02 * i, 0.02);
+            other.step(fresh, 0.06 + 0.02 * i, 0.02);
+            EXPECT_EQ(state_of(model), state_of(fresh));  // to the bit
+        }
+        EXPECT_GT(model.max_displacement(), 1e-4);
+    }
+}
+
+}  // namespace
+}  // namespace incise::physics
