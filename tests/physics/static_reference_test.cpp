@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "physics/integrator.h"
 #include "physics/test_bodies.h"
 #include "topology/mesh_edit.h"
 #include "topology/validate.h"
@@ -114,7 +115,6 @@ class Relaxation {
 
     const Model& model() const { return model_; }
 
-  private:
     static Surroundings surroundings(const Mesh& mesh, const CutReference& reference) {
         Surroundings s;
         s.damping = damping;
@@ -124,6 +124,7 @@ class Relaxation {
         return s;
     }
 
+  private:
     // What accelerates a node and what damping takes from it; supported nodes stand still.
     double net_force_in_next_step() {
         const BodyState before = state_of(model_);
@@ -219,6 +220,28 @@ void check_cut_during_the_run(const CutReference& reference) {
         relaxation.run_to_equilibrium();
         expect_solution(relaxation.model(), reference, solution);
     });
+}
+
+// Statics finds the same states in two load steps.
+void check_statics(const CutReference& reference, bool is_cut) {
+    for_each_solution(reference, is_cut, [&](Mesh& mesh, const Law& law, const auto& solution) {
+        Model model(mesh, table_of_one_law(law), Relaxation::surroundings(mesh, reference));
+        Statics statics;
+        statics.step(model, 0.0, 0.5 * ramp_time);
+        if (is_cut) {
+            model.apply(open_cut_faces(mesh, reference));
+            statics.settle(model, 0.5 * ramp_time);
+        }
+        statics.step(model, 0.5 * ramp_time, 0.5 * ramp_time);
+        expect_solution(model, reference, solution);
+    });
+}
+TEST(StaticReference, StaticsOfTheOrgan) {
+    check_statics(test::organ_reference(), false);
+    check_statics(test::organ_reference(), true);
+}
+TEST(StaticReference, StaticsOfNotches) {
+    for (const auto& reference : test::notch_references()) check_statics(reference, true);
 }
 
 TEST(StaticReference, OrganUncut) { check_uncut(test::organ_reference()); }
