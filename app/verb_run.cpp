@@ -91,13 +91,15 @@ void warn_of_idle_tools(const sim::Simulation& simulation) {
 
 std::string describe(const sim::Simulation& simulation) {
     const sim::Account& body = simulation.ledger().initial();
+    const bool is_static = simulation.scenario().dynamics.mode == sim::Mode::statics;
     std::ostringstream text;
     text.precision(4);
     text << body.elements << (body.elements == 1 ? " element, " : " elements, ") << body.nodes
          << " nodes, " << body.components << (body.components == 1 ? " piece, " : " pieces, ")
-         << body.totals.mass << " kg, " << body.totals.rest_volume << " m3; steps of "
-         << simulation.time_step() << " s to " << simulation.scenario().dynamics.end_time
-         << " s (stable up to " << body.stable_step << " s)";
+         << body.totals.mass << " kg, " << body.totals.rest_volume << " m3; "
+         << (is_static ? "load steps of " : "steps of ") << simulation.time_step() << " s to "
+         << simulation.scenario().dynamics.end_time << " s";
+    if (!is_static) text << " (stable up to " << body.stable_step << " s)";
     return text.str();
 }
 

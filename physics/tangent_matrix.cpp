@@ -45,7 +45,7 @@ void TangentMatrix::set_pattern(const Mesh& mesh, std::span<const std::array<boo
     lower_.resize(num_rows, num_rows);
     lower_.setFromTriplets(entries.begin(), entries.end());
     load_.setZero(num_rows);
-    factor_.analyzePattern(lower_);
+    if (num_rows > 0) factor_.analyzePattern(lower_);
 }
 
 void TangentMatrix::clear(std::span<const Vec3> increments) {
@@ -99,12 +99,12 @@ void TangentMatrix::shift(double value) {
 }
 
 bool TangentMatrix::factorise() {
+    if (num_unknowns() == 0) return true;
     factor_.factorize(lower_);
     // Pivots that rounding alone may have left are none to divide by.
     constexpr double smallest = 1e-14;
     return factor_.info() == Eigen::Success &&
-           (num_unknowns() == 0 ||
-            factor_.vectorD().minCoeff() > smallest * factor_.vectorD().maxCoeff());
+           factor_.vectorD().minCoeff() > smallest * factor_.vectorD().maxCoeff();
 }
 
 }  // namespace incise::physics

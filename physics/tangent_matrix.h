@@ -42,7 +42,10 @@ class TangentMatrix final : public TangentSink {
     /// False, and no factor, if it is not positive definite.
     bool factorise();
     /// @pre factorise() was true
-    Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return factor_.solve(right); }
+    Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
+        if (num_unknowns() == 0) return right;
+        return factor_.solve(right);
+    }
     double largest_diagonal() const { return lower_.diagonal().maxCoeff(); }
     /// Adds `value` to the whole diagonal, N/m.
     void shift(double value);

@@ -52,11 +52,19 @@ struct MaterialSpec {
     bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
 };
 
+enum class Mode { dynamic, statics };
+enum class TimeIntegrator { semi_implicit_euler, implicit_euler };
+
 struct DynamicsSpec {
+    Mode mode = Mode::dynamic;
+    TimeIntegrator integrator = TimeIntegrator::semi_implicit_euler;  ///< of dynamics
     double end_time = 0.0;
-    std::optional<double> time_step;  ///< without: the stable step times `safety`
-    double safety = 0.8;              ///< in (0, 1]
-    double damping = 0.0;             ///< mass-proportional, 1/s
+    /// Without: the stable step times `safety`. Implicit Euler has one.
+    std::optional<double> time_step;
+    /// Of statics: load steps to the end. Without: one for each frame.
+    std::optional<int> steps;
+    double safety = 0.8;   ///< in (0, 1]
+    double damping = 0.0;  ///< mass-proportional, 1/s
     Vec3 gravity = Vec3::Zero();
     std::uint64_t seed = 1;
 };

@@ -24,13 +24,18 @@ constexpr Keys box_keys[] = {"size", "cells", "element", "origin"};
 constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
                                                 topology::CellKind::hexahedron};
-constexpr Keys dynamics_keys[] = {"end_time", "time_step", "safety", "damping", "gravity", "seed"};
+constexpr Keys dynamics_keys[] = {"mode",   "integrator", "end_time", "time_step", "steps",
+                                  "safety", "damping",    "gravity",  "seed"};
+constexpr Keys mode_names[] = {"dynamic", "static"};
+constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
 constexpr Keys output_keys[] = {"interval", "fields", "compression"};
 constexpr Keys planned_output_keys[] = {"checkpoint_interval"};
 constexpr Keys expectation_keys[] = {"min", "max"};
 
 /// More than memory can hold on any machine that this program is made for.
 constexpr double max_box_elements = 1e8;
+/// More would take days on any mesh.
+constexpr int most_load_steps = 1000000;
 /// More frames than this are more likely a slip than a wish.
 constexpr double many_frames = 1e5;
 
@@ -62,6 +67,33 @@ BoxMeshSpec read_box_mesh(const TableReader& box) {
 bool is_name_character(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-';
+}
+
+/// Keys that do not go together.
+void check_solver(const TableReader& dynamics, const DynamicsSpec& spec) {
+    if (spec.mode == Mode::statics) {
+        for (const Keys key : {"integrator", "time_step", "safety", "damping"})
+            if (dynamics.has(key))
+                dynamics.warning(key, in_quotes(dynamics.path_of(key)) +
+                                          " has no effect with mode = \"static\", whose load "
+                                          "steps are set by 'steps', or one for each frame");
+        return;
+    }
+    if (dynamics.has("steps"))
+        dynamics.error("steps", "is for mode = \"static\"; motion in time has a time_step");
+    if (spec.integrator != TimeIntegrator::implicit_euler) return;
+    if (!spec.time_step && !dynamics.has("time_step"))
+        dynamics.error({},
+                       "needs a 'time_step' in seconds with integrator = \"implicit-euler\": "
+                       "no bound of stability sets it, only what motion is to be resolved");
+    else if (dynamics.is_text("time_step") && dynamics.text("time_step") == "auto")
+        dynamics.error("time_step",
+                       "must be a number of seconds with integrator = "
+                       "\"implicit-euler\": no bound of stability sets it, only what "
+                       "motion is to be resolved");
+    if (dynamics.has("safety"))
+        dynamics.warning("safety",
+                         "'dynamics.safety' has no effect with integrator = \"implicit-euler\"");
 }
 
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
@@ -137,6 +169,14 @@ DynamicsSpec read_dynamics(const TableReader& root) {
     spec.damping = dynamics->number("damping", spec.damping, limits::non_negative);
     spec.gravity = dynamics->vector("gravity");
     spec.seed = static_cast<std::uint64_t>(dynamics->integer("seed", 1, {.low = 0}));
+    if (const auto mode = dynamics->choice("mode", {mode_names}))
+        spec.mode = static_cast<Mode>(*mode);
+    if (const auto integrator = dynamics->choice("integrator", {integrator_names}))
+        spec.integrator = static_cast<TimeIntegrator>(*integrator);
+    if (dynamics->has("steps"))
+        spec.steps =
+            static_cast<int>(dynamics->integer("steps", 1, {.low = 1, .high = most_load_steps}));
+    check_solver(*dynamics, spec);
     return spec;
 }
 

@@ -32,6 +32,13 @@ cutting::UncutBody uncut_body(const physics::Model& model) {
     return body;
 }
 
+std::unique_ptr<physics::Integrator> make_integrator(const DynamicsSpec& dynamics) {
+    if (dynamics.mode == Mode::statics) return std::make_unique<physics::Statics>();
+    if (dynamics.integrator == TimeIntegrator::implicit_euler)
+        return std::make_unique<physics::ImplicitEuler>();
+    return std::make_unique<physics::SemiImplicitEuler>();
+}
+
 /// Blades get a mode that suits the mesh, unless they have one.
 /// Throws InputError for what is to split a mesh without tetrahedra.
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
@@ -60,6 +67,7 @@ Simulation::Simulation(const Scenario& scenario, SourceMesh source)
       mesh_(std::move(source.mesh)),
       model_(mesh_, build_materials(scenario.materials, mesh_, source.cell_vectors, warnings_),
              build_surroundings(scenario, mesh_)),
+      integrator_(make_integrator(scenario.dynamics)),
       ledger_(model_),
       boxes_(mesh_, model_.positions()) {
     const cutting::UncutBody uncut = uncut_body(model_);
@@ -81,13 +89,15 @@ void Simulation::step() {
                                       [&](const Tool& tool) { return tool.is_present(from, to); });
     if (any_tool) previous_positions_.assign(model_.positions().begin(), model_.positions().end());
 
-    model_.integrate(from, to - from);
+    integrator_->step(model_, from, to - from);
 
     time_ = to;
     last_step_ = to - from;
     ++num_steps_;
     boxes_.move(mesh_, model_.positions(), model_.largest_move());
     for (Tool& tool : tools_) cut(tool, from, to);
+    if (integrator_->settle(model_, time_))
+        boxes_.move(mesh_, model_.positions(), model_.largest_move());
 
     model_.compute_forces(time_);
     for (Observer* observer : observers_) observer->on_step(*this);
@@ -147,10 +157,15 @@ Simulation::Interval Simulation::next_step() const {
 
 double Simulation::step_limit() const {
     const DynamicsSpec& dynamics = scenario_.dynamics;
+    if (dynamics.mode == Mode::statics) {
+        if (dynamics.steps) return dynamics.end_time / *dynamics.steps;
+        return scenario_.output.interval > 0.0 ? scenario_.output.interval : dynamics.end_time;
+    }
+    const bool is_explicit = dynamics.integrator == TimeIntegrator::semi_implicit_euler;
     const double stable = model_.stable_step();
     const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
     std::ostringstream text;
-    if (dynamics.time_step && !(limit <= stable)) {
+    if (is_explicit && dynamics.time_step && !(limit <= stable)) {
         text << "dynamics.time_step of " << limit << " s is above the stable step of " << stable
              << " s";
         if (num_steps_ > 0) text << " that the edits have left";

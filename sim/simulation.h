@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cutting/element_boxes.h"
+#include "physics/integrator.h"
 #include "physics/model.h"
 #include "sim/ledger.h"
 #include "sim/scenario.h"
@@ -70,6 +72,7 @@ class Simulation {
     std::vector<std::string> warnings_;
     topology::Mesh mesh_;
     physics::Model model_;
+    std::unique_ptr<physics::Integrator> integrator_;
     Ledger ledger_;
     std::vector<Tool> tools_;
     cutting::ElementBoxes boxes_;

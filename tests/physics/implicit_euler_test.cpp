@@ -36,6 +36,9 @@ std::vector<NamedMaterial> materials() {
     return {{"neo-Hookean", tet, table_of_one_law(law)},
             {"viscous", tet,
              table_of_one_material(HyperElasticLinks{law, 0.4, {{0.3, 0.02}, {0.2, 0.2}}})},
+            {"viscous by the nodal rule", tet,
+             table_of_one_material(
+                 HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
             {"springs", tet, table_of_one_material(MassSprings{8e3})},
             {"hybrid springs", CellKind::hexahedron,
              table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};

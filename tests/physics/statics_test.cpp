@@ -92,6 +92,9 @@ std::vector<NamedMaterial> materials() {
             {"Ogden", tet, table_of_one_law(Ogden{{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0})},
             {"viscous", tet,
              table_of_one_material(HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}})},
+            {"viscous by the nodal rule", tet,
+             table_of_one_material(
+                 HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
             {"springs", tet, table_of_one_material(MassSprings{8e3})},
             {"hybrid springs", CellKind::hexahedron,
              table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
@@ -267,6 +270,17 @@ TEST(Statics, FindAStableStateOfAColumnThatBuckles) {
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
         aside = std::max(aside, (model.positions()[n] - mesh.rest_positions()[n]).tail<2>().norm());
     EXPECT_GT(aside, 0.05);
+}
+
+TEST(Statics, LeadABodyThatIsHeldAllOver) {
+    const Mesh mesh = bar();
+    Surroundings s;
+    Support all = holding("all", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })));
+    all.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0, 0)}});
+    s.supports = {all};
+    Model model(mesh, table_of_one_law(law), s);
+    Statics().step(model, 0.0, 1.0);
+    EXPECT_NEAR(model.max_displacement(), 0.1, 1e-15);
 }
 
 TEST(Statics, SayWhereNoEquilibriumIs) {

@@ -59,6 +59,12 @@ class RunFolder {
         EXPECT_EQ(report.errors, std::vector<std::string>{});
         return std::move(report.scenario);
     }
+    /// What reading this text reports.
+    ScenarioReport report(const std::string& text) const {
+        const auto path = folder_ / "scene.toml";
+        std::ofstream(path) << text;
+        return read_scenario(path);
+    }
     std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
 
   private:

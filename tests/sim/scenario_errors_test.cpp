@@ -462,9 +462,11 @@ TEST(ScenarioErrors, OfOverridesQuoteThem) {
     EXPECT_EQ(error("dynamics.end_time=-1"),
               "--set dynamics.end_time=-1: key 'dynamics.end_time': -1 is not allowed: must be "
               "above 0");
-    EXPECT_EQ(error("dynamics.end_tim=1"),
-              "--set dynamics.end_tim=1: key 'dynamics.end_tim': is not known; did you mean "
-              "'end_time'? Known here: end_time, time_step, safety, damping, gravity, seed");
+    EXPECT_EQ(
+        error("dynamics.end_tim=1"),
+        "--set dynamics.end_tim=1: key 'dynamics.end_tim': is not known; did you mean "
+        "'end_time'? Known here: mode, integrator, end_time, time_step, steps, safety, damping, "
+        "gravity, seed");
     EXPECT_EQ(error("dynamics.end_time=2s"),
               "--set dynamics.end_time=2s: key 'dynamics.end_time': must be a number, but is the "
               "text \"2s\"");
