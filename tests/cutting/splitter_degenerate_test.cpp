@@ -11,6 +11,7 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 
 namespace incise::cutting {
@@ -49,7 +50,7 @@ std::vector<NamedStroke> strokes_along(const Vec3& point, const Vec3& normal) {
     add("plane turned round", std::make_unique<Plane>(point, -normal));
     add("rectangle", std::make_unique<TriangleSurface>(sheet(point, u, v, 1, flat)));
     add("many squares", std::make_unique<TriangleSurface>(sheet(point, v, -u, 8, flat)));
-    for (const int num_steps : {1, 8})
+    for (const int num_steps : {1, test::num_cases(8)})
         for (const int sign : {1, -1}) {
             const Polyline from = {point - u - sign * v, point - sign * v, point + u - sign * v};
             const Polyline to = {point - u + sign * v, point + sign * v, point + u + sign * v};

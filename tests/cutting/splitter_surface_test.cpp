@@ -11,6 +11,7 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 
 namespace incise::cutting {
 namespace {
@@ -57,7 +58,7 @@ std::vector<NamedSurface> closed_surfaces(Random& random) {
 }
 
 TEST(SplitAlongSurface, AClosedOneFreesItsInside) {
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
         Random random(seed);
         for (const auto& [name, data] : closed_surfaces(random)) {
             SCOPED_TRACE(name + ", seed " + std::to_string(seed));
@@ -84,7 +85,7 @@ TEST(SplitAlongSurface, AClosedOneFreesItsInside) {
 TEST(SplitAlongSurface, AClosedOneFreesItsInsideWithSnapping) {
     for (const double snap : {0.2, 0.35, 0.6})
         for (const bool is_guarded : {false, true})
-            for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
                 Random random(seed);
                 for (const auto& [name, data] : closed_surfaces(random)) {
                     SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", snap " +
@@ -124,7 +125,7 @@ TEST(SplitAlongSurface, WhatASphereFreesConvergesToItsVolume) {
 }
 
 TEST(SplitAlongSurface, AClosedOneThatReachesOutOfTheBodyFreesWhatItHolds) {
-    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
         SplitBody body(test::jittered_cube(6, 0.2, seed));
@@ -145,7 +146,7 @@ TEST(SplitAlongSurface, AWavySheetThroughTheBodyPartsItWhereverTheTissueIs) {
     for (const auto* family : test::tetrahedral_families()) {
         if (family->name != "cube" && family->name != "ball" && family->name != "organ") continue;
         for (const double snap : {0.0, 0.6})
-            for (std::uint64_t seed = 0; seed < 8; ++seed) {
+            for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));
                 Random random(seed);
@@ -199,7 +200,7 @@ std::set<std::array<double, 3>> rim_of_cut(const Mesh& mesh) {
 }
 
 TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
         SplitBody body(test::jittered_cube(8, 0.2, seed));

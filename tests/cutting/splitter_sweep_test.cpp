@@ -10,6 +10,7 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/mesh_metrics.h"
 
@@ -55,7 +56,7 @@ Outcome outcome(const SplitBody& body, const std::vector<Split>& parts) {
 
 TEST(SplitByBlade, RightThroughInManyStepsIsAsInOneStep) {
     for (const auto* family : test::tetrahedral_families())
-        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
             std::vector<double> volumes;
             Outcome expected{};
             for (const int num_steps : {1, 2, 7, 60}) {
@@ -83,7 +84,7 @@ TEST(SplitByBlade, RightThroughInManyStepsIsAsInOneStep) {
 TEST(SplitByBlade, PartOfTheWayInManyStepsDividesTheEdgesOfOneStep) {
     for (const auto* family : test::tetrahedral_families())
         for (const double share : {0.4, 0.5})
-            for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
                 std::size_t num_divided = 0, num_opened = 0, num_pieces = 0;
                 double area = 0.0;
                 for (const int num_steps : {1, 2, 7, 60}) {
@@ -120,7 +121,7 @@ TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
         if (family->name != "cube" && family->name != "ball") continue;
         for (const double snap : {0.0, 0.25, 0.6})
             for (const int num_steps : {1, 5, 30})
-                for (std::uint64_t seed = 0; seed < 4; ++seed) {
+                for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
                     SCOPED_TRACE(testing::Message()
                                  << family->name << ", snap " << snap << ", seed " << seed << ", "
                                  << num_steps << " steps");
@@ -149,7 +150,7 @@ TEST(SplitByBlade, TheWayBackAndTheSameStrokeAgainChangeNothing) {
     for (const auto* family : test::tetrahedral_families())
         for (const double share : {1.0, 0.5})
             for (const int num_steps : {1, 6})
-                for (std::uint64_t seed = 0; seed < 3; ++seed) {
+                for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
                     SCOPED_TRACE(testing::Message()
                                  << family->name << ", seed " << seed << ", " << share
                                  << " of the way in " << num_steps << " steps");
@@ -171,7 +172,7 @@ TEST(SplitByBlade, TheWayBackAndTheSameStrokeAgainChangeNothing) {
 // At any time, what is open is what the blade has left behind, but for one element at the front.
 TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
     for (const double snap : {0.0, 0.6})
-        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
             SplitBody body(test::jittered_cube(8, 0.2, seed));
             const double edge = longest_edge(body.mesh, body.positions);
@@ -244,7 +245,7 @@ struct MovingCut {
 
 TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
     for (const double strength : {0.3, 1.0})
-        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             Random random(seed);
             const auto data = test::jittered_cube(6, 0.2, seed);
             const MovingCut cut(SplitBody(data).box(), random, strength);
@@ -313,7 +314,7 @@ TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
 
 // Where it has been before is another cut.
 TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
-    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(24); ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Random random(seed);
         const double z = random.uniform(0.3, 0.5), x = random.uniform(0.4, 0.6);

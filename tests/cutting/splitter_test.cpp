@@ -16,6 +16,7 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -33,7 +34,7 @@ using topology::Mesh;
 using topology::MeshData;
 using topology::NodeId;
 
-constexpr int num_seeds = 12;
+constexpr int num_seeds = test::num_cases(12);
 
 std::vector<const test::MeshFamily*> convex_families() {
     std::vector<const test::MeshFamily*> families;
@@ -319,7 +320,7 @@ TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
 TEST(Split, NeverDividesAnElementBelowTheLimit) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.1, 0.2, 0.35, 0.6})
-            for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));
                 Random random(seed);
@@ -374,7 +375,7 @@ TEST(Split, AtTheDefaultSnapKeepsTheShapeOfElementsAndGrowsLittle) {
     const auto organ = std::find_if(families.begin(), families.end(),
                                     [](const auto& family) { return family.name == "organ"; });
     for (const auto& data : {regular, test::jittered_cube(8, 0.2, 3), organ->data})
-        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE(testing::Message() << data.num_cells() << " cells, seed " << seed);
             Random random(seed);
             SplitBody body(data);
