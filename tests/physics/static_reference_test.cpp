@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "physics/integrator.h"
 #include "physics/test_bodies.h"
+#include "topology/box_mesh.h"
 #include "topology/mesh_edit.h"
 #include "topology/validate.h"
 
@@ -242,6 +245,34 @@ TEST(StaticReference, StaticsOfTheOrgan) {
 }
 TEST(StaticReference, StaticsOfNotches) {
     for (const auto& reference : test::notch_references()) check_statics(reference, true);
+}
+
+TEST(StaticReference, StaticsOfABeamUnderItsOwnWeight) {
+    std::ifstream file(INCISE_DATA_DIR "/references/beam.json");
+    const auto beams = nlohmann::json::parse(file).at("p1_same_mesh");
+    ASSERT_EQ(beams.size(), 2u);
+    for (const auto& beam : beams) {
+        SCOPED_TRACE(beam.at("law"));
+        const double E = beam.at("E"), nu = beam.at("nu"), g = beam.at("g");
+        const double mu = E / (2.0 * (1.0 + nu)), lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
+        const bool is_stvk = beam.at("law") == "stvk";
+        const Law law =
+            is_stvk ? Law(SaintVenantKirchhoff{lambda, mu}) : Law(NeoHookean{0.5 * mu, lambda});
+        const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron,
+                                                         Vec3::Zero(), {0.4, 0.4, 2.4}, {4, 4, 24}))
+                              .mesh;
+        const auto at = [&](auto is_there) { return nodes_where(mesh, is_there); };
+        Surroundings s;
+        s.gravity = {0.0, -g, 0.0};
+        s.supports = {holding("root", NodeSet(at([](const Vec3& X) { return X.z() < 1e-9; })))};
+        Model model(mesh, table_of_one_law(law, beam.at("rho")), s);
+        Statics().step(model, 0.0, 1.0);
+        const auto tips = at([](const Vec3& X) { return (X - Vec3(0.2, 0.2, 2.4)).norm() < 1e-9; });
+        ASSERT_EQ(tips.size(), 1u);
+        const Vec3 u = model.positions()[tips[0].index()] - mesh.rest_position(tips[0]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(u[c], beam.at("tip_u")[static_cast<std::size_t>(c)].get<double>(), 1e-8);
+    }
 }
 
 TEST(StaticReference, OrganUncut) { check_uncut(test::organ_reference()); }

@@ -1,0 +1,63 @@
+// The patch test: where the boundary moves as an affine map says, the inside does too, in one
+// stress, whatever the mesh.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "physics/integrator.h"
+#include "physics/test_bodies.h"
+#include "support/mesh_families.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::ElementId;
+using topology::Mesh;
+using topology::NodeId;
+
+Mat3 stretch_and_shear() {
+    Mat3 F;
+    F << 1.12, 0.15, -0.06,  //
+        0.04, 0.92, 0.11,    //
+        -0.05, 0.08, 1.06;
+    return F;
+}
+
+/// Each node of the boundary of the unit cube is led to where F takes it.
+Surroundings affine_boundary(const Mesh& mesh, const Mat3& F) {
+    Surroundings s;
+    for (const NodeId n : nodes_where(mesh, [](const Vec3& X) {
+             return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9;
+         })) {
+        Support support = holding("node " + std::to_string(n.value), NodeSet({n}));
+        const Vec3 u = F * mesh.rest_position(n) - mesh.rest_position(n);
+        support.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, u}});
+        s.supports.push_back(support);
+    }
+    return s;
+}
+
+TEST(PatchTest, OfEveryLawIsPassed) {
+    const Mesh mesh = Mesh::build(test::jittered_cube(4, 0.2, 5)).mesh;
+    const Mat3 F = stretch_and_shear();
+    const Surroundings surroundings = affine_boundary(mesh, F);
+    ASSERT_LT(surroundings.supports.size(), mesh.num_nodes());
+    for (const NamedLaw& named : test_laws()) {
+        SCOPED_TRACE(named.name);
+        MaterialTable table = table_of_one_law(named.law);
+        for (Vec3& fibre : table.fibres) fibre = Vec3(2, -1, 2) / 3.0;  // the same everywhere
+        Model model(mesh, table, surroundings);
+        Statics statics;
+        statics.step(model, 0.0, 0.5);
+        statics.step(model, 0.5, 0.5);
+        for (std::size_t n = 0; n < mesh.num_nodes(); ++n)
+            EXPECT_LE((model.positions()[n] - F * mesh.rest_position(NodeId(n))).norm(), 1e-9);
+        const Mat3 stress = model.element_result(ElementId(std::size_t{0})).cauchy_stress;
+        ASSERT_GT(stress.norm(), 0.0);
+        for (const ElementId e : living_elements(mesh))
+            EXPECT_LE((model.element_result(e).cauchy_stress - stress).norm(),
+                      1e-8 * stress.norm());
+    }
+}
+
+}  // namespace
+}  // namespace incise::physics
