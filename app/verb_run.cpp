@@ -113,7 +113,12 @@ int run(const RunOptions& options) {
 
     const auto built = build(scenario, options.scenario);
     sim::Simulation& simulation = *built;
-    for (const std::string& warning : simulation.warnings()) print_warning(warning);
+    std::size_t num_told = 0;
+    const auto tell_warnings = [&] {
+        for (; num_told < simulation.warnings().size(); ++num_told)
+            print_warning(simulation.warnings()[num_told]);
+    };
+    tell_warnings();
     if (!options.quiet) std::cerr << scenario.name << ": " << describe(simulation) << '\n';
     if (options.dry_run) return done;
 
@@ -148,6 +153,7 @@ int run(const RunOptions& options) {
         return 128 + stop_signal;
     }
     finish({});
+    tell_warnings();  // what the run has shown
     warn_of_idle_tools(simulation);
 
     if (!options.quiet)

@@ -101,7 +101,24 @@ void Simulation::step() {
 
     model_.compute_forces(time_);
     for (Observer* observer : observers_) observer->on_step(*this);
+    if (is_finished()) warn_of_inverted_elements();
     tell_frame();
+}
+
+void Simulation::warn_of_inverted_elements() {
+    if (model_.min_volume_ratio() > 0.0) return;
+    std::size_t num_inverted = 0;
+    for (std::size_t i = 0; i < mesh_.element_capacity(); ++i)
+        if (const topology::ElementId e(i); mesh_.is_alive(e))
+            num_inverted += model_.element_result(e).volume_ratio <= 0.0;
+    if (num_inverted == 0) return;  // no element at all
+    std::ostringstream text;
+    text << "at the end, t = " << time_ << " s, " << num_inverted
+         << (num_inverted == 1 ? " element is" : " elements are")
+         << " flat or inverted (J of 0 and less): the body has been pressed through itself, which "
+            "tissue cannot; see min_J in history.csv for when, and use smaller motions or loads, a "
+            "finer mesh, or law = \"stable-neo-hookean\"";
+    warnings_.push_back(text.str());
 }
 
 void Simulation::cut(Tool& tool, double from, double to) {

@@ -66,6 +66,7 @@ class Simulation {
     Interval next_step() const;
     double step_limit() const;
     void cut(Tool& tool, double from, double to);
+    void warn_of_inverted_elements();
     void tell_frame();
 
     Scenario scenario_;

@@ -55,6 +55,41 @@ TEST(StaticRun, EndsEachLoadStepInEquilibrium) {
     EXPECT_EQ(end_of(text), end_of(text));  // to the bit
 }
 
+TEST(StaticRun, TellsOfElementsThatEndInverted) {
+    const auto pressed = [](const std::string& depth) {
+        return R"(
+[mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }
+[[material]]
+law = "stable-neo-hookean"
+density = 1000
+young = 5000
+poisson = 0.4
+[dynamics]
+end_time = 0.1
+mode = "static"
+steps = 2
+gravity = [0, 0, -9.81]
+[[constraint]]
+where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
+fix = "xyz"
+[[constraint]]
+where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
+move = [{ time = 0, by = [0, 0, 0] }, { time = 0.1, by = [0, 0, -)" +
+               depth + "] }]\n";
+    };
+    Simulation gently(scenario_of(pressed("0.03")));
+    run(gently);
+    EXPECT_GT(gently.model().min_volume_ratio(), 0.0);
+    EXPECT_TRUE(gently.warnings().empty());
+
+    Simulation through(scenario_of(pressed("0.12")));
+    run(through);
+    ASSERT_LE(through.model().min_volume_ratio(), 0.0);
+    ASSERT_FALSE(through.warnings().empty());
+    EXPECT_NE(through.warnings().back().find("flat or inverted"), std::string::npos);
+}
+
 TEST(StaticRun, TakesOneLoadStepForEachFrameUnlessToldOtherwise) {
     Simulation simulation(scenario_of(pulled_and_cut + dynamics(0.2, "mode = \"static\"")));
     run(simulation);
