@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cutting/cut_border.h"
+#include "cutting/passages.h"
 #include "cutting/sides.h"
 #include "cutting/step_length.h"
 #include "topology/error.h"
@@ -99,14 +100,6 @@ class Splitter {
     }
 
   private:
-    /// Where the surface passes through an edge, how far away its ends are from it there, and how
-    /// near an end counts as on it; all in units of the edge's length at rest.
-    struct Passage {
-        double place, from_a, from_b, near;
-        Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
-    };
-    using Passages = std::vector<Passage>;  // in ascending order of places
-
     /// An edge to be divided, unless an end of it comes to count as on the surface.
     struct Pending {
         ElementId element;  // one of those that have the edge
@@ -205,42 +198,16 @@ Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
     return rest.transpose().inverse() * (current.transpose() * normal);
 }
 
-Splitter::Passages Splitter::passages(const Edge& edge, ElementId element) const {
-    std::vector<Crossing> crossings;
-    surface_.append_crossings(point(edge.a), point(edge.b), crossings);
-    std::sort(crossings.begin(), crossings.end());
-    // Two that are nearer to each other than what is told apart cancel out.
-    for (std::size_t i = 0; i + 1 < crossings.size();) {
-        if (crossings[i + 1].place - crossings[i].place >= snap_) {
-            ++i;
-            continue;
-        }
-        const auto first = crossings.begin() + static_cast<std::ptrdiff_t>(i);
-        crossings.erase(first, first + 2);
-        if (i > 0) --i;
-    }
-    Passages passages;
+Passages Splitter::passages(const Edge& edge, ElementId element) const {
+    const CrossableEdge crossable{point(edge.a), point(edge.b),
+                                  mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)};
     const double near = std::min(snap_, farthest_ / rest_length(edge));
-    for (const Crossing& crossing : crossings) {
-        double steepness = 1.0;
-        if (mesh_.kind(element) == CellKind::tetrahedron) {
-            const Vec3 normal = normal_at_rest(element, crossing.normal);
-            const Vec3 along = mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a);
-            const double size = normal.norm() * along.norm();
-            if (size > 0.0) steepness = std::abs(normal.dot(along)) / size;
-        }
-        const Vec3 a = point(edge.a)[1], b = point(edge.b)[1];
-        Passage passage{
-            crossing.place, crossing.place * steepness,   (1.0 - crossing.place) * steepness,
-            near,           a + crossing.place * (b - a), crossing.normal.normalized()};
-        // Where the surface bends away its plane at the crossing would say too little.
-        const double length = (b - a).norm(), at_a = surface_.distance(a) / length;
-        if (!std::isnan(at_a)) {
-            const double at_b = surface_.distance(b) / length;
-            passage.from_a = std::max(passage.from_a, std::min(at_a, passage.place));
-            passage.from_b = std::max(passage.from_b, std::min(at_b, 1.0 - passage.place));
-        }
-        passages.push_back(passage);
+    const bool is_tetrahedron = mesh_.kind(element) == CellKind::tetrahedron;
+    Passages passages;
+    for (const Crossing& crossing : crossings_of(surface_, crossable, snap_)) {
+        const Vec3 normal =
+            is_tetrahedron ? normal_at_rest(element, crossing.normal) : Vec3(Vec3::Zero());
+        passages.push_back(passage_at(crossing, surface_, crossable, normal, near));
     }
     return passages;
 }

@@ -1,5 +1,5 @@
 // Viscosity: relaxation, creep, loss and storage beside the solutions of linear viscoelasticity,
-// and what it must keep: turning with the body, the energy ledger, and what edits do to memory.
+// and what it must keep: turning with the body, and the energy ledger.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -9,15 +9,13 @@
 
 #include "physics/test_bodies.h"
 #include "physics/viscous_kernel.h"
+#include "physics/viscous_work.h"
 #include "topology/box_mesh.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {
 
-using topology::ChangeSet;
 using topology::Mesh;
-using topology::MeshEdit;
 
 using Series = std::vector<PronyTerm>;
 using Memory = std::vector<double>;
@@ -301,33 +299,7 @@ TEST(Viscosity, TakesTheWorkThatItsEnergyDoesNotShow) {
     for_each_viscous_kernel([&](const std::string& name, auto kernel) {
         SCOPED_TRACE(name);
         const auto error = [&](int num_steps) {
-            test::Random random(34);
-            const Tetrahedron X = random_tetrahedron(random);
-            const auto e = kernel.precompute(X);
-            const Mat3 shear = random_deformation(random, {0.95, 1.0, 1.05});
-            kernel.begin_step(1.0 / num_steps);
-            Memory memory = no_memory(two_terms);
-            Tetrahedron before = X;
-            auto f = kernel.forces(e, before, memory);
-            double missing = 0.0, way = 0.0;
-            for (int i = 1; i <= num_steps; ++i) {
-                const double t = static_cast<double>(i) / num_steps;
-                const double flat = std::pow(std::sin(std::numbers::pi * t), 2);
-                const Mat3 F = (1.0 - flat) * Mat3::Identity() +
-                               flat * (shear * Vec3(1.1, 1.05, -0.3).asDiagonal());
-                const Tetrahedron x = deformed(X, F);
-                missing += kernel.energy(e, x) - kernel.energy(e, before);
-                missing += kernel.advance(e, before, x, memory);
-                const auto g = kernel.forces(e, x, memory);
-                for (std::size_t k = 0; k < 4; ++k) {
-                    const double work = -0.5 * (f[k] + g[k]).dot(x[k] - before[k]);
-                    missing -= work;
-                    way += std::abs(work);
-                }
-                before = x;
-                f = g;
-            }
-            return std::abs(missing) / way;
+            return missing_work(kernel, no_memory(two_terms), num_steps);
         };
         const double coarse = error(200), fine = error(400);
         EXPECT_LE(coarse, 1e-3);
@@ -414,122 +386,6 @@ TEST(Viscosity, ForcesAreAFunctionOfPositionsAndHistory) {
     other.set_history(model.history().values());
     other.compute_forces(time);
     EXPECT_TRUE(std::ranges::equal(other.elastic_forces(), forces));
-}
-
-/// A body of several viscous and elastic materials with a past.
-struct BodyWithPast {
-    MaterialTable table;
-    Mesh mesh;
-    Model model;
-    double time = 0.0;
-
-    explicit BodyWithPast(std::uint64_t seed)
-        : table(materials()),
-          mesh(Mesh::build(with_regions(test::jittered_cube(2, 0.2, 3), table.materials.size()))
-                   .mesh),
-          model(mesh, table) {
-        test::Random random(seed);
-        set_state(model, random_state(mesh, random, 0.03, 0.5));
-        for (int i = 0; i < 20; ++i) step(model, time, 0.3 * model.stable_step());
-        model.compute_forces(time);
-    }
-    static MaterialTable materials() {
-        MaterialTable table;
-        for (const Series& series : {Series{}, Series{{0.5, 0.1}}, two_terms}) {
-            table.of_region[static_cast<int>(table.materials.size())] = table.materials.size();
-            table.materials.push_back({1000.0, HyperElasticLinks{law, 0.4, series}});
-        }
-        return table;
-    }
-    Memory history() const {
-        return {model.history().values().begin(), model.history().values().end()};
-    }
-    std::vector<Vec3> forces() {
-        model.compute_forces(time);
-        return {model.elastic_forces().begin(), model.elastic_forces().end()};
-    }
-};
-
-// By the principle of virtual work: the forces on new nodes, given to their sources with the
-// weights of the record, make up what these lost.
-TEST(Viscosity, IsInheritedByTheParts) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        SCOPED_TRACE(seed);
-        BodyWithPast body(seed);
-        test::Random random(seed);
-        const std::vector<Vec3> before = body.forces();
-        const Memory history = body.history();
-        MeshEdit edit(body.mesh);
-        for (int i = 0; i < 4; ++i) {
-            const auto elements = living_elements(body.mesh);
-            const ElementId e = elements[random.below(elements.size())];
-            const std::size_t a = random.below(4), b = (a + 1 + random.below(3)) % 4;
-            edit.bisect(e, body.mesh.corners(e)[a], body.mesh.corners(e)[b],
-                        random.uniform(0.3, 0.7));
-        }
-        const ChangeSet changes = edit.commit();
-        body.model.apply(changes);
-        for (const auto& record : changes.elements_added) {
-            const auto part = body.model.history().of(record.id);
-            const auto whole = body.model.history().of(record.parent);
-            EXPECT_TRUE(std::ranges::equal(part, whole));
-        }
-        std::vector<Vec3> after = body.forces();
-        for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend();
-             ++record)
-            for (int s = 0; s < record->num_sources; ++s) {
-                const auto& source = record->sources[static_cast<std::size_t>(s)];
-                after[source.node.index()] += source.weight * after[record->id.index()];
-            }
-        double scale = 0.0;
-        for (const Vec3& f : before) scale = std::max(scale, f.norm());
-        for (std::size_t n = 0; n < before.size(); ++n)
-            EXPECT_LE((after[n] - before[n]).norm(), 1e-12 * scale);
-
-        replay(body.mesh, inverse(changes));
-        body.model.apply(inverse(changes));
-        EXPECT_EQ(body.forces(), before);
-        EXPECT_EQ(body.history(), history);
-    }
-}
-
-TEST(Viscosity, OfAnEditedBodyIsThatOfAFreshOneAndEditsCanBeUndone) {
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        BodyWithPast body(seed);
-        test::Random random(seed);
-        for (int i = 0; i < 20 && body.mesh.num_elements() > 0; ++i) {
-            SCOPED_TRACE(testing::Message() << "seed " << seed << ", edit " << i);
-            const std::vector<Vec3> before = body.forces();
-            const Memory history = body.history();
-            const ChangeSet changes = test::random_edit(body.mesh, random);
-            body.model.apply(changes);
-            const std::vector<Vec3> after = body.forces();
-            const Memory history_after = body.history();
-            replay(body.mesh, inverse(changes));
-            body.model.apply(inverse(changes));
-            EXPECT_EQ(body.forces(), before);
-            EXPECT_EQ(body.history(), history);
-            replay(body.mesh, changes);
-            body.model.apply(changes);
-            EXPECT_EQ(body.forces(), after);
-            EXPECT_EQ(body.history(), history_after);
-
-            Model fresh(body.mesh, body.table);
-            set_state(fresh, state_of(body.model));
-            fresh.set_history(body.model.history().values());
-            fresh.compute_forces(body.time);
-            const double dt = 0.05 * std::min(body.model.stable_step(), 1.0);
-            for (Model* model : {&body.model, &fresh}) {
-                double time = body.time;
-                for (int k = 0; k < 3; ++k) step(*model, time, dt);
-                model->compute_forces(time);
-            }
-            EXPECT_EQ(state_of(body.model), state_of(fresh));
-            EXPECT_TRUE(std::ranges::equal(body.model.elastic_forces(), fresh.elastic_forces()));
-            for (const ElementId e : living_elements(body.mesh))
-                EXPECT_TRUE(std::ranges::equal(body.model.history().of(e), fresh.history().of(e)));
-        }
-    }
 }
 
 }  // namespace
