@@ -157,9 +157,9 @@ void on_small(benchmark::internal::Benchmark* b) { b->Arg(liver)->Arg(small_cube
 using Stvk = physics::SaintVenantKirchhoff;
 using Nh = physics::NeoHookean;
 using Mr = physics::MooneyRivlin;
-COMPARE(elements, heml_stvk, physics::HemlKernel<Stvk>{stvk, 0.4})->Apply(on_all);
-COMPARE(elements, heml_nh, physics::HemlKernel<Nh>{nh, 0.4})->Apply(on_all);
-COMPARE(elements, heml_mr, physics::HemlKernel<Mr>{mr, 0.4})->Apply(on_all);
+COMPARE(elements, heml_stvk, physics::HemlKernel{stvk, 0.4})->Apply(on_all);
+COMPARE(elements, heml_nh, physics::HemlKernel{nh, 0.4})->Apply(on_all);
+COMPARE(elements, heml_mr, physics::HemlKernel{mr, 0.4})->Apply(on_all);
 COMPARE(elements, heml_lean_stvk, LinkHeml<double, Stvk>{stvk})->Apply(on_all);
 COMPARE(elements, heml_lean_nh, LinkHeml<double, Nh>{nh})->Apply(on_all);
 COMPARE(elements, heml_lean_mr, LinkHeml<double, Mr>{mr})->Apply(on_all);

@@ -20,29 +20,22 @@ std::unique_ptr<ElementBlock> make_block(const Material& material) {
     if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
         return std::make_unique<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid}, material.density);
     const auto& links = std::get<HyperElasticLinks>(material.method);
-    return std::visit(
-        [&](const auto& law) -> std::unique_ptr<ElementBlock> {
-            using Elastic = HemlKernel<std::decay_t<decltype(law)>>;
-            using Viscous = ViscousKernel<std::decay_t<decltype(law)>>;
-            using NodalViscous = NodalViscousKernel<std::decay_t<decltype(law)>>;
-            const Elastic elastic{law, links.inversion_threshold};
-            if (links.prony.empty())
-                return std::make_unique<KernelBlock<Elastic>>(elastic, material.density);
-            if (links.prony_rule == PronyRule::nodal)
-                return std::make_unique<KernelBlock<NodalViscous>>(
-                    NodalViscous(elastic, links.prony), material.density);
-            return std::make_unique<KernelBlock<Viscous>>(Viscous(elastic, links.prony),
-                                                          material.density);
-        },
-        links.law);
+    const HemlKernel elastic{links.law, links.inversion_threshold};
+    if (links.prony.empty())
+        return std::make_unique<KernelBlock<HemlKernel>>(elastic, material.density);
+    if (links.prony_rule == PronyRule::nodal)
+        return std::make_unique<KernelBlock<NodalViscousKernel>>(
+            NodalViscousKernel(elastic, links.prony), material.density);
+    return std::make_unique<KernelBlock<ViscousKernel>>(ViscousKernel(elastic, links.prony),
+                                                        material.density);
 }
 
 /// Numbers that an element of the material remembers, whatever its law.
 std::size_t history_size(const HyperElasticLinks& links) {
     if (links.prony.empty()) return 0;
     return links.prony_rule == PronyRule::nodal
-               ? NodalViscousKernel<NeoHookean>::history_size(links.prony.size())
-               : ViscousKernel<NeoHookean>::history_size(links.prony.size());
+               ? NodalViscousKernel::history_size(links.prony.size())
+               : ViscousKernel::history_size(links.prony.size());
 }
 
 /// What to do where a material's method is not for this kind of cell.

@@ -185,8 +185,19 @@ using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, Ciarlet
                          FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh,
                          HolzapfelGasserOgden, StableNeoHookean>;
 
-inline bool has_fibres(const Law& law) {
-    return std::visit([]<class L>(const L&) { return HasFibres<L>; }, law);
-}
+/// See LawResponse.
+LawResponse<double> response(const Law& law, const LinkStrain<double>& strain, double J0);
+LawResponse<Dual> response(const Law& law, const LinkStrain<Dual>& strain, double J0);
+
+double rest_lambda(const Law& law);  ///< Pa
+double rest_mu(const Law& law);      ///< Pa
+
+/// What fibres add about rest; see HasFibres, zero without fibres.
+struct RestFibres {
+    double modulus = 0.0;  ///< Pa
+    double dispersion = 0.0;
+};
+RestFibres rest_fibres(const Law& law);
+bool has_fibres(const Law& law);
 
 }  // namespace incise::physics

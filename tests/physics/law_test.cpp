@@ -31,7 +31,7 @@ TEST(Laws, GiveByLinksTheEnergyOfTheDeformationGradient) {
                 {random.uniform(0.8, 2.0), random.uniform(0.8, 2.0), random.uniform(0.8, 2.0)});
             const auto element = kernel.precompute(X);
             const double w = energy_density(kernel.law, F);
-            const double modulus = kernel.law.rest_lambda() + kernel.law.rest_mu();
+            const double modulus = rest_lambda(kernel.law) + rest_mu(kernel.law);
             EXPECT_NEAR(kernel.energy(element, deformed(X, F)) / element.volume, w,
                         1e-12 * (std::abs(w) + modulus));
         }
@@ -50,10 +50,10 @@ Mat3 cauchy_stress(const Kernel& kernel, const Tetrahedron& X, const Mat3& F) {
 
 TEST(Laws, HaveTheRestModuliThatTheyState) {
     for_each_heml_kernel([](const std::string& name, const auto& kernel) {
-        if (kernel.has_fibres) return;  // Fibres.AddTheirModulusAtRestInTensionOnly
+        if (has_fibres(kernel.law)) return;  // Fibres.AddTheirModulusAtRestInTensionOnly
         SCOPED_TRACE(name);
         test::Random random(4);
-        const double lambda = kernel.law.rest_lambda(), mu = kernel.law.rest_mu();
+        const double lambda = rest_lambda(kernel.law), mu = rest_mu(kernel.law);
         for (int i = 0; i < 20; ++i) {
             const Tetrahedron X = random_tetrahedron(random);
             Mat3 D = random_deformation(random, random.vector(1.0));
@@ -132,8 +132,8 @@ TEST(Laws, OgdenWithThePowerTwoIsNeoHookean) {
         const double spread = i % 2 == 0 ? 0.8 : 1e-8;
         const Tetrahedron X = random_tetrahedron(random);
         const Mat3 F = random_deformation(random, Vec3::Constant(1.1) + random.vector(spread / 2));
-        const HemlKernel<Ogden> a{ogden, 0.1};
-        const HemlKernel<IsochoricMooneyRivlin> b{neo_hookean, 0.1};
+        const HemlKernel a{ogden, 0.1};
+        const HemlKernel b{neo_hookean, 0.1};
         const auto element = a.precompute(X);
         const Tetrahedron f = a.forces(element, deformed(X, F)),
                           g = b.forces(element, deformed(X, F));

@@ -32,14 +32,11 @@ HyperElasticLinks links(const Series& series, PronyRule rule = PronyRule::nodal)
 template <class Visit>
 void for_each_nodal_kernel(Visit visit) {
     for_each_heml_kernel([&](const std::string& name, const auto& elastic) {
-        visit(name, with_fibre(NodalViscousKernel<std::decay_t<decltype(elastic.law)>>(elastic,
-                                                                                       two_terms)));
+        visit(name, WithFibre(NodalViscousKernel(elastic, two_terms)));
     });
 }
 
-Memory no_memory() {
-    return Memory(NodalViscousKernel<NeoHookean>::history_size(two_terms.size()), 0.0);
-}
+Memory no_memory() { return Memory(NodalViscousKernel::history_size(two_terms.size()), 0.0); }
 
 // Eq. (20) on the forces of the nodes themselves, beside a moving body.
 TEST(NodalViscosity, IsTheRecursionOfThePaper) {
@@ -118,7 +115,7 @@ TEST(NodalViscosity, RelaxesToFirstOrder) {
 TEST(NodalViscosity, CreepsToFirstOrder) {
     const double alpha = 0.6, tau = 0.5, g = 1.0 - alpha, strain = 1e-7;
     const auto error = [&](int steps) {
-        NodalViscousKernel<SaintVenantKirchhoff> kernel({{0.0, 1.0}, 0.4}, {{alpha, tau}});
+        NodalViscousKernel kernel({SaintVenantKirchhoff{0.0, 1.0}, 0.4}, {{alpha, tau}});
         const Tetrahedron X{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
         const auto e = kernel.precompute(X);
         const auto at = [&](double s) { return deformed(X, Vec3(1 + s, 1, 1).asDiagonal()); };
@@ -186,15 +183,15 @@ TEST(NodalViscosity, DoesNotTurnWithTheBody) {
         return Measure{std::sqrt(square / square_of_sudden),
                        moment.norm() / std::sqrt(square_of_sudden)};
     };
-    const HemlKernel<NeoHookean> elastic{law, 0.4};
-    const Measure stress = measure(ViscousKernel<NeoHookean>(elastic, half));
+    const HemlKernel elastic{law, 0.4};
+    const Measure stress = measure(ViscousKernel(elastic, half));
     EXPECT_NEAR(stress.size, 0.5 + 0.5 * std::exp(-5.0), 1e-12);
     EXPECT_LE(stress.moment, 1e-13);
-    const Measure nodal = measure(NodalViscousKernel<NeoHookean>(elastic, half));
+    const Measure nodal = measure(NodalViscousKernel(elastic, half));
     // With a held state the recursion is geometric.
     const double remembered = 0.5 * (1.0 - std::pow(1.0 / 1.001, 5000));
     EXPECT_NEAR(remembered, 0.5 - 0.5 * std::exp(-5.0), 1e-4);
-    const auto e = HemlKernel<NeoHookean>::Element(elastic.precompute(X));
+    const auto e = HemlKernel::Element(elastic.precompute(X));
     const Tetrahedron sudden = elastic.forces(e, x);
     double square = 0.0, square_of_sudden = 0.0;
     Vec3 moment = Vec3::Zero();

@@ -75,12 +75,16 @@ inline double energy_density(const Yeoh& law, const Mat3& F) {
 }
 inline double energy_density(const HolzapfelGasserOgden& law, const Mat3& F) {
     const double J = F.determinant(), I1 = F.squaredNorm();
-    const Vec3 a0 = WithFibre<HemlKernel<HolzapfelGasserOgden>>::direction();
+    const Vec3 a0 = fibre_direction();
     const double I4 = (F * a0).squaredNorm(), kappa = law.dispersion;
     const double E = std::max(kappa * I1 + (1.0 - 3.0 * kappa) * I4 - 1.0, 0.0);
     return 0.5 * law.mu * (std::pow(J, -2.0 / 3.0) * I1 - 3.0) +
            0.5 * law.bulk_modulus * (J - 1) * (J - 1) +
            0.5 * law.k1 / law.k2 * (std::exp(law.k2 * E * E) - 1.0);
+}
+
+inline double energy_density(const Law& law, const Mat3& F) {
+    return std::visit([&](const auto& one) { return energy_density(one, F); }, law);
 }
 
 }  // namespace incise::physics

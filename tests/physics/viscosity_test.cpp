@@ -38,15 +38,14 @@ double relaxation(const Series& series, double t) {
 }
 
 Memory no_memory(const Series& series) {
-    return Memory(ViscousKernel<NeoHookean>::history_size(series.size()), 0.0);
+    return Memory(ViscousKernel::history_size(series.size()), 0.0);
 }
 
 /// Calls visit(name, kernel) for HEML with each law and two terms.
 template <class Visit>
 void for_each_viscous_kernel(Visit visit) {
     for_each_heml_kernel([&](const std::string& name, const auto& elastic) {
-        visit(name,
-              with_fibre(ViscousKernel<std::decay_t<decltype(elastic.law)>>(elastic, two_terms)));
+        visit(name, WithFibre(ViscousKernel(elastic, two_terms)));
     });
 }
 
@@ -58,9 +57,9 @@ double force_scale(const Kernel& kernel, const typename Kernel::Element& e) {
 
 /// A unit tetrahedron of a law under a strain along x alone, by the total stress along x.
 struct StrainedElement {
-    ViscousKernel<NeoHookean> kernel;
+    ViscousKernel kernel;
     Tetrahedron X{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
-    ViscousKernel<NeoHookean>::Element element;
+    ViscousKernel::Element element;
     Memory memory;
     double strain = 0.0;
 
@@ -109,7 +108,7 @@ TEST(SecondPiolaKirchhoff, IsFiniteAndContinuousInFlatElements) {
             C(2, 2) = J * J / (1.1 * 0.9);
             const Mat3 twice_E = C - Mat3::Identity();
             const LinkStrain strain{twice_E.trace(), twice_E.squaredNorm(), J};
-            return second_piola_kirchhoff(kernel.law.response(strain, 0.4), twice_E, J, 0.4);
+            return second_piola_kirchhoff(response(kernel.law, strain, 0.4), twice_E, J, 0.4);
         };
         EXPECT_TRUE(stress(0.0).allFinite());
         for (const double J : {-0.4, 0.0, 0.4}) {
