@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <thread>
 
 #include "app/messages.h"
 #include "app/progress.h"
@@ -112,6 +113,9 @@ int run(const RunOptions& options) {
     const sim::Scenario scenario = load_scenario(options.scenario, overrides);
 
     const auto built = build(scenario, options.scenario);
+    built->set_num_threads(options.num_threads > 0 ? options.num_threads
+                                                   : static_cast<int>(std::max(
+                                                         1u, std::thread::hardware_concurrency())));
     sim::Simulation& simulation = *built;
     std::size_t num_told = 0;
     const auto tell_warnings = [&] {

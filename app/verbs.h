@@ -26,10 +26,16 @@ struct RunOptions {
     std::optional<std::filesystem::path> out;
     std::optional<double> end_time;
     std::vector<std::string> overrides;  ///< "key.path=value", for sim::read_scenario
+    int num_threads = 0;                 ///< 0: as many as the machine has cores
     bool dry_run = false;
     bool quiet = false;
 };
 int run(const RunOptions& options);
+
+struct BenchOptions {
+    std::optional<std::filesystem::path> json;  ///< "-": standard output
+};
+int bench(const BenchOptions& options);
 
 struct CheckOptions {
     std::vector<std::filesystem::path> files;

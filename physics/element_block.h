@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "physics/local_nodes.h"
 #include "physics/viscous_history.h"
 #include "topology/types.h"
 
@@ -48,17 +49,30 @@ class TangentSink {
 enum class TangentKind { exact, positive };  ///< see positive_part
 
 /// Interface of a block; one virtual call serves a whole block. Elements stand in ascending
-/// order of their ids, so that a block's sums do not depend on how it came about.
+/// order of their ids, so that a block's sums do not depend on how it came about. Its nodes have
+/// local numbers, which order them as their ids do.
 class ElementBlock {
   public:
+    static constexpr std::uint16_t unnumbered = 0xffff;
+
     virtual ~ElementBlock() = default;
 
     std::span<const ElementId> elements() const { return elements_; }
 
-    /// Adds elastic forces (N) at `positions` (m, by node id) to `forces` (by node id), with those
-    /// of viscosity as far as the history goes.
-    virtual void add_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                            std::span<Vec3> forces) const = 0;
+    /// Ids of the nodes of its elements, by local number, in ascending order.
+    std::span<const std::uint32_t> nodes() const { return nodes_; }
+
+    /// Brings nodes(), and what goes by local numbers, up to the elements as they are: after
+    /// insert, replace and erase, before forces are asked for.
+    /// @param local_numbers scratch, by node id; `unnumbered` before and after
+    void number_nodes(std::span<std::uint16_t> local_numbers);
+
+    /// Sets `forces` to the sums of the elements' elastic forces, N, at `positions`, m, with those
+    /// of viscosity as far as the history goes. Both by local number; each has one place more than
+    /// there are nodes, for the block's own use.
+    virtual void compute_forces(std::span<const LocalVector> positions,
+                                const ViscousHistory& history,
+                                std::span<LocalVector> forces) const = 0;
     /// Adds the forces (N) at the end of a step, viscous ones by the exact rule of advance().
     virtual void add_forces(const EndOfStep& end, std::span<Vec3> forces) const = 0;
     /// Whose gradient by the positions are minus these forces, J; without viscosity the energy.
@@ -91,12 +105,19 @@ class ElementBlock {
     virtual void erase(ElementId e) = 0;
 
   protected:
+    /// Node ids of the element of the given number.
+    virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
+    /// Takes over that node n has the local number local_numbers[n].
+    virtual void use_numbers(std::span<const std::uint16_t> local_numbers) = 0;
+
     std::size_t slot_of(ElementId e) const {
         const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
         assert(place != elements_.end() && *place == e);
         return static_cast<std::size_t>(place - elements_.begin());
     }
     std::vector<ElementId> elements_;
+    std::vector<std::uint32_t> nodes_;
+    bool is_numbered_ = true;
 };
 
 }  // namespace incise::physics

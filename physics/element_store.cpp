@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/element_store.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/inheritance.h"
@@ -111,11 +112,59 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     if (!blocks_[index])
         blocks_[index] = make_block(table_.materials[table_.of_region.at(mesh.region(e))]);
     blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    is_numbered_ = false;
 }
 
 void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
     blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions(),
                                                      fibre_of(e));
+    is_numbered_ = false;
+}
+
+void ElementStore::number_nodes(std::size_t num_nodes) {
+    local_numbers_.resize(std::max(local_numbers_.size(), num_nodes), ElementBlock::unnumbered);
+    ranges_.assign(num_node_ranges(num_nodes), {});
+    parts_.resize(blocks_.size());
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        if (!blocks_[b]) continue;
+        blocks_[b]->number_nodes(local_numbers_);
+        const auto nodes = blocks_[b]->nodes();
+        parts_[b].resize(nodes.size() + 1);
+        for (std::size_t begin = 0; begin < nodes.size();) {
+            const std::size_t range = nodes[begin] / nodes_per_range;
+            const auto end = std::lower_bound(nodes.begin() + static_cast<std::ptrdiff_t>(begin),
+                                              nodes.end(), (range + 1) * nodes_per_range);
+            const auto next = static_cast<std::size_t>(end - nodes.begin());
+            ranges_[range].push_back({b, begin, next});
+            begin = next;
+        }
+    }
+    is_numbered_ = true;
+}
+
+void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                                  Workers& workers, std::span<Vec3> forces) {
+    if (!is_numbered_) number_nodes(positions.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (!blocks_[b]) return;
+        thread_local std::vector<LocalVector> places;
+        const auto nodes = blocks_[b]->nodes();
+        places.resize(nodes.size() + 1);
+        for (std::size_t i = 0; i < nodes.size(); ++i) places[i] = positions[nodes[i]];
+        places.back() = {};
+        blocks_[b]->compute_forces(places, history, parts_[b]);
+    });
+    workers.for_each(ranges_.size(), [&](std::size_t r) {
+        const std::size_t first = r * nodes_per_range;
+        const auto range = forces.subspan(first, std::min(nodes_per_range, forces.size() - first));
+        std::fill(range.begin(), range.end(), Vec3::Zero());
+        for (const Piece& piece : ranges_[r]) {
+            const auto nodes = blocks_[piece.block]->nodes();
+            const auto& part = parts_[piece.block];
+            for (std::size_t i = piece.begin; i < piece.end; ++i)
+                forces[nodes[i]] += part[i].vector();
+        }
+    });
 }
 
 std::size_t ElementStore::history_size() const {
@@ -134,6 +183,9 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
     return energy;
 }
 
-void ElementStore::erase(ElementId e, int region) { blocks_[block_index(e, region)]->erase(e); }
+void ElementStore::erase(ElementId e, int region) {
+    blocks_[block_index(e, region)]->erase(e);
+    is_numbered_ = false;
+}
 
 }  // namespace incise::physics

@@ -9,6 +9,7 @@
 
 #include "physics/element_block.h"
 #include "physics/material.h"
+#include "physics/workers.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
 
@@ -62,6 +63,12 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    ViscousHistory& history);
 
+    /// Sets `forces` (N, by node id) to those of all elements at `positions` (m), with those of
+    /// viscosity as far as the history goes. A node's force is the sum of those of the blocks, in
+    /// ascending order: the same bits for any number of workers.
+    void compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                        Workers& workers, std::span<Vec3> forces);
+
     /// Adds the forces at the end of a step, N, by node id; see ElementBlock.
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
@@ -77,12 +84,23 @@ class ElementStore {
   private:
     static constexpr std::size_t chunk_size = 512;
 
+    /// The nodes that a block has in one range, by local number.
+    struct Piece {
+        std::size_t block, begin, end;
+    };
+
+    void number_nodes(std::size_t num_nodes);
+
     std::size_t block_index(ElementId e, int region) const;
     void require_law(const topology::Mesh& mesh, ElementId e) const;
     Vec3 fibre_of(ElementId e) const;
 
     MaterialTable table_;
     std::vector<std::unique_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
+    bool is_numbered_ = false;
+    std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
+    std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
+    std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
 };
 
 }  // namespace incise::physics

@@ -63,6 +63,7 @@ LinkElement HemlKernel::precompute(const Corners& X, const Vec3& fibre) const {
         element.fibre = fibre;
         // With u = V^-1 a0, a0 . C_k a0 = u . D_k u.
         const Vec3 u = edge_matrix(X).inverse() * fibre;
+        element.fibre_components = u;
         element.fibre_links << u.sum() * u, -u[0] * u[1], -u[1] * u[2], -u[2] * u[0];
     }
     return element;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "physics/heml_lanes.h"
 #include "physics/law.h"
 #include "topology/types.h"
 
@@ -30,7 +31,8 @@ struct LinkElement {
     Mat6 Mtr;         ///< traces of C_k C_l: 1/m4
 
     // Of a law with fibres; else zero.
-    Vec3 fibre = Vec3::Zero();        ///< a0: their direction at rest, of unit length
+    Vec3 fibre = Vec3::Zero();             ///< a0: their direction at rest, of unit length
+    Vec3 fibre_components = Vec3::Zero();  ///< V^-1 a0, V the rest edges as columns: 1/m
     Vec6 fibre_links = Vec6::Zero();  ///< a0 . C_k a0, so that I4 = sum of l_k a0 . C_k a0: 1/m2
 };
 
@@ -42,6 +44,7 @@ struct HemlKernel {
     static constexpr std::size_t num_corners = 4;
     using Corners = std::array<Vec3, 4>;
     using Element = LinkElement;
+    using Lanes = HemlLanes;
 
     Law law;
     double inversion_threshold;

@@ -18,6 +18,8 @@ struct HolzapfelGasserOgden {
     double k1, k2;            ///< Pa, 1; above 0
     double dispersion = 0.0;  ///< kappa, from 0 (parallel) to 1/3 (in all directions alike)
 
+    static constexpr bool needs_b = false;
+
     double rest_mu() const { return mu; }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * mu; }
     double rest_fibre_modulus() const { return 4.0 * k1; }
@@ -30,14 +32,13 @@ struct HolzapfelGasserOgden {
         const double slope = 0.5 * mu, along = 1.0 - 3.0 * dispersion;
         LawResponse<T> r{slope * (I1 * p.value - 3.0) + v.value, slope * p.value, 0.0,
                          slope * I1 * p.first + v.first};
-        const T E = dispersion * s.a + along * s.f;
-        if (E > 0.0) {
-            const Exponential<T> e(k2 * E * E);
-            const T tension = k1 * E * e.first;
-            r.w += 0.5 * k1 / k2 * e.value;
-            r.w_a += dispersion * tension;
-            r.w_f = along * tension;
-        }
+        using std::max;
+        const T E = max(dispersion * s.a + along * s.f, T(0.0));
+        const Exponential<T> e(k2 * E * E);
+        const T tension = k1 * E * e.first;
+        r.w += 0.5 * k1 / k2 * e.value;
+        r.w_a += dispersion * tension;
+        r.w_f = along * tension;
         return r;
     }
 };

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "physics/hybmss_lanes.h"
 #include "physics/material.h"
 #include "topology/types.h"
 
@@ -65,14 +66,18 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
 std::optional<std::string> why_no_cell(const HybridSprings& material,
                                        const std::array<Vec3, 8>& corners);
 
+/// What a cell keeps of its rest shape.
+struct HybmssElement {
+    double volume;  ///< m3
+    SpringShares springs;
+};
+
 /// W = sum of k/2 (l - l0)^2 + kappa V/2 (V'/V - 1)^2, V' the volume of BoxFrame.
 struct HybmssKernel {
     static constexpr std::size_t num_corners = 8;
     using Corners = std::array<Vec3, 8>;
-    struct Element {
-        double volume;  ///< m3
-        SpringShares springs;
-    };
+    using Element = HybmssElement;
+    using Lanes = HybmssLanes;
 
     /// Springs by group, four each.
     static constexpr std::array<std::array<std::array<std::size_t, 2>, 4>, 7> springs = {{

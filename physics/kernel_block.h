@@ -22,6 +22,13 @@ concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, 
     kernel.precompute(X, fibre);
 };
 
+/// A kernel with a fast twin, `Kernel::Lanes`, that does the elastic forces of all elements of a
+/// block: HemlLanes. What the history adds to them comes from the kernel itself.
+template <class Kernel>
+concept HasLanes = requires {
+    typename Kernel::Lanes;
+};
+
 /// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
 /// a kernel has to have, and element_tangent.h), or ViscousKernel for what it has besides.
 template <class Kernel>
@@ -32,42 +39,55 @@ class KernelBlock final : public ElementBlock {
 
     KernelBlock(const Kernel& kernel, double density) : kernel_(kernel), density_(density) {}
 
-    void add_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                    std::span<Vec3> forces) const override {
-        for (std::size_t s = 0; s < rows_.size(); ++s) {
-            const Corners f = forces_of(s, gather(s, positions), history);
-            for (std::size_t k = 0; k < num_corners; ++k) forces[rows_[s].nodes[k]] += f[k];
-        }
+    void compute_forces(std::span<const LocalVector> positions,
+                        [[maybe_unused]] const ViscousHistory& history,
+                        std::span<LocalVector> forces) const override {
+        assert(is_numbered_ && forces.size() > nodes_.size());
+        std::fill(forces.begin(), forces.end(), LocalVector{});
+        if constexpr (HasLanes<Kernel>) lanes_.add_forces(kernel_, positions.data(), forces.data());
+        if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
+            for (std::size_t s = 0; s < elements_.size(); ++s) {
+                Corners x;
+                for (std::size_t k = 0; k < num_corners; ++k)
+                    x[k] = positions[local_nodes_[s][k]].vector();
+                Corners f;
+                if constexpr (HasHistory<Kernel>)
+                    f = kernel_.forces_of_memory(row(s).rest, x, history.of(elements_[s]));
+                else
+                    f = kernel_.forces(row(s).rest, x);
+                for (std::size_t k = 0; k < num_corners; ++k)
+                    forces[local_nodes_[s][k]].vector() += f[k];
+            }
     }
 
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const override {
-        for (std::size_t s = 0; s < rows_.size(); ++s) {
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
             const Corners f = at_end_of_step(s, end, [&](const auto&... state) {
-                return kernel_.forces(rows_[s].rest, state...);
+                return kernel_.forces(row(s).rest, state...);
             });
-            for (std::size_t k = 0; k < num_corners; ++k) forces[rows_[s].nodes[k]] += f[k];
+            for (std::size_t k = 0; k < num_corners; ++k) forces[row(s).nodes[k]] += f[k];
         }
     }
 
     double potential(const EndOfStep& end) const override {
         Sum sum;
-        for (std::size_t s = 0; s < rows_.size(); ++s)
+        for (std::size_t s = 0; s < elements_.size(); ++s)
             sum += at_end_of_step(s, end, [&](const auto&... state) {
                 if constexpr (HasHistory<Kernel>)
-                    return kernel_.potential(rows_[s].rest, state...);
+                    return kernel_.potential(row(s).rest, state...);
                 else
-                    return kernel_.energy(rows_[s].rest, state...);
+                    return kernel_.energy(row(s).rest, state...);
             });
         return sum.value();
     }
 
     void visit_tangents(const EndOfStep& end, TangentKind kind, TangentSink& sink) const override {
-        for (std::size_t s = 0; s < rows_.size(); ++s) {
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
             auto K = at_end_of_step(s, end, [&](const auto&... state) {
-                return element_tangent(kernel_, rows_[s].rest, state...);
+                return element_tangent(kernel_, row(s).rest, state...);
             });
             if (kind == TangentKind::positive) K = positive_part(K);
-            sink.add(rows_[s].nodes, {K.data(), static_cast<std::size_t>(K.size())});
+            sink.add(row(s).nodes, {K.data(), static_cast<std::size_t>(K.size())});
         }
     }
 
@@ -76,8 +96,8 @@ class KernelBlock final : public ElementBlock {
         double energy = 0.0;
         if constexpr (HasHistory<Kernel>) {
             kernel_.begin_step(dt);
-            for (std::size_t s = 0; s < rows_.size(); ++s)
-                energy += kernel_.advance(rows_[s].rest, gather(s, before), gather(s, positions),
+            for (std::size_t s = 0; s < elements_.size(); ++s)
+                energy += kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
                                           history.of(elements_[s]));
         }
         return energy;
@@ -85,20 +105,21 @@ class KernelBlock final : public ElementBlock {
 
     void append_energies(std::span<const Vec3> positions,
                          std::vector<double>& energies) const override {
-        for (std::size_t s = 0; s < rows_.size(); ++s)
-            energies.push_back(kernel_.energy(rows_[s].rest, gather(s, positions)));
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            energies.push_back(kernel_.energy(row(s).rest, gather(s, positions)));
     }
 
     double stiffness_energy() const override {
         double sum = 0.0;
-        for (const Row& row : rows_) sum += kernel_.stiffness_energy(row.rest);
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            sum += kernel_.stiffness_energy(row(s).rest);
         return sum;
     }
 
     double min_volume_ratio(std::span<const Vec3> positions) const override {
         double lowest = std::numeric_limits<double>::infinity();
-        for (std::size_t s = 0; s < rows_.size(); ++s)
-            lowest = std::min(lowest, kernel_.volume_ratio(rows_[s].rest, gather(s, positions)));
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            lowest = std::min(lowest, kernel_.volume_ratio(row(s).rest, gather(s, positions)));
         return lowest;
     }
 
@@ -109,9 +130,9 @@ class KernelBlock final : public ElementBlock {
         const std::size_t s = slot_of(e);
         const Corners x = gather(s, positions);
         ElementResult result;
-        result.energy = kernel_.energy(rows_[s].rest, x);
-        result.volume = rows_[s].rest.volume;
-        result.volume_ratio = kernel_.volume_ratio(rows_[s].rest, x);
+        result.energy = kernel_.energy(row(s).rest, x);
+        result.volume = row(s).rest.volume;
+        result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
         const Corners f = forces_of(s, x, history);
         for (std::size_t k = 1; k < num_corners; ++k)
             result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
@@ -123,26 +144,50 @@ class KernelBlock final : public ElementBlock {
         return result;
     }
 
-    ElementShares shares(ElementId e) const override { return rows_[slot_of(e)].shares; }
-    double rest_volume(ElementId e) const override { return rows_[slot_of(e)].rest.volume; }
+    ElementShares shares(ElementId e) const override { return row(slot_of(e)).shares; }
+    double rest_volume(ElementId e) const override { return row(slot_of(e)).rest.volume; }
 
     void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                 const Vec3& fibre) override {
         const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
-        rows_.insert(rows_.begin() + (place - elements_.begin()),
-                     make_row(corners, rest_positions, fibre));
+        row_of_.insert(row_of_.begin() + (place - elements_.begin()),
+                       static_cast<std::uint32_t>(rows_.size()));
         elements_.insert(place, e);
+        rows_.push_back(make_row(corners, rest_positions, fibre));
+        is_numbered_ = false;
     }
 
     void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                  const Vec3& fibre) override {
-        rows_[slot_of(e)] = make_row(corners, rest_positions, fibre);
+        rows_[row_of_[slot_of(e)]] = make_row(corners, rest_positions, fibre);
+        is_numbered_ = false;
     }
 
     void erase(ElementId e) override {
-        const auto s = static_cast<std::ptrdiff_t>(slot_of(e));
-        rows_.erase(rows_.begin() + s);
-        elements_.erase(elements_.begin() + s);
+        const std::size_t s = slot_of(e);
+        // The last row takes the place of the one that goes.
+        const auto last = static_cast<std::uint32_t>(rows_.size() - 1);
+        rows_[row_of_[s]] = rows_[last];
+        *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
+        rows_.pop_back();
+        row_of_.erase(row_of_.begin() + static_cast<std::ptrdiff_t>(s));
+        elements_.erase(elements_.begin() + static_cast<std::ptrdiff_t>(s));
+        is_numbered_ = false;
+    }
+
+  protected:
+    std::span<const std::uint32_t> corners_of(std::size_t s) const override { return row(s).nodes; }
+
+    void use_numbers(std::span<const std::uint16_t> local_numbers) override {
+        local_nodes_.resize(elements_.size());
+        if constexpr (HasLanes<Kernel>)
+            lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel_);
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            LocalNodes nodes;
+            for (std::size_t k = 0; k < num_corners; ++k) nodes[k] = local_numbers[row(s).nodes[k]];
+            if constexpr (HasLanes<Kernel>) lanes_.set(s, row(s).rest, nodes);
+            local_nodes_[s] = nodes;
+        }
     }
 
   private:
@@ -151,6 +196,19 @@ class KernelBlock final : public ElementBlock {
         typename Kernel::Element rest;
         ElementShares shares;
     };
+
+    using LocalNodes = std::array<std::uint16_t, num_corners>;
+    struct NoLanes {};
+    template <class K>
+    struct LanesOf {
+        using Type = NoLanes;
+    };
+    template <HasLanes K>
+    struct LanesOf<K> {
+        using Type = typename K::Lanes;
+    };
+
+    const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
 
     Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                  [[maybe_unused]] const Vec3& fibre) const {
@@ -184,20 +242,23 @@ class KernelBlock final : public ElementBlock {
     Corners forces_of(std::size_t s, const Corners& x,
                       [[maybe_unused]] const ViscousHistory& history) const {
         if constexpr (HasHistory<Kernel>)
-            return kernel_.forces(rows_[s].rest, x, history.of(elements_[s]));
+            return kernel_.forces(row(s).rest, x, history.of(elements_[s]));
         else
-            return kernel_.forces(rows_[s].rest, x);
+            return kernel_.forces(row(s).rest, x);
     }
 
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {
         Corners x;
-        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[rows_[s].nodes[k]];
+        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[row(s).nodes[k]];
         return x;
     }
 
     Kernel kernel_;
     double density_;
-    std::vector<Row> rows_;
+    std::vector<Row> rows_;              // in no order
+    std::vector<std::uint32_t> row_of_;  // by number of the element
+    typename LanesOf<Kernel>::Type lanes_;
+    std::vector<LocalNodes> local_nodes_;  // by number of the element
 };
 
 }  // namespace incise::physics

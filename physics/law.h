@@ -19,6 +19,7 @@ namespace incise::physics {
 /// 0.577 and does not resist inversion.
 struct SaintVenantKirchhoff {
     double lambda, mu;  ///< Pa
+    static constexpr bool needs_J = false;
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return mu; }
@@ -31,6 +32,7 @@ struct SaintVenantKirchhoff {
 /// w = C1 (I1 - 3) - 2 C1 ln J + lambda/2 (ln J)^2, so that mu = 2 C1. HEML 2015, eq. (26).
 struct NeoHookean {
     double c1, lambda;  ///< Pa
+    static constexpr bool needs_b = false;
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return 2.0 * c1; }
@@ -65,6 +67,7 @@ struct MooneyRivlin {
 /// w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1), Ciarlet's form: convex in J.
 struct CiarletNeoHookean {
     double mu, lambda;  ///< Pa
+    static constexpr bool needs_b = false;
 
     double rest_lambda() const { return lambda; }
     double rest_mu() const { return mu; }
@@ -85,6 +88,7 @@ struct CiarletNeoHookean {
 /// At rest the Lame constants are lambda + 2 mu gamma and mu. HEML 2006, Table 1, corrected.
 struct FungDemiray {
     double mu, gamma, lambda;  ///< Pa, 1, Pa
+    static constexpr bool needs_b = false;
 
     double rest_lambda() const { return lambda + 2.0 * mu * gamma; }
     double rest_mu() const { return mu; }
@@ -121,6 +125,7 @@ struct IsochoricMooneyRivlin {
 /// w = mu/(2 gamma) (exp(gamma (I1 J^-2/3 - 3)) - 1) + K/2 (J - 1)^2.
 struct IsochoricFungDemiray {
     double mu, gamma, bulk_modulus;  ///< Pa, 1, Pa
+    static constexpr bool needs_b = false;
 
     double rest_mu() const { return mu; }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * mu; }
@@ -141,6 +146,7 @@ struct IsochoricFungDemiray {
 /// rest mu = 2 c1. Source: O. H. Yeoh, Rubber Chemistry and Technology 66 (1993) 754-771.
 struct Yeoh {
     double c1, c2, c3, bulk_modulus;  ///< Pa
+    static constexpr bool needs_b = false;
 
     double rest_mu() const { return 2.0 * c1; }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
@@ -164,6 +170,7 @@ struct Yeoh {
 /// Graphics 37 (2018), eqs. (13) to (16), less the constant by which the energy at rest is 0.
 struct StableNeoHookean {
     double mu, lambda;  ///< Pa; constants of the law
+    static constexpr bool needs_b = false;
 
     /// The law that has these Lame constants at rest, Pa.
     static StableNeoHookean of_rest_moduli(double rest_lambda, double rest_mu) {

@@ -1,5 +1,6 @@
 // What a law is asked and answers, and the terms of volume that several laws have. All are
-// templates over the kind of number: plain ones for energies and forces, Dual for tangents.
+// templates over the kind of number: plain ones, Dual for tangents, Lanes for the fast forces.
+// Formulas have no branches, as lanes may differ.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -44,6 +45,17 @@ concept HasFibres = requires(const Law& law) {
     law.dispersion;
 };
 
+/// Whether the fast forces have to work out the terms of w_b and of w_J. A law where one of them is
+/// zero throughout may say so: `static constexpr bool needs_b = false;`, or needs_J.
+template <class Law>
+concept NeedsB = !requires {
+    requires !Law::needs_b;
+};
+template <class Law>
+concept NeedsJ = !requires {
+    requires !Law::needs_J;
+};
+
 /// A function of J with its first two derivatives.
 template <class T>
 struct VolumeTerm {
@@ -57,9 +69,9 @@ struct VolumeTerm {
 /// volume: it recovers from flat and turned states, not from those two.
 template <class T, class Term>
 VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
-    if (J > J0) return term(J);
-    const VolumeTerm<T> t = term(T(J0));
-    const T d = J - J0;
+    using std::max;
+    const T at = max(J, T(J0)), d = J - at;  // d = 0 above the threshold
+    const VolumeTerm<T> t = term(at);
     return {t.value + d * (t.first + 0.5 * d * t.second), t.first + d * t.second, t.second};
 }
 
@@ -87,9 +99,8 @@ struct Exponential {
     T value, first;
 
     explicit Exponential(const T& x) {
-        using std::exp, std::expm1;
-        const T last = 20.0;
-        const T at = std::min(x, last), d = x - at, e = exp(at);
+        using std::exp, std::expm1, std::min;
+        const T at = min(x, T(20.0)), d = x - at, e = exp(at);
         value = expm1(at) + e * d * (1.0 + 0.5 * d);
         first = e * (1.0 + d);
     }

@@ -76,10 +76,7 @@ void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> vel
 }
 
 void Model::compute_forces(double time) {
-    std::fill(elastic_forces_.begin(), elastic_forces_.end(), Vec3::Zero());
-    elements_.for_each_block([&](const ElementBlock& block) {
-        block.add_forces(positions_, history_, elastic_forces_);
-    });
+    elements_.compute_forces(positions_, history_, workers_, elastic_forces_);
     outer_forces_at(positions_, time, outer_forces_);
 }
 
@@ -92,49 +89,57 @@ void Model::outer_forces_at(std::span<const Vec3> positions, double time,
 void Model::integrate(double time, double dt) {
     std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
     std::fill(reaction_moments_.begin(), reaction_moments_.end(), Vec3::Zero());
-    const double slowing = 1.0 / (1.0 + damping_ * dt);
-    double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;
-    bool is_finite = true;
     if (!history_.is_empty()) previous_positions_ = positions_;
-    for (std::size_t n = 0; n < masses_.size(); ++n) {
-        const double mass = masses_[n];
-        if (mass == 0.0) continue;  // dead
-        const Vec3 x = positions_[n], v = velocities_[n];
-        const Vec3 force = elastic_forces_[n] + outer_forces_[n];
-        Vec3 v_new = slowing * (v + dt / mass * force);
-        Vec3 x_new = x + dt * v_new;
-        if (const auto* support_of = supports_.of_node(n)) {
-            supports_.place(*support_of, mesh_.rest_positions()[n], time + dt, x_new);
-            for (int c = 0; c < 3; ++c) {
-                const int s = (*support_of)[static_cast<std::size_t>(c)];
-                if (s < 0) continue;
-                v_new[c] = (x_new[c] - x[c]) / dt;
-                const double reaction =
-                    mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
-                const auto support = static_cast<std::size_t>(s);
-                reactions_[support][c] += reaction;
-                reaction_moments_[support] +=
-                    (x_new - supports_.point(support)).cross(reaction * Vec3::Unit(c));
-                // At the mean velocity: a support that sets off at once gives the node just the
-                // kinetic energy that it then has.
-                work += reaction * (x_new[c] - x[c]) -
-                        0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
-            }
-        }
-        const double square = v_new.squaredNorm();
-        is_finite = is_finite && std::isfinite(square);
-        largest_square = std::max(largest_square, square);
-        work += outer_forces_[n].dot(x_new - x);
-        dissipated_power += damping_ * mass * square;
-        positions_[n] = x_new;
-        velocities_[n] = v_new;
-    }
-    external_work_ += work;
-    dissipated_energy_ += dissipated_power * dt;
-    largest_move_ = std::sqrt(largest_square) * dt;
-    if (!is_finite || largest_move_ > body_size_) explain_failure(time, dt);
+    // Nodes with supports afterwards, as these sum up what they do to all of theirs.
+    step_sums_.assign(num_node_ranges(masses_.size()), {});
+    workers_.for_each(step_sums_.size(), [&](std::size_t r) {
+        const std::size_t end = std::min((r + 1) * nodes_per_range, masses_.size());
+        for (std::size_t n = r * nodes_per_range; n < end; ++n)
+            if (masses_[n] != 0.0 && !supports_.of_node(n)) move_node(n, time, dt, step_sums_[r]);
+    });
+    StepSums sums;
+    for (std::size_t n = 0; n < masses_.size() && supports_.size() > 0; ++n)
+        if (masses_[n] != 0.0 && supports_.of_node(n)) move_node(n, time, dt, sums);
+    for (const StepSums& range : step_sums_) sums += range;
+    external_work_ += sums.work;
+    dissipated_energy_ += sums.dissipated_power * dt;
+    largest_move_ = std::sqrt(sums.largest_square) * dt;
+    if (!sums.is_finite || largest_move_ > body_size_) explain_failure(time, dt);
     if (!history_.is_empty())
         dissipated_energy_ += elements_.advance(previous_positions_, positions_, dt, history_);
+}
+
+void Model::move_node(std::size_t n, double time, double dt, StepSums& sums) {
+    const double mass = masses_[n], slowing = 1.0 / (1.0 + damping_ * dt);
+    const Vec3 x = positions_[n], v = velocities_[n];
+    const Vec3 force = elastic_forces_[n] + outer_forces_[n];
+    Vec3 v_new = slowing * (v + dt / mass * force);
+    Vec3 x_new = x + dt * v_new;
+    if (const auto* support_of = supports_.of_node(n)) {
+        supports_.place(*support_of, mesh_.rest_positions()[n], time + dt, x_new);
+        for (int c = 0; c < 3; ++c) {
+            const int s = (*support_of)[static_cast<std::size_t>(c)];
+            if (s < 0) continue;
+            v_new[c] = (x_new[c] - x[c]) / dt;
+            const double reaction =
+                mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
+            const auto support = static_cast<std::size_t>(s);
+            reactions_[support][c] += reaction;
+            reaction_moments_[support] +=
+                (x_new - supports_.point(support)).cross(reaction * Vec3::Unit(c));
+            // At the mean velocity: a support that sets off at once gives the node just the
+            // kinetic energy that it then has.
+            sums.work +=
+                reaction * (x_new[c] - x[c]) - 0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
+        }
+    }
+    const double square = v_new.squaredNorm();
+    sums.is_finite = sums.is_finite && std::isfinite(square);
+    sums.largest_square = std::max(sums.largest_square, square);
+    sums.work += outer_forces_[n].dot(x_new - x);
+    sums.dissipated_power += damping_ * mass * square;
+    positions_[n] = x_new;
+    velocities_[n] = v_new;
 }
 
 void Model::begin_step() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <span>
 #include <string>
@@ -46,6 +47,10 @@ class Model {
     /// @param mesh must outlive the model, which reads it and never changes it
     /// Throws InputError: see ElementStore, Supports.
     Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings = {});
+
+    /// How many threads compute, at least 1; of no influence on any result. At first one.
+    void set_num_threads(int n) { workers_ = Workers(n); }
+    int num_threads() const { return workers_.num_threads(); }
 
     std::span<const Vec3> positions() const { return positions_; }            ///< m
     std::span<const Vec3> velocities() const { return velocities_; }          ///< m/s
@@ -173,6 +178,22 @@ class Model {
         Vec3 position_before, velocity_before, position_after, velocity_after;
     };
 
+    /// What a step adds up over the nodes of a range.
+    struct StepSums {
+        double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;  ///< J, W, m2/s2
+        bool is_finite = true;
+
+        StepSums& operator+=(const StepSums& o) {
+            work += o.work;
+            dissipated_power += o.dissipated_power;
+            largest_square = std::max(largest_square, o.largest_square);
+            is_finite = is_finite && o.is_finite;
+            return *this;
+        }
+    };
+    /// Integrates one node; of one without supports touches nothing else.
+    void move_node(std::size_t n, double time, double dt, StepSums& sums);
+
     LoadedBody loaded_body() const { return {mesh_, elements_, positions_, masses_}; }
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
@@ -187,6 +208,7 @@ class Model {
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
     std::uint64_t num_edits_ = 0;
+    Workers workers_{1};
     ElementStore elements_;
     ViscousHistory history_;
     Vec3 gravity_;
@@ -201,6 +223,7 @@ class Model {
     std::vector<Vec3> reactions_, reaction_moments_;
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
     std::map<NodeId, Merge> merges_;        // by the node that was absorbed
+    std::vector<StepSums> step_sums_;       // scratch, by range of nodes
     std::vector<ElementId> star_;           // scratch
     std::vector<Vec3> previous_positions_;  // scratch, of viscous bodies only
 };

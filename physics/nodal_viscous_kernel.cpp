@@ -43,16 +43,18 @@ double NodalViscousKernel::energy(const Element& e, const Corners& x) const {
     return long_time_share * HemlKernel::energy(e, x);
 }
 
-std::array<Vec3, 4> NodalViscousKernel::forces(const Element& e, const Corners& x,
-                                               std::span<const double> memory) const {
+std::array<Vec3, 4> NodalViscousKernel::forces_of_memory(const Element& e, const Corners&,
+                                                         std::span<const double> memory) const {
     const Mat3 relaxed =
         e.volume * (sum_of_terms(memory, terms.size()) * e.inverse_edges.transpose());
+    return {-relaxed.rowwise().sum(), relaxed.col(0), relaxed.col(1), relaxed.col(2)};
+}
+
+std::array<Vec3, 4> NodalViscousKernel::forces(const Element& e, const Corners& x,
+                                               std::span<const double> memory) const {
     Corners f = HemlKernel::forces(e, x);
-    for (std::size_t k = 1; k < 4; ++k) {
-        const Vec3 part = relaxed.col(static_cast<int>(k) - 1);
-        f[k] += part;
-        f[0] -= part;
-    }
+    const Corners rest = forces_of_memory(e, x, memory);
+    for (std::size_t k = 0; k < 4; ++k) f[k] += rest[k];
     return f;
 }
 

@@ -54,6 +54,9 @@ struct NodalViscousKernel : HemlKernel {
     double energy(const Element& e, const Corners& x) const;
 
     Corners forces(const Element& e, const Corners& x, std::span<const double> memory) const;
+    /// Their part besides those of the law, whatever the positions.
+    Corners forces_of_memory(const Element& e, const Corners& x,
+                             std::span<const double> memory) const;
 
     /// What an element does at the end of a step as a function of its positions there: the share of
     /// the law's forces, and a first Piola-Kirchhoff stress that stays as it is, Pa.

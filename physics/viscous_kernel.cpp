@@ -102,13 +102,18 @@ double ViscousKernel::energy(const Element& e, const Corners& x) const {
     return long_time_share * HemlKernel::energy(e, x);
 }
 
-std::array<Vec3, 4> ViscousKernel::forces(const Element& e, const Corners& x,
-                                          std::span<const double> memory) const {
+std::array<Vec3, 4> ViscousKernel::forces_of_memory(const Element& e, const Corners& x,
+                                                    std::span<const double> memory) const {
     const SymmetricTensor relaxed =
         sum_of_terms(memory, terms.size()) - (1.0 - long_time_share) * tensor(memory, 0);
-    const Corners elastic = HemlKernel::forces(e, x);
-    Corners f = forces_of_stress(matrix_of(relaxed), e.volume, e.inverse_edges, x);
-    for (std::size_t k = 0; k < 4; ++k) f[k] += elastic[k];
+    return forces_of_stress(matrix_of(relaxed), e.volume, e.inverse_edges, x);
+}
+
+std::array<Vec3, 4> ViscousKernel::forces(const Element& e, const Corners& x,
+                                          std::span<const double> memory) const {
+    Corners f = HemlKernel::forces(e, x);
+    const Corners rest = forces_of_memory(e, x, memory);
+    for (std::size_t k = 0; k < 4; ++k) f[k] += rest[k];
     return f;
 }
 

@@ -65,6 +65,9 @@ struct ViscousKernel : HemlKernel {
     double energy(const Element& e, const Corners& x) const;
 
     Corners forces(const Element& e, const Corners& x, std::span<const double> memory) const;
+    /// Their part besides those of the law.
+    Corners forces_of_memory(const Element& e, const Corners& x,
+                             std::span<const double> memory) const;
 
     /// Second Piola-Kirchhoff stress of the law alone, without viscosity, Pa.
     Mat3 stress(const Element& e, const Corners& x) const;

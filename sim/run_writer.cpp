@@ -199,7 +199,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     summary["scenario"] = scenario.name;
     summary["scenario_hash"] = scenario.hash;
     summary["version"] = INCISE_VERSION;
-    summary["threads"] = 1;
+    summary["threads"] = simulation.model().num_threads();
     const auto quantities = has_failed ? last_row_ : summary_quantities(simulation);
     summary["edits"] = simulation.ledger().edits().size();
     for (const auto& [name, value] : quantities) summary[name] = value;

@@ -42,6 +42,9 @@ class Simulation {
     /// Observers must outlive the simulation's last step.
     void add_observer(Observer& observer) { observers_.push_back(&observer); }
 
+    /// See Model::set_num_threads.
+    void set_num_threads(int n) { model_.set_num_threads(n); }
+
     /// One time step; see the implementation for its phases.
     void step();
     bool is_finished() const;

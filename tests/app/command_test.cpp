@@ -61,9 +61,7 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
     EXPECT_EQ(refused("").find("incise: a verb is missing:"), 0u);
     EXPECT_EQ(refused("inof a.vtu").find("incise: verb 'inof': is not known; did you mean 'info'?"),
               0u);
-    EXPECT_EQ(refused("bench a.vtu"),
-              "incise: this version has no verb 'bench' yet; there are: run, check, info, cut, "
-              "convert, mesh, materials, render\n");
+    EXPECT_NE(refused("bench a.vtu").find("a.vtu"), std::string::npos);
     EXPECT_EQ(refused("info"), "incise: MESH is required\nincise: see incise info --help\n");
     EXPECT_NE(refused("info a.vtu --jsn").find("--jsn"), std::string::npos);
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
@@ -71,15 +69,6 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
 
 TEST_F(Command, TellsOfOptionsThatAreToCome) {
     write("scene.toml", scenario);
-    for (const auto* arguments :
-         {"--threads 2 scene.toml", "scene.toml --threads=2", "--threads"}) {
-        const auto outcome = run(std::string("run ") + arguments);
-        EXPECT_EQ(outcome.status, 2) << arguments;
-        EXPECT_EQ(outcome.out, "");
-        EXPECT_EQ(outcome.err,
-                  "incise: --threads is not supported by this version yet: it runs on one thread; "
-                  "leave it out\n");
-    }
     for (const auto* arguments : {"scene.toml --resume", "scene.toml --resume scene.out"}) {
         const auto outcome = run(std::string("run ") + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;
@@ -87,8 +76,16 @@ TEST_F(Command, TellsOfOptionsThatAreToCome) {
                   "incise: --resume is not supported by this version yet: start the run anew\n");
     }
     const auto help = run("run --help").out;
-    EXPECT_EQ(help.find("--threads"), std::string::npos);
     EXPECT_EQ(help.find("--resume"), std::string::npos);
+}
+
+TEST_F(Command, RefusesNumbersOfThreadsThatCannotBe) {
+    for (const auto* number : {"0", "-1", "two", "1000000"}) {
+        const auto outcome = run(std::string("run scene.toml --threads ") + number);
+        EXPECT_EQ(outcome.status, 2) << number;
+        EXPECT_NE(outcome.err.find("--threads"), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find(number), std::string::npos) << outcome.err;
+    }
 }
 
 TEST_F(Command, RefusesARegionArrayThatTheMeshLacks) {

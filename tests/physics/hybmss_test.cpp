@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -94,6 +95,47 @@ double sum_of_norms(const Cell& f) {
 /// Forces of this size are to be expected.
 double force_scale(const HybmssKernel& kernel, const HybmssKernel::Element& e) {
     return kernel.stiffness_energy(e) / std::cbrt(e.volume);
+}
+
+// The fast forces, on each kind of processor at hand.
+TEST(HybmssLanes, HaveTheForcesOfTheReferenceAndTheSameBitsOnEachProcessor) {
+    test::Random random(12);
+    for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
+        constexpr std::size_t n = 11;  // no multiple of the lanes
+        HybmssLanes lanes;
+        lanes.assign(n, 8 * n, kernel);
+        std::vector<LocalVector> positions(8 * n + 1);
+        std::vector<Cell> expected;
+        for (std::size_t i = 0; i < n; ++i) {
+            Cell x = shaken(
+                deformed(X, random_deformation(random, {1.1, 0.9, random.uniform(-1.0, 1.5)})),
+                random, 0.1);
+            if (i == 3) x[1] = x[0];  // a spring without length
+            std::array<std::uint16_t, 8> nodes;
+            for (std::size_t k = 0; k < 8; ++k) {
+                nodes[k] = static_cast<std::uint16_t>(8 * i + k);
+                positions[8 * i + k] = x[k];
+            }
+            lanes.set(i, e, nodes);
+            expected.push_back(kernel.forces(e, x));
+        }
+        const auto forces_on = [&](Processor processor) {
+            std::vector<LocalVector> f(positions.size());
+            hybmss_forces_for(processor)(kernel.material.volume_modulus, lanes.groups(),
+                                         positions.data(), f.data());
+            return f;
+        };
+        const auto plain = forces_on(Processor::plain);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < 8; ++k)
+                EXPECT_LE((plain[8 * i + k].vector() - expected[i][k]).norm(),
+                          1e-12 * (force_scale(kernel, e) + sum_of_norms(expected[i])));
+        for (const Processor p : {Processor::avx2, Processor::avx512}) {
+            if (p > processor()) continue;
+            const auto f = forces_on(p);
+            EXPECT_EQ(std::memcmp(f.data(), plain.data(), f.size() * sizeof(LocalVector)), 0);
+        }
+    });
 }
 
 TEST(HybMss, ForcesAreMinusTheDerivativesOfTheEnergy) {

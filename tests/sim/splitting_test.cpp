@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <string_view>
 
 #include "run_folder.h"
 #include "topology/validate.h"
@@ -69,6 +71,46 @@ TEST(SplittingBlade, OfTheSameScenarioEndsInTheSameBits) {
     ASSERT_EQ(one.mesh().node_capacity(), other.mesh().node_capacity());
     for (std::size_t n = 0; n < one.mesh().node_capacity(); ++n)
         ASSERT_EQ(one.model().positions()[n], other.model().positions()[n]);
+}
+
+// Enough elements for many blocks and ranges of nodes.
+TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreads) {
+    const std::string body = R"(
+[mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [16, 16, 16] }
+[[material]]
+density = 1000
+law = "neo-hookean"
+young = 1000
+poisson = 0.4
+[[constraint]]
+name = "floor"
+where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
+fix = "xyz"
+)";
+    const Scenario scenario = scenario_of(body + slanting_blade + dynamics(0.06, gravity));
+    const auto run_on = [&](int num_threads) {
+        auto simulation = std::make_unique<Simulation>(scenario);
+        simulation->set_num_threads(num_threads);
+        run(*simulation);
+        return simulation;
+    };
+    const auto expected = run_on(1);
+    EXPECT_GT(expected->ledger().edits().size(), 2u);
+    for (const int num_threads : {2, 5, 16}) {
+        SCOPED_TRACE(num_threads);
+        const auto simulation = run_on(num_threads);
+        const auto bits_of = [](const auto& values) {
+            return std::string_view(reinterpret_cast<const char*>(values.data()),
+                                    values.size() * sizeof(values[0]));
+        };
+        const physics::Model &one = expected->model(), &other = simulation->model();
+        EXPECT_EQ(bits_of(one.positions()), bits_of(other.positions()));
+        EXPECT_EQ(bits_of(one.velocities()), bits_of(other.velocities()));
+        EXPECT_EQ(bits_of(one.elastic_forces()), bits_of(other.elastic_forces()));
+        EXPECT_EQ(one.external_work(), other.external_work());
+        EXPECT_EQ(one.dissipated_energy(), other.dissipated_energy());
+    }
 }
 
 // Both are in the body at once, and divide elements that the other is in.

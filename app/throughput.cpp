@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "app/throughput.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "cutting/element_boxes.h"
+#include "cutting/splitter.h"
+#include "cutting/step_length.h"
+#include "cutting/swept_edge.h"
+#include "physics/heml_lanes.h"
+#include "physics/hybmss_lanes.h"
+#include "physics/machine_speed.h"
+#include "physics/model.h"
+#include "sim/elastic_constants.h"
+#include "sim/tissue_catalog.h"
+#include "topology/box_mesh.h"
+#include "topology/mesh_edit.h"
+
+namespace incise::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double size = 0.1;  // of the cubes, m
+constexpr std::string_view tissue_name = "liver";
+
+/// Best time of one call, s, of as many as take so many seconds in all.
+template <class Work>
+double best_time(double seconds, Work work) {
+    double best = std::numeric_limits<double>::infinity();
+    const auto start = Clock::now();
+    do {
+        const auto before = Clock::now();
+        work();
+        best = std::min(best, std::chrono::duration<double>(Clock::now() - before).count());
+    } while (std::chrono::duration<double>(Clock::now() - start).count() < seconds);
+    return best;
+}
+
+/// A cube of about so many elements, of tetrahedra an irregular one.
+topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {
+    const bool are_tetrahedra = kind == topology::CellKind::tetrahedron;
+    const double num_bricks = static_cast<double>(num_elements) / (are_tetrahedra ? 6.0 : 1.0);
+    const int n = std::max(1, static_cast<int>(std::lround(std::cbrt(num_bricks))));
+    auto data = topology::box_mesh(kind, Vec3::Zero(), Vec3::Constant(size), {n, n, n});
+    std::mt19937_64 random(1);
+    for (Vec3& x : data.points)
+        for (int c = 0; c < 3; ++c) {
+            const double jitter = static_cast<double>(random() >> 11) * 0x1.0p-53 - 0.5;
+            if (are_tetrahedra && x[c] > 0.0 && x[c] < size) x[c] += 0.3 * jitter * size / n;
+        }
+    return topology::Mesh::build(data).mesh;
+}
+
+struct Measured {
+    std::string_view method, law;
+    physics::Material material;
+    double operations;  ///< of one element's forces: physics/heml_forces.cpp, hybmss_forces.cpp
+    double bytes;       ///< of one element in a group of lanes
+};
+
+/// The three laws that the papers time, and the springs, with the stiffness of the tissue.
+std::vector<Measured> measured_materials() {
+    const sim::Tissue& tissue = *sim::find_tissue(tissue_name);
+    const auto heml = [&](std::string_view law, double operations) {
+        return Measured{
+            "heml",
+            law,
+            {tissue.density, physics::HyperElasticLinks{sim::make_law(law, tissue.parameters)}},
+            operations,
+            sizeof(physics::LinkGroup) / double{physics::LinkGroup::size}};
+    };
+    const sim::ElasticConstants constants =
+        sim::resolve(sim::Method::hybmss, {}, tissue.parameters);
+    const double shear = constants.mu;
+    return {heml("saint-venant-kirchhoff", 260.0), heml("neo-hookean", 260.0),
+            heml("mooney-rivlin", 350.0),
+            Measured{"hybmss",
+                     {},
+                     {tissue.density,
+                      physics::HybridSprings{shear, constants.bulk_modulus() - 5.0 / 3.0 * shear}},
+                     690.0,
+                     sizeof(physics::CellGroup) / double{physics::CellGroup::size}}};
+}
+
+physics::MaterialTable table_of(const physics::Material& material) {
+    return {{material}, {{0, 0}}};
+}
+
+StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int num_threads,
+                       double seconds) {
+    physics::Model model(
+        mesh, table_of(measured.material),
+        {.gravity = Vec3(0, 0, -9.81), .damping = 0.0, .supports = {}, .loads = {}});
+    model.set_num_threads(num_threads);
+    const double dt = 0.9 * model.stable_step();
+    const auto elements = static_cast<double>(mesh.num_elements());
+    const double per_element = 1e9 / elements;
+    // Fused loops of a whole step, so that each finds in the caches what the other left there.
+    double forces = std::numeric_limits<double>::infinity();
+    const double step = best_time(seconds, [&] {
+        model.integrate(0.0, dt);
+        forces = std::min(forces, best_time(0.0, [&] { model.compute_forces(0.0); }));
+    });
+    StepRate rate{.method = measured.method,
+                  .law = measured.law,
+                  .elements = mesh.num_elements(),
+                  .num_threads = num_threads,
+                  .forces = forces * per_element,
+                  .step = step * per_element,
+                  .reference = std::nullopt,
+                  .steps_per_second = 1.0 / step,
+                  .real_time_factor = dt / step,
+                  .gigaflops = measured.operations * elements / forces * 1e-9,
+                  .gigabytes_per_second = measured.bytes * elements / forces * 1e-9};
+    if (num_threads == 1) {
+        std::vector<Vec3> sums(mesh.node_capacity(), Vec3::Zero());
+        const physics::EndOfStep state{model.positions(), model.history(), dt};
+        rate.reference =
+            per_element * best_time(seconds, [&] { model.elements().add_forces(state, sums); });
+    }
+    return rate;
+}
+
+/// A blade that goes half way through the cube in 20 steps, with body and boxes following.
+EditRate measure_split(topology::Mesh mesh, const physics::Material& material) {
+    physics::Model model(mesh, table_of(material));
+    cutting::ElementBoxes boxes(mesh, model.positions());
+    const cutting::SplitOptions options{cutting::default_snap, cutting::uncut_body(mesh)};
+    constexpr int num_steps = 20;
+    const auto edge = [](int step) {
+        const double x = -0.01 + 0.51 * step / num_steps;
+        return std::vector<Vec3>{size * Vec3(x, -0.1, 0.41 + 0.21 * x),
+                                 size * Vec3(x, 1.1, 0.52 + 0.21 * x)};
+    };
+    EditRate rate{"split", mesh.num_elements(), 0, 0.0};
+    cutting::CutFront front;
+    cutting::Scars scars;
+    const auto start = Clock::now();
+    for (int step = 0; step < num_steps; ++step) {
+        const cutting::TissueMotion tissue{mesh, model.positions(), model.positions(), &boxes};
+        const auto done = cutting::split(
+            mesh, tissue, cutting::SweptEdge(edge(step), edge(step + 1)), front, options, &scars);
+        model.apply(done.changes);
+        boxes.follow(mesh, model.positions(), done.changes);
+        model.compute_forces(0.0);
+        rate.items += done.report.elements_crossed;
+    }
+    const double all = std::chrono::duration<double>(Clock::now() - start).count();
+    const double forces = best_time(0.0, [&] { model.compute_forces(0.0); });
+    rate.microseconds = 1e6 * (all - num_steps * forces) /
+                        static_cast<double>(std::max<std::size_t>(rate.items, 1));
+    return rate;
+}
+
+/// Ten balls of about a hundred neighbours each, one after the other.
+EditRate measure_removal(topology::Mesh mesh, const physics::Material& material) {
+    physics::Model model(mesh, table_of(material));
+    constexpr std::size_t num_batches = 10, batch = 100;
+    EditRate rate{"remove", mesh.num_elements(), 0, 0.0};
+    const std::size_t stride = mesh.element_capacity() / (num_batches + 1);
+    const auto start = Clock::now();
+    for (std::size_t b = 0; b < num_batches; ++b) {
+        topology::MeshEdit edit(mesh);
+        for (std::size_t i = 0; i < std::min(batch, stride); ++i)
+            edit.remove(topology::ElementId((b + 1) * stride - i - 1));
+        model.apply(edit.commit());
+        model.compute_forces(0.0);
+        rate.items += std::min(batch, stride);
+    }
+    const double all = std::chrono::duration<double>(Clock::now() - start).count();
+    const double forces = best_time(0.0, [&] { model.compute_forces(0.0); });
+    rate.microseconds = 1e6 * (all - num_batches * forces) / static_cast<double>(rate.items);
+    return rate;
+}
+
+std::string processor_name() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name"))
+            if (const auto colon = line.find(": "); colon != std::string::npos)
+                return line.substr(colon + 2);
+    return "unknown";
+}
+
+MachineSpeed measure_machine(int num_cores) {
+    const physics::MachinePeak peak = physics::measure_peak();
+    return {processor_name(), physics::name_of(physics::processor()), num_cores, peak.gigaflops,
+            peak.gigabytes_per_second};
+}
+
+}  // namespace
+
+Throughput measure_throughput(const ThroughputPlan& plan,
+                              const std::function<void(double, const std::string&)>& tell) {
+    const int num_cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    std::vector<int> threads{1};
+    if (const int most = plan.num_threads > 0 ? plan.num_threads : num_cores; most > 1)
+        threads.push_back(most);
+    const auto materials = measured_materials();
+    // Large meshes take longest to make, all others about as long as each other.
+    double work = 1.0, finished = 0.0;
+    for (const auto* sizes : {&plan.tetrahedra, &plan.hexahedra, &plan.edited})
+        for (const std::size_t n : *sizes) work += 1.0 + static_cast<double>(n) * 1e-5;
+    const auto next = [&](double share, const std::string& name) {
+        tell(finished / work, name);
+        finished += share;
+    };
+    const auto part = [&](std::size_t n, const char* what) {
+        next(1.0 + static_cast<double>(n) * 1e-5, std::to_string(n) + what);
+    };
+
+    Throughput result;
+    result.tissue = tissue_name;
+    next(1.0, "the machine's limits");
+    result.machine = measure_machine(num_cores);
+    const auto measure_bodies = [&](topology::CellKind kind, std::size_t n,
+                                    std::string_view method) {
+        const topology::Mesh mesh = make_cube(kind, n);
+        for (const Measured& measured : materials)
+            if (measured.method == method)
+                for (const int num_threads : threads)
+                    result.steps.push_back(
+                        measure_steps(mesh, measured, num_threads, plan.seconds));
+    };
+    for (const std::size_t n : plan.tetrahedra) {
+        part(n, " tetrahedra");
+        measure_bodies(topology::CellKind::tetrahedron, n, "heml");
+    }
+    for (const std::size_t n : plan.hexahedra) {
+        part(n, " hexahedra");
+        measure_bodies(topology::CellKind::hexahedron, n, "hybmss");
+    }
+    for (const std::size_t n : plan.edited) {
+        part(n, " tetrahedra, edited");
+        for (const auto measure : {measure_split, measure_removal})
+            result.edits.push_back(
+                measure(make_cube(topology::CellKind::tetrahedron, n), materials[1].material));
+    }
+    return result;
+}
+
+}  // namespace incise::app

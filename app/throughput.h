@@ -1,0 +1,65 @@
+// How fast this machine computes forces, steps and edits, on meshes made for it.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise::app {
+
+/// What the machine itself can do, on one core.
+struct MachineSpeed {
+    std::string processor;          ///< as the system names it
+    std::string_view instructions;  ///< what the fast kernels use of it: plain, avx2, avx512
+    int num_cores = 0;
+    double gigaflops = 0.0;             ///< additions and multiplications of doubles, not fused
+    double gigabytes_per_second = 0.0;  ///< read from memory, far more than caches hold
+};
+
+/// One body and one number of threads. Times are the best of many, nanoseconds an element.
+struct StepRate {
+    std::string_view method, law;  ///< as in scenarios; no law for hybmss
+    std::size_t elements = 0;
+    int num_threads = 1;
+    double forces = 0.0;              ///< one evaluation of elastic forces
+    double step = 0.0;                ///< forces and integration
+    std::optional<double> reference;  ///< forces by the plain formulas, one thread
+    double steps_per_second = 0.0;
+    double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
+    double gigaflops = 0.0;             ///< of the forces
+    double gigabytes_per_second = 0.0;  ///< that the elements' own data take, of the forces
+};
+
+/// An edit with the physics following, microseconds an element that it crosses or removes.
+struct EditRate {
+    std::string_view kind;     ///< "split" or "remove"
+    std::size_t elements = 0;  ///< of the body
+    std::size_t items = 0;     ///< crossed or removed
+    double microseconds = 0.0;
+};
+
+struct Throughput {
+    MachineSpeed machine;
+    std::string_view tissue;  ///< the stiffness of the bodies; cubes of 10 cm
+    std::vector<StepRate> steps;
+    std::vector<EditRate> edits;
+};
+
+/// What to measure; numbers of elements are met approximately.
+struct ThroughputPlan {
+    std::vector<std::size_t> tetrahedra = {5'000, 20'000, 100'000, 500'000};
+    std::vector<std::size_t> hexahedra = {1'000, 27'000, 125'000};
+    std::vector<std::size_t> edited = {20'000, 100'000, 500'000};
+    double seconds = 0.3;  ///< for each figure, at least
+    int num_threads = 0;   ///< besides one thread; 0: as many as there are cores
+};
+
+/// @param tell  called before each part with its share of the work, 0 to 1, and its name
+Throughput measure_throughput(const ThroughputPlan& plan,
+                              const std::function<void(double, const std::string&)>& tell);
+
+}  // namespace incise::app

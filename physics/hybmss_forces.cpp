@@ -1,0 +1,67 @@
+// Compiled for each kind of processor: see lanes.h.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/hybmss_kernel.h"
+#include "physics/lanes.h"
+
+namespace incise::physics::INCISE_PROCESSOR {
+
+namespace {
+
+/// The part of a group that starts at lane `first`; as HybmssKernel::forces.
+[[gnu::always_inline]] inline void add_forces_of(double volume_modulus, const CellGroup& group,
+                                                 std::size_t first, const LocalVector* positions,
+                                                 LocalVector* forces) {
+    std::array<Lanes3, 8> x, f;
+    for (std::size_t k = 0; k < 8; ++k) {
+        x[k] = gather(positions, group.nodes[k] + first);
+        f[k] = {0.0, 0.0, 0.0};
+    }
+#pragma GCC unroll 7
+    for (std::size_t g = 0; g < 7; ++g) {
+        const Lanes k = Lanes::load(group.stiffnesses[g] + first),
+                    rest = Lanes::load(group.lengths[g] + first);
+#pragma GCC unroll 4
+        for (const auto& [i, j] : HybmssKernel::springs[g]) {
+            const Lanes3 v = x[j] - x[i];
+            const Lanes length = sqrt(dot(v, v));
+            // A spring without length has no direction to push in.
+            const Lanes pull = where_positive(length, k * (length - rest) / length, 0.0);
+            f[i] = f[i] + pull * v;
+            f[j] = f[j] - pull * v;
+        }
+    }
+    if (volume_modulus != 0.0) {
+        const auto mean = [&](int a0, int a1, int b0, int b1, int c0, int c1, int d0, int d1) {
+            const auto edge = [&](int from, int to) {
+                return x[static_cast<std::size_t>(to)] - x[static_cast<std::size_t>(from)];
+            };
+            return Lanes(0.25) * (edge(a0, a1) + edge(b0, b1) + edge(c0, c1) + edge(d0, d1));
+        };
+        const Lanes3 a = mean(0, 1, 3, 2, 4, 5, 7, 6), b = mean(0, 3, 1, 2, 4, 7, 5, 6),
+                     c = mean(0, 4, 1, 5, 2, 6, 3, 7);
+        const Lanes3 across_a = cross(b, c), across_b = cross(c, a), across_c = cross(a, b);
+        const Lanes volume = Lanes::load(group.volume + first);
+        const Lanes quarter = -0.25 * volume_modulus * (dot(a, across_a) / volume - 1.0);
+        const Lanes3 along_a = quarter * across_a, along_b = quarter * across_b,
+                     along_c = quarter * across_c;
+#pragma GCC unroll 8
+        for (std::size_t k = 0; k < 8; ++k) {
+            const auto& side = BoxFrame::sides[k];
+            f[k] = side[0] > 0 ? f[k] + along_a : f[k] - along_a;
+            f[k] = side[1] > 0 ? f[k] + along_b : f[k] - along_b;
+            f[k] = side[2] > 0 ? f[k] + along_c : f[k] - along_c;
+        }
+    }
+    for (std::size_t k = 0; k < 8; ++k) scatter_add(f[k], forces, group.nodes[k] + first);
+}
+
+}  // namespace
+
+void add_hybmss_forces(double volume_modulus, std::span<const CellGroup> groups,
+                       const LocalVector* positions, LocalVector* forces) {
+    for (const CellGroup& group : groups)
+        for (std::size_t first = 0; first < CellGroup::size; first += num_lanes)
+            add_forces_of(volume_modulus, group, first, positions, forces);
+}
+
+}  // namespace incise::physics::INCISE_PROCESSOR

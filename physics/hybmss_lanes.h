@@ -1,0 +1,54 @@
+// The fast forces of HybMSS: cells side by side, one a lane. Equal to HybmssKernel::forces, the
+// reference, but for rounding.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/local_nodes.h"
+#include "physics/processor.h"
+
+namespace incise::physics {
+
+struct HybmssKernel;
+struct HybmssElement;
+
+/// Eight cells as the force loop reads them.
+struct alignas(64) CellGroup {
+    static constexpr std::size_t size = 8;
+    double stiffnesses[7][size];        ///< of springs by group, as in SpringShares: N/m
+    double lengths[7][size];            ///< m
+    double volume[size];                ///< m3
+    std::uint16_t nodes[8][size] = {};  ///< by local number
+};
+
+/// The cells of a block; see HemlLanes.
+class HybmssLanes {
+  public:
+    /// Makes room for so many cells in place of what there was.
+    /// @param spare  local number of a node that spare lanes work on
+    void assign(std::size_t num_elements, std::uint16_t spare, const HybmssKernel& kernel);
+    /// Sets the cell of the given number, from 0.
+    /// @param nodes its corners by local number
+    void set(std::size_t i, const HybmssElement& element, std::span<const std::uint16_t, 8> nodes);
+
+    /// Adds each cell's forces, N, to those of its nodes. The same bits on every processor.
+    /// @param positions m; both by local number
+    void add_forces(const HybmssKernel& kernel, const LocalVector* positions,
+                    LocalVector* forces) const;
+
+    std::span<const CellGroup> groups() const { return groups_; }
+
+  private:
+    std::vector<CellGroup> groups_;
+};
+
+using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup> groups,
+                             const LocalVector* positions, LocalVector* forces);
+/// What HybmssLanes calls, by processor.
+AddHybmssForces* hybmss_forces_for(Processor processor);
+
+}  // namespace incise::physics

@@ -1,0 +1,22 @@
+// The limits of the machine that fast kernels are measured against.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+#include "physics/processor.h"
+
+namespace incise::physics {
+
+/// On one core.
+struct MachinePeak {
+    double gigaflops = 0.0;  ///< additions and multiplications of doubles, not fused, in lanes
+    double gigabytes_per_second = 0.0;  ///< read from memory one after the other
+};
+
+/// Takes about half a second and 256 MiB.
+MachinePeak measure_peak();
+
+std::string_view name_of(Processor processor);
+
+}  // namespace incise::physics

@@ -1,0 +1,39 @@
+// The threads that a model computes with. What they do is divided in the same way for any number
+// of them, so that results are the same to the bit.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace incise::physics {
+
+/// Nodes are worked on in ranges of so many ids: sums over them are those over ranges, in order.
+inline constexpr std::size_t nodes_per_range = 2048;
+
+inline std::size_t num_node_ranges(std::size_t num_nodes) {
+    return (num_nodes + nodes_per_range - 1) / nodes_per_range;
+}
+
+class Workers {
+  public:
+    /// @param num_threads at least 1, the caller's own among them
+    explicit Workers(int num_threads);
+    ~Workers();
+    Workers(Workers&&) noexcept;
+    Workers& operator=(Workers&&) noexcept;
+
+    int num_threads() const { return num_threads_; }
+
+    /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
+    /// to be worth it; returns when all are done. The first exception thrown comes out.
+    void for_each(std::size_t n, const std::function<void(std::size_t)>& work);
+
+  private:
+    struct Arena;
+    int num_threads_;
+    std::unique_ptr<Arena> arena_;  // none for one thread
+};
+
+}  // namespace incise::physics

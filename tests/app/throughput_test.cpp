@@ -1,0 +1,44 @@
+// The figures of `incise bench`: that there are all of them, and that they fit each other. How high
+// they are is no affair of tests.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "app/throughput.h"
+
+#include <gtest/gtest.h>
+
+namespace incise::app {
+namespace {
+
+TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
+    ThroughputPlan plan;
+    plan.tetrahedra = {400, 3'000};
+    plan.hexahedra = {64};
+    plan.edited = {3'000};
+    plan.seconds = 0.0;
+    plan.num_threads = 2;
+    double last = -1.0;
+    const Throughput throughput = measure_throughput(plan, [&](double share, const std::string&) {
+        EXPECT_GT(share, last);
+        EXPECT_LT(share, 1.0);
+        last = share;
+    });
+    EXPECT_GT(throughput.machine.gigaflops, 0.0);
+    EXPECT_GT(throughput.machine.gigabytes_per_second, 0.0);
+    ASSERT_EQ(throughput.steps.size(), 2u * 3u * 2u + 2u);
+    for (const StepRate& rate : throughput.steps) {
+        EXPECT_GT(rate.forces, 0.0);
+        EXPECT_GE(rate.step, rate.forces);
+        EXPECT_NEAR(rate.step * 1e-9 * static_cast<double>(rate.elements) * rate.steps_per_second,
+                    1.0, 1e-9);
+        EXPECT_EQ(rate.reference.has_value(), rate.num_threads == 1);
+        EXPECT_GT(rate.real_time_factor, 0.0);
+        EXPECT_GT(rate.gigaflops, 0.0);
+    }
+    EXPECT_EQ(throughput.steps.back().method, "hybmss");
+    EXPECT_EQ(throughput.steps.back().elements, 64u);
+    ASSERT_EQ(throughput.edits.size(), 2u);
+    EXPECT_GT(throughput.edits[0].items, 50u);
+    EXPECT_EQ(throughput.edits[1].items, 1000u);
+}
+
+}  // namespace
+}  // namespace incise::app
