@@ -69,23 +69,22 @@ struct Measured {
 /// The three laws that the papers time, and the springs, with the stiffness of the tissue.
 std::vector<Measured> measured_materials() {
     const sim::Tissue& tissue = *sim::find_tissue(tissue_name);
-    const auto heml = [&](std::string_view law, double operations) {
-        return Measured{
-            "heml",
-            law,
-            {tissue.density, physics::HyperElasticLinks{sim::make_law(law, tissue.parameters)}},
-            operations,
-            sizeof(physics::LinkGroup) / double{physics::LinkGroup::size}};
+    const auto [lambda, mu] = sim::resolve(sim::Method::heml, tissue.law, tissue.parameters);
+    const auto heml = [&](std::string_view name, const physics::Law& law, double operations) {
+        return Measured{"heml",
+                        name,
+                        {tissue.density, physics::HyperElasticLinks{law}},
+                        operations,
+                        sizeof(physics::LinkGroup) / double{physics::LinkGroup::size}};
     };
-    const sim::ElasticConstants constants =
-        sim::resolve(sim::Method::hybmss, {}, tissue.parameters);
-    const double shear = constants.mu;
-    return {heml("saint-venant-kirchhoff", 260.0), heml("neo-hookean", 260.0),
-            heml("mooney-rivlin", 350.0),
+    const physics::HybridSprings springs{mu, lambda - mu};
+    return {heml("saint-venant-kirchhoff", physics::SaintVenantKirchhoff{lambda, mu}, 260.0),
+            heml("neo-hookean", physics::NeoHookean{0.5 * mu, lambda}, 260.0),
+            heml("mooney-rivlin", physics::MooneyRivlin{0.35 * mu, 0.15 * mu, lambda - 0.6 * mu},
+                 350.0),
             Measured{"hybmss",
                      {},
-                     {tissue.density,
-                      physics::HybridSprings{shear, constants.bulk_modulus() - 5.0 / 3.0 * shear}},
+                     {tissue.density, springs},
                      690.0,
                      sizeof(physics::CellGroup) / double{physics::CellGroup::size}}};
 }

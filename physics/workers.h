@@ -10,7 +10,7 @@
 namespace incise::physics {
 
 /// Nodes are worked on in ranges of so many ids: sums over them are those over ranges, in order.
-inline constexpr std::size_t nodes_per_range = 2048;
+inline constexpr std::size_t nodes_per_range = 512;
 
 inline std::size_t num_node_ranges(std::size_t num_nodes) {
     return (num_nodes + nodes_per_range - 1) / nodes_per_range;
