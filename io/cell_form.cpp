@@ -6,9 +6,9 @@
 
 namespace incise::io {
 
-void CellCollector::refuse(const CellForm& form, const std::string& place) const {
-    throw InputError(place + ": a " + form.name + " (" + type_word_ + " " +
-                     std::to_string(form.code) +
+void CellCollector::refuse(const CellForm& form, const std::string& place,
+                           std::string_view code) const {
+    throw InputError(place + ": a " + form.name + " (" + type_word_ + " " + std::string(code) +
                      ") cannot be used; export linear elements (tetrahedra, hexahedra, wedges, "
                      "pyramids)");
 }

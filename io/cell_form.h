@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct CellForm {
         refuse   ///< a volume cell that is not supported
     };
 
-    int code;          ///< the format's number for the kind
+    int code;          ///< the format's number for the kind; 0 where it has a word
     const char* name;  ///< singular; where ignored, the plural is the name with an s
     int num_nodes;     ///< 0: any number
     Use use = Use::refuse;
@@ -48,7 +49,12 @@ class CellCollector {
 
     /// Throws InputError about a cell of a form that cannot be used. `place` is what the message
     /// begins with: the file and the cell.
-    [[noreturn]] void refuse(const CellForm& form, const std::string& place) const;
+    [[noreturn]] void refuse(const CellForm& form, const std::string& place) const {
+        refuse(form, place, std::to_string(form.code));
+    }
+    /// The same where the format calls the kind by a word.
+    [[noreturn]] void refuse(const CellForm& form, const std::string& place,
+                             std::string_view code) const;
 
     /// Appends a cell of a form that is kept.
     /// @pre nodes.size() == form.num_nodes, and they are points of the mesh

@@ -174,9 +174,9 @@ class GmshReader {
     }
 
     void add_point() {
-        const double x = real_value("an x coordinate");
-        const double y = real_value("a y coordinate");
-        const double z = real_value("a z coordinate");
+        const double x = scanner_.coordinate("an x coordinate");
+        const double y = scanner_.coordinate("a y coordinate");
+        const double z = scanner_.coordinate("a z coordinate");
         result_.mesh.points.emplace_back(x, y, z);
     }
 

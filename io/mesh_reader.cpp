@@ -8,6 +8,7 @@
 #include "io/gmsh_reader.h"
 #include "io/input_file.h"
 #include "io/legacy_vtk_reader.h"
+#include "io/medit_reader.h"
 #include "io/scanner.h"
 #include "io/vtu_reader.h"
 #include "topology/error.h"
@@ -23,20 +24,28 @@ struct Format {
     MeshFile (*read)(const InputFile& file, const ReadOptions& options);
 };
 
+// clang-format off
 constexpr Format formats[] = {
     {"VTU", ".vtu", "<", read_vtu},
     {"legacy VTK", ".vtk", "# vtk datafile", read_legacy_vtk},
     {"Gmsh", ".msh", "$", read_gmsh},
+    {"MEDIT", ".mesh", "meshversionformatted", read_medit},
 };
+// clang-format on
 
 constexpr std::size_t longest_magic = 64;
 
 const Format* format_of(const InputFile& file) {
-    const auto begin = std::find_if_not(file.bytes.begin(), file.bytes.end(), is_blank);
-    const auto head =
-        lower_case(std::string_view(begin, file.bytes.end()).substr(0, longest_magic));
-    for (const auto& format : formats)
-        if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+    std::string_view text = file.bytes;
+    while (true) {
+        const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
+        text = {begin, text.end()};
+        const auto head = lower_case(text.substr(0, longest_magic));
+        for (const auto& format : formats)
+            if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+        if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
+        text.remove_prefix(std::min(text.find('\n'), text.size()));
+    }
     const auto suffix = lower_case(file.path.extension().string());
     for (const auto& format : formats)
         if (format.magic.empty() && suffix == format.suffix) return &format;

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +36,14 @@ requires std::integral<T> || std::floating_point<T> std::optional<T> parse_numbe
         if (error == std::errc::result_out_of_range && is_underflow) return T{0};
     }
     return std::nullopt;
+}
+
+/// The value, if it is a whole number of 32 bits.
+inline std::optional<int> whole_number(double value) {
+    constexpr double lowest = std::numeric_limits<int>::min();
+    constexpr double highest = std::numeric_limits<int>::max();
+    if (!(value >= lowest && value <= highest) || value != std::floor(value)) return std::nullopt;
+    return static_cast<int>(value);
 }
 
 /// The shortest text that parses to the same value.

@@ -1,21 +1,23 @@
-// Walks through a file that mixes text and binary numbers.
+// Walks through a file of words and numbers, as text or binary.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "io/scanner.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "topology/error.h"
 
 namespace incise::io {
 
 void Scanner::skip_blanks() {
-    bool is_line_start = position_ == 0 || bytes_[position_ - 1] == '\n';
+    bool may_comment =
+        comments_ == Comments::before_any_word || position_ == 0 || bytes_[position_ - 1] == '\n';
     while (position_ < bytes_.size()) {
         const char c = bytes_[position_];
         if (is_blank(c)) {
-            is_line_start = is_line_start || c == '\n';
+            may_comment = may_comment || c == '\n';
             ++position_;
-        } else if (c == '#' && is_line_start) {
+        } else if (c == '#' && may_comment) {
             position_ = std::min(bytes_.find('\n', position_), bytes_.size());
         } else {
             return;
@@ -46,6 +48,15 @@ bool Scanner::accept(std::string_view word) {
     return false;
 }
 
+bool Scanner::skip_number() {
+    const auto position = position_;
+    const auto item_begin = item_begin_;
+    if (!at_end() && parse_number<double>(token("a number"))) return true;
+    position_ = position;
+    item_begin_ = item_begin;
+    return false;
+}
+
 std::string_view Scanner::rest_of_line() {
     item_begin_ = position_;
     const auto end = std::min(bytes_.find('\n', position_), bytes_.size());
@@ -70,6 +81,13 @@ std::string_view Scanner::take(std::size_t count, std::string_view what) {
     return bytes_.substr(item_begin_, count);
 }
 
+double Scanner::coordinate(std::string_view what) {
+    const auto result = value<double>(what);
+    if (!std::isfinite(result))
+        fail(std::string(what) + " is " + shown(result) + "; it must be finite");
+    return result;
+}
+
 std::size_t Scanner::count(std::string_view what, std::size_t bytes_each) {
     const auto result = number<std::uint64_t>(what);
     require_room(result, bytes_each, what);
@@ -85,11 +103,12 @@ void Scanner::require_room(std::uint64_t count, std::size_t bytes_each,
              " bytes; the file is cut short or damaged");
 }
 
-void Scanner::fail(const std::string& message) const {
-    const auto place = is_binary_ ? ": byte " + std::to_string(item_begin_)
-                                  : ":" + std::to_string(file_.line_of(item_begin_));
-    throw InputError(file_.name() + place + ": " + message);
+std::string Scanner::place() const {
+    const auto name = file_.name() + (is_binary_ ? ": byte " : ":");
+    return name + std::to_string(is_binary_ ? item_begin_ : file_.line_of(item_begin_));
 }
+
+void Scanner::fail(const std::string& message) const { throw InputError(place() + ": " + message); }
 
 void Scanner::fail_expected(std::string_view what, std::string_view found) const {
     fail("expected " + std::string(what) + ", found " + in_quotes(found));

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "io/vtk_cells.h"
 
-#include <cmath>
-#include <limits>
-#include <optional>
-
 #include "io/input_file.h"
 #include "io/number_text.h"
 #include "topology/error.h"
@@ -86,14 +82,6 @@ constexpr CellForm forms[] = {
 static_assert(std::is_sorted(std::begin(forms), std::end(forms),
                              [](const auto& a, const auto& b) { return a.code < b.code; }));
 
-/// The region that a value of the region array stands for, if it is a whole number of 32 bits.
-std::optional<int> region_of(double value) {
-    constexpr double lowest = std::numeric_limits<int>::min();
-    constexpr double highest = std::numeric_limits<int>::max();
-    if (!(value >= lowest && value <= highest) || value != std::floor(value)) return std::nullopt;
-    return static_cast<int>(value);
-}
-
 std::string quoted_list(const std::vector<std::string>& names) {
     std::string list;
     for (const auto& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
@@ -164,8 +152,12 @@ void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& fil
                 throw InputError(here() + ": node index " + std::to_string(node) +
                                  " is out of range (" + std::to_string(num_points) + " points)");
             nodes[i] = first_point + node;
+            if (!mesh.points[static_cast<std::size_t>(nodes[i])].allFinite())
+                throw InputError(here() + ": its node " + std::to_string(node) +
+                                 " has a coordinate that is not finite");
         }
-        const auto region = piece.regions.empty() ? 0 : region_of(piece.regions[c]);
+        const auto region =
+            piece.regions.empty() ? std::optional(0) : whole_number(piece.regions[c]);
         if (!region)
             throw InputError(here() + ": region " + shown(piece.regions[c]) +
                              " is not a whole number of 32 bits; name another array as the "

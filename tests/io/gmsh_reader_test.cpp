@@ -90,7 +90,7 @@ TEST(GmshReader, TakesPhysicalGroupsAsRegions) {
 }
 
 TEST(GmshReader, TurnsPrismsIntoWedges) {
-    // Positive volume in Gmsh: the triangle 0, 1, 2 faces 3, 4, 5; in the mesh it faces away.
+    // The triangle 1, 2, 3 faces 4, 5, 6; in the mesh it faces away.
     const auto file = read_bytes("a.msh", R"($MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -108,13 +108,7 @@ $Elements
 1 6 2 1 1 1 2 3 4 5 6
 $EndElements
 )");
-    ASSERT_EQ(file.mesh.num_cells(), 1u);
-    const auto corner = [&](std::size_t i) {
-        return file.mesh.points[static_cast<std::size_t>(file.mesh.cell(0)[i])];
-    };
-    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    EXPECT_LT(normal.dot(corner(3) - corner(0)), 0);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(corner(i + 3), corner(i) + Vec3(0, 0, 1));
+    expect_wedge_of_unit_height(file.mesh);
 }
 
 TEST(GmshReader, RefusesUnknownNodes) {
@@ -156,6 +150,8 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
     EXPECT_THAT(refusal_2("3 4 0 10", "3 77 0 10"), HasSubstr("element type 77 is not known"));
     EXPECT_THAT(refusal_2("10 1 0 0", "10 1 zero 0"),
                 StartsWith("liver.msh:7: expected a y coordinate, found 'zero'"));
+    EXPECT_EQ(refusal_2("10 1 0 0", "10 1 nan 0"),
+              "liver.msh:7: a y coordinate is nan; it must be finite");
     EXPECT_THAT(refusal_2("2 4 2 7", "2 5 2 7"),
                 HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
 }

@@ -63,7 +63,7 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
             for (auto& x : point) x += shift(random);
         for (std::size_t c = 0; c < mesh.num_cells(); ++c)
             mesh.regions[c] = static_cast<int>(c % 3);
-        for (const char* suffix : {".vtu", ".vtk", ".msh"}) {
+        for (const char* suffix : {".vtu", ".vtk", ".msh", ".mesh"}) {
             SCOPED_TRACE(suffix);
             const auto path = folder / (std::string("mesh") + suffix);
             write_mesh(path, mesh);

@@ -121,12 +121,23 @@ TEST(MeshWriter, AbaqusFileGroupsCellsByRegionAndKeepsTheirNumbers) {
                           "*ELEMENT, TYPE=C3D6, ELSET=REGION_4\n1,2,11,4,6,12,8\n"));
 }
 
+/// The same cells in the order of MEDIT's sections.
+MeshData grouped_by_kind(const MeshData& mesh) {
+    MeshData grouped;
+    grouped.points = mesh.points;
+    for (const auto& kind :
+         {CellKind::tetrahedron, CellKind::hexahedron, CellKind::wedge, CellKind::pyramid})
+        for (std::size_t c = 0; c < mesh.num_cells(); ++c)
+            if (mesh.kinds[c] == kind) grouped.add_cell(kind, mesh.cell(c), mesh.regions[c]);
+    return grouped;
+}
+
 TEST(MeshWriter, OurReaderGivesBackTheSameMesh) {
     const TemporaryFolder folder;
-    const auto mesh = make_mesh();
-    for (const auto* suffix : {".vtu", ".vtk", ".msh"}) {
+    for (const std::string suffix : {".vtu", ".vtk", ".msh", ".mesh"}) {
         SCOPED_TRACE(suffix);
-        const auto path = folder / (std::string("mesh") + suffix);
+        const auto mesh = suffix == ".mesh" ? grouped_by_kind(make_mesh()) : make_mesh();
+        const auto path = folder / ("mesh" + suffix);
         write_mesh(path, mesh);
         const auto [again, warnings, vectors] = read_mesh(path);
         EXPECT_EQ(again.points, mesh.points);

@@ -8,8 +8,10 @@
 
 #include "io/gmsh_reader.h"
 #include "io/legacy_vtk_reader.h"
+#include "io/medit_reader.h"
 #include "io/vtu_reader.h"
 #include "tests/io/reader_samples.h"
+#include "tests/support/mesh_consistency.h"
 #include "topology/error.h"
 
 namespace incise::io {
@@ -47,20 +49,6 @@ std::string mutated(std::string bytes, std::mt19937& random) {
     return bytes;
 }
 
-/// Whatever was read is a mesh whose parts fit one another.
-void expect_consistent(const topology::MeshData& mesh) {
-    ASSERT_EQ(mesh.offsets.size(), mesh.num_cells() + 1);
-    ASSERT_EQ(mesh.regions.size(), mesh.num_cells());
-    ASSERT_EQ(mesh.offsets.back(), mesh.corners.size());
-    EXPECT_GT(mesh.num_cells(), 0u);
-    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
-        ASSERT_EQ(mesh.cell(c).size(),
-                  static_cast<std::size_t>(topology::traits(mesh.kinds[c]).num_corners));
-        for (const auto corner : mesh.cell(c))
-            ASSERT_TRUE(corner >= 0 && static_cast<std::size_t>(corner) < mesh.points.size());
-    }
-}
-
 void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
     int num_refused = 0;
     for (const auto& sample : samples) {
@@ -68,7 +56,7 @@ void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
         for (int i = 0; i < num_mutations; ++i) {
             const InputFile file{sample.name, mutated(sample.bytes, random)};
             try {
-                expect_consistent(reader(file, {}).mesh);
+                ASSERT_EQ(support::inconsistency_of(reader(file, {}).mesh), "");
             } catch (const InputError& error) {
                 ++num_refused;
                 EXPECT_TRUE(std::string_view(error.what()).starts_with(sample.name + ":"))
@@ -97,6 +85,10 @@ TEST(MutatedFileReader, ReadsOrRefusesVtu) {
 
 TEST(MutatedFileReader, ReadsOrRefusesLegacyVtk) {
     expect_read_or_refused(read_legacy_vtk, legacy_vtk_samples());
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesMedit) {
+    expect_read_or_refused(read_medit, medit_samples());
 }
 
 TEST(MutatedFileReader, ReadsOrRefusesGmsh) { expect_read_or_refused(read_gmsh, gmsh_samples()); }

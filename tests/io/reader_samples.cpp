@@ -422,10 +422,32 @@ std::vector<Sample> gmsh_samples() {
     return samples;
 }
 
+std::vector<Sample> medit_samples() {
+    const auto mesh = sample_mesh();
+    std::string text = "MeshVersionFormatted 2\n# by hand\nDimension\n3\nVertices # all\n" +
+                       std::to_string(mesh.points.size()) + "\n";
+    for (const auto& point : mesh.points) {
+        for (const double x : point) text += std::to_string(x) + " ";
+        text += "0\n";
+    }
+    text += "Corners\n2\n1\n2\nEdges\n1\n1 2 9\nTriangles\n2\n";
+    for (const auto& [a, b, c] : triangles)
+        text += std::to_string(a + 1) + " " + std::to_string(b + 1) + " " + std::to_string(c + 1) +
+                " 9\n";
+    constexpr std::array keywords = {"Prisms", "Hexahedra", "Pyramids", "Tetrahedra"};
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        text += std::string(keywords[c]) + "\n1\n";
+        for (const auto node : gmsh_nodes(mesh, c)) text += std::to_string(node + 1) + " ";
+        text += std::to_string(mesh.regions[c]) + "\n";
+    }
+    return {{"ascii.mesh", text + "End\n"}};
+}
+
 std::vector<Sample> all_samples() {
     auto samples = vtu_samples();
     for (auto& sample : legacy_vtk_samples()) samples.push_back(std::move(sample));
     for (auto& sample : gmsh_samples()) samples.push_back(std::move(sample));
+    for (auto& sample : medit_samples()) samples.push_back(std::move(sample));
     return samples;
 }
 
@@ -457,6 +479,19 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
         return text;
     }
     return text.replace(position, from.size(), to);
+}
+
+void expect_wedge_of_unit_height(const MeshData& mesh) {
+    ASSERT_EQ(mesh.num_cells(), 1u);
+    ASSERT_EQ(mesh.kinds[0], CellKind::wedge);
+    const auto corner = [&](std::size_t i) {
+        return mesh.points[static_cast<std::size_t>(mesh.cell(0)[i])];
+    };
+    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    const Vec3 up = corner(3) - corner(0);
+    EXPECT_LT(normal.dot(up), 0);
+    EXPECT_EQ(up.norm(), 1);
+    for (std::size_t i = 1; i < 3; ++i) EXPECT_EQ(corner(i + 3), corner(i) + up);
 }
 
 void expect_same_mesh(const MeshData& actual, const MeshData& expected) {

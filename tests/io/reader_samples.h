@@ -28,6 +28,8 @@ std::vector<Sample> vtu_samples();
 std::vector<Sample> legacy_vtk_samples();
 /// Versions 2.2 and 4.1, ascii and binary in both byte orders; tags with gaps, in disorder.
 std::vector<Sample> gmsh_samples();
+/// Every section that cells may be in.
+std::vector<Sample> medit_samples();
 std::vector<Sample> all_samples();
 
 /// Reads bytes as a file of this name in a temporary folder.
@@ -39,6 +41,8 @@ std::string refusal(const std::string& name, std::string_view bytes,
 /// `text` with the first `from` replaced by `to`; fails the test if there is none.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
 
+/// Expects one wedge whose first triangle faces away from the second one, at a distance of 1.
+void expect_wedge_of_unit_height(const topology::MeshData& mesh);
 /// Expects the same points, cells and regions, to the bit.
 void expect_same_mesh(const topology::MeshData& actual, const topology::MeshData& expected);
 

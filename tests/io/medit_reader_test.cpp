@@ -1,0 +1,154 @@
+// What a MEDIT file means, and what is refused in one.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/medit_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/io/reader_samples.h"
+
+namespace incise::io {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// The layout is TetGen's (option -g): the number of dimensions on a line of its own, comments.
+const std::string two_tetrahedra = R"(MeshVersionFormatted 1
+
+Dimension
+3
+
+# Set of mesh vertices
+Vertices
+5
+0  0  0    0
+1  0  0    7
+0  1  0    0
+0  0  1    0
+1  1  1    0
+
+# Set of Tetrahedra
+Tetrahedra
+2
+    1      2      3      4  10
+    2      3      4      5  -4
+
+Corners
+2
+   1
+   2
+
+End
+)";
+
+std::string refusal_with(std::string_view from, std::string_view to) {
+    return refusal("liver.mesh", replaced(two_tetrahedra, from, to));
+}
+
+TEST(MeditReader, TakesReferencesOfCellsAsRegions) {
+    const auto file = read_bytes("a.mesh", two_tetrahedra);
+    EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(10, -4));
+    EXPECT_THAT(file.warnings, ElementsAre());
+}
+
+TEST(MeditReader, TurnsPrismsIntoWedgesOfPositiveVolume) {
+    // As meshio 5.0.0 writes it. The triangle 1, 2, 3 faces 4, 5, 6; in the mesh it faces away.
+    const auto file = read_bytes("a.mesh", R"(MeshVersionFormatted 2
+Dimension 3
+
+Vertices
+6
+0.0000000000000000e+00 0.0000000000000000e+00 0.0000000000000000e+00 1
+1.0000000000000000e+00 0.0000000000000000e+00 0.0000000000000000e+00 1
+0.0000000000000000e+00 1.0000000000000000e+00 0.0000000000000000e+00 1
+0.0000000000000000e+00 0.0000000000000000e+00 1.0000000000000000e+00 1
+1.0000000000000000e+00 0.0000000000000000e+00 1.0000000000000000e+00 1
+0.0000000000000000e+00 1.0000000000000000e+00 1.0000000000000000e+00 1
+
+Prisms
+1
+1 2 3 4 5 6 3
+
+End
+)");
+    EXPECT_THAT(file.mesh.regions, ElementsAre(3));
+    expect_wedge_of_unit_height(file.mesh);
+}
+
+TEST(MeditReader, StepsOverWhatItDoesNotNeed) {
+    const std::string end = "\nEnd";
+    const auto known = replaced(two_tetrahedra, end,
+                                "\nIdentifier\n\"a liver, Vertices and all\"\n"
+                                "Geometry \"liver.geom\"\nNormals # unit\n1\n0 nan 1 # outwards\n"
+                                "EDGES 0\nAngleOfCornerBound 44.5\nRidges 0\nTetrahedraP2 0" +
+                                    end + "\nanything at all");
+    EXPECT_THAT(read_bytes("a.mesh", known).warnings, ElementsAre());
+    const auto unknown = replaced(two_tetrahedra, end, "\nSpots\n1\n3" + end);
+    EXPECT_THAT(read_bytes("a.mesh", unknown).warnings,
+                ElementsAre("section 'Spots' is not known and is left out"));
+    const auto surface = replaced(two_tetrahedra, end,
+                                  "\nTriangles\n1\n1 2 3 1\nTrianglesP2 1\n1 2 3 4 5 1 1" + end);
+    EXPECT_THAT(read_bytes("a.mesh", surface).warnings,
+                ElementsAre(HasSubstr("ignored 1 triangle and 1 second-order triangle:")));
+    EXPECT_THAT(read_bytes("a.mesh", replaced(two_tetrahedra, end, "\n")).warnings,
+                ElementsAre(HasSubstr("has no End")));
+}
+
+TEST(MeditReader, RefusesUnknownVertices) {
+    EXPECT_EQ(refusal_with("4      5", "4      927"),
+              "liver.mesh:19: tetrahedron 2: vertex 927 is out of range (5 vertices, numbered from "
+              "1)");
+    EXPECT_THAT(refusal_with("4      5", "4      0"), HasSubstr("vertex 0 is out of range"));
+    EXPECT_THAT(refusal_with("4      5", "4      -1"), HasSubstr("vertex -1 is out of range"));
+    EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2 Tetrahedra 1 1 2 3 4 0 Vertices 0 End"),
+                HasSubstr("Tetrahedra comes before Vertices"));
+    EXPECT_THAT(refusal_with("Vertices", "Normals"), HasSubstr("Tetrahedra comes before Vertices"));
+}
+
+TEST(MeditReader, RefusesCountsThatTheFileCannotHold) {
+    EXPECT_THAT(refusal_with("Vertices\n5", "Vertices\n4000000000"),
+                AllOf(StartsWith("liver.mesh:8: the number of vertices is 4000000000"),
+                      HasSubstr("more than can be in the remaining")));
+    EXPECT_THAT(refusal_with("Tetrahedra\n2", "Tetrahedra\n18446744073709551615"),
+                StartsWith("liver.mesh:17: the number of rows of Tetrahedra is 1844674407370955"));
+    EXPECT_THAT(refusal_with("Vertices\n5", "Vertices\n-5"), HasSubstr("found '-5'"));
+    EXPECT_EQ(refusal_with("Vertices\n5", "Vertices\n4"),
+              "liver.mesh:13: expected a keyword behind the rows of the section before, found '1'");
+    EXPECT_EQ(refusal_with("Tetrahedra\n2", "Tetrahedra\n3"),
+              "liver.mesh:21: expected a vertex, found 'Corners'");
+}
+
+TEST(MeditReader, RefusesWhatIsNoNumber) {
+    EXPECT_EQ(refusal_with("0  1  0    0", "0  nan  0    0"),
+              "liver.mesh:11: a y coordinate is nan; it must be finite");
+    EXPECT_THAT(refusal_with("0  1  0    0", "0  1  -inf    0"), HasSubstr("z coordinate is -inf"));
+    EXPECT_THAT(refusal_with("0  1  0    0", "0  1,5  0    0"), HasSubstr("found '1,5'"));
+    EXPECT_EQ(refusal_with("4  10", "4  1e10"),
+              "liver.mesh:18: expected a reference, a whole number of 32 bits, found '1e10'");
+    EXPECT_THAT(refusal_with("4  10", "4  3000000000"), HasSubstr("of 32 bits"));
+}
+
+TEST(MeditReader, RefusesWhatItCannotRead) {
+    EXPECT_EQ(refusal_with("Formatted 1", "Formatted 5"),
+              "liver.mesh:1: the version is 5; it must be 1 to 4: save it as version 2");
+    EXPECT_EQ(refusal_with("Dimension\n3", "Dimension\n2"),
+              "liver.mesh:4: the dimension is 2; it must be 3: a volume mesh has points in space");
+    EXPECT_THAT(refusal_with("Tetrahedra\n2", "TetrahedraP2\n1"),
+                AllOf(StartsWith("liver.mesh:17: a second-order tetrahedron (MEDIT section "
+                                 "TetrahedraP2) cannot be used"),
+                      HasSubstr("export linear elements")));
+    EXPECT_THAT(refusal_with("Tetrahedra\n2", "Corners\n10"), HasSubstr("holds no cells at all"));
+    EXPECT_THAT(refusal_with("\nEnd", "\nVertices 0\nEnd"), HasSubstr("second section Vertices"));
+    EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2\nEnd\n"),
+                HasSubstr("has no section Vertices"));
+}
+
+}  // namespace
+}  // namespace incise::io
