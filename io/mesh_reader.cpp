@@ -10,6 +10,7 @@
 #include "io/legacy_vtk_reader.h"
 #include "io/medit_reader.h"
 #include "io/scanner.h"
+#include "io/tetgen_reader.h"
 #include "io/vtu_reader.h"
 #include "topology/error.h"
 
@@ -30,6 +31,8 @@ constexpr Format formats[] = {
     {"legacy VTK", ".vtk", "# vtk datafile", read_legacy_vtk},
     {"Gmsh", ".msh", "$", read_gmsh},
     {"MEDIT", ".mesh", "meshversionformatted", read_medit},
+    {"TetGen", ".node", "", read_tetgen},
+    {"TetGen", ".ele", "", read_tetgen},
 };
 // clang-format on
 
