@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/abaqus_reader.h"
 #include "io/gmsh_reader.h"
 #include "io/input_file.h"
 #include "io/legacy_vtk_reader.h"
@@ -33,6 +34,7 @@ constexpr Format formats[] = {
     {"MEDIT", ".mesh", "meshversionformatted", read_medit},
     {"TetGen", ".node", "", read_tetgen},
     {"TetGen", ".ele", "", read_tetgen},
+    {"Abaqus", ".inp", "*", read_abaqus},
 };
 // clang-format on
 

@@ -17,7 +17,7 @@ struct ReadOptions {
 
     /// VTU and legacy VTK: the cell array of whole numbers that becomes MeshData::regions.
     /// Where a file has no array of the usual name, all regions are 0; one of another name must be
-    /// there. Gmsh: without meaning, regions are the physical groups.
+    /// there. Other formats have regions of their own, and this is without meaning.
     std::string region_array{usual_region_array};
 
     /// VTU and legacy VTK: cell arrays of three components that are read too. Each must be there.
@@ -33,17 +33,20 @@ struct MeshFile {
     std::map<std::string, std::vector<Vec3>> cell_vectors = {};
 };
 
-/// Reads the tetrahedra, hexahedra, wedges and pyramids of a file, in the file's order.
+/// Reads the tetrahedra, hexahedra, wedges and pyramids of a file, in the file's order (of
+/// Abaqus: of their numbers).
 /// The format is told by the content first, by the suffix second. Formats: VTU (all encodings),
-/// legacy VTK unstructured grids, Gmsh 2 and 4.1.
+/// legacy VTK unstructured grids, Gmsh 2 and 4.1, MEDIT (text), TetGen (either file of the pair
+/// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h).
 ///
 /// Vertices, lines and surface cells are left out with a warning. A point array `rest_position`
-/// of a VTK file takes the place of its points. Regions are the cell array of the options, or
-/// Gmsh's physical groups.
+/// of a VTK file takes the place of its points. Regions are the cell array of the options, Gmsh's
+/// physical groups, MEDIT's references, TetGen's first attribute, sets of elements in Abaqus.
 ///
 /// The contents are trusted in nothing: every count, offset and index is checked before it is
 /// used, and memory stays proportional to the size of the file (compressed files: to what
-/// their blocks unpack to). Left to Mesh::build: finite coordinates, the shape of the cells.
+/// their blocks unpack to). Coordinates of cells are finite. Left to Mesh::build: the shape of the
+/// cells.
 /// Throws InputError that names the file, the line, byte or cell, what was found and what to do.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -134,7 +134,7 @@ MeshData grouped_by_kind(const MeshData& mesh) {
 
 TEST(MeshWriter, OurReaderGivesBackTheSameMesh) {
     const TemporaryFolder folder;
-    for (const std::string suffix : {".vtu", ".vtk", ".msh", ".mesh"}) {
+    for (const std::string suffix : {".vtu", ".vtk", ".msh", ".mesh", ".inp"}) {
         SCOPED_TRACE(suffix);
         const auto mesh = suffix == ".mesh" ? grouped_by_kind(make_mesh()) : make_mesh();
         const auto path = folder / ("mesh" + suffix);

@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "io/abaqus_reader.h"
 #include "io/gmsh_reader.h"
 #include "io/legacy_vtk_reader.h"
 #include "io/medit_reader.h"
@@ -85,6 +86,10 @@ TEST(MutatedFileReader, ReadsOrRefusesVtu) {
 
 TEST(MutatedFileReader, ReadsOrRefusesLegacyVtk) {
     expect_read_or_refused(read_legacy_vtk, legacy_vtk_samples());
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesAbaqus) {
+    expect_read_or_refused(read_abaqus, abaqus_samples());
 }
 
 TEST(MutatedFileReader, ReadsOrRefusesMedit) {

@@ -443,11 +443,39 @@ std::vector<Sample> medit_samples() {
     return {{"ascii.mesh", text + "End\n"}};
 }
 
+std::vector<Sample> abaqus_samples() {
+    const auto mesh = sample_mesh();
+    std::string text = "*HEADING\nmade by hand\n** nodes\n*NODE, NSET=all\n";
+    const auto add_row = [&](std::size_t number, const auto& numbers) {
+        text += std::to_string(number);
+        for (const auto value : numbers) text += ", " + std::to_string(value);
+        text += "\n";
+    };
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        add_row(static_cast<std::size_t>(tag_of(static_cast<std::int64_t>(i))), mesh.points[i]);
+    const auto tags = [](auto nodes) {
+        for (auto& node : nodes) node = tag_of(node);
+        return nodes;
+    };
+    text += "*ELEMENT, TYPE=T3D2\n";
+    add_row(90, tags(std::array<std::int64_t, 2>{0, 1}));
+    text += "*ELEMENT, TYPE=S3\n";
+    for (const auto& triangle : triangles) add_row(91, tags(triangle));
+    constexpr std::array types = {"C3D6", "C3D8R", "C3D5", "C3D4"};
+    for (std::size_t c = mesh.num_cells(); c-- > 0;) {
+        text += std::string("*ELEMENT, TYPE=") + types[c] + ", ELSET=REGION_" +
+                std::to_string(mesh.regions[c]) + "\n";
+        add_row(5 * c + 1, tags(gmsh_nodes(mesh, c)));
+    }
+    return {{"ascii.inp", text + "*STEP\n*STATIC\n0.1, 1.\n*END STEP\n"}};
+}
+
 std::vector<Sample> all_samples() {
     auto samples = vtu_samples();
     for (auto& sample : legacy_vtk_samples()) samples.push_back(std::move(sample));
     for (auto& sample : gmsh_samples()) samples.push_back(std::move(sample));
     for (auto& sample : medit_samples()) samples.push_back(std::move(sample));
+    for (auto& sample : abaqus_samples()) samples.push_back(std::move(sample));
     return samples;
 }
 

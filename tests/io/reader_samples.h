@@ -30,6 +30,8 @@ std::vector<Sample> legacy_vtk_samples();
 std::vector<Sample> gmsh_samples();
 /// Every section that cells may be in.
 std::vector<Sample> medit_samples();
+/// Numbers of nodes and elements with gaps, in disorder; regions as sets.
+std::vector<Sample> abaqus_samples();
 std::vector<Sample> all_samples();
 
 /// Reads bytes as a file of this name in a temporary folder.

@@ -1,0 +1,271 @@
+// What an Abaqus or CalculiX file means, and what is refused in one.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/abaqus_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/io/reader_samples.h"
+
+namespace incise::io {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string nodes = R"(*Heading
+ two tetrahedra, *NODE and all
+** nodes
+*Node, nset=Nall
+ 30, 0., 0., 0.
+ 10, 1., 0., 0.
+ 20, 0., 1., 0.
+ 50, 0., 0., 1.
+ 40, 1., 1., 1.
+)";
+const std::string two_tetrahedra = nodes + R"(*Element, type=C3D4, elset=Eall
+7, 30, 10, 20, 50
+3, 10, 20, 50, 40
+)";
+/// 99 elements, numbered from 1.
+std::string many_tetrahedra() {
+    auto text = nodes + "*ELEMENT, TYPE=C3D4\n";
+    for (int i = 1; i < 100; ++i) text += std::to_string(i) + ",30,10,20,50\n";
+    return text;
+}
+
+std::string refusal_with(std::string_view from, std::string_view to) {
+    return refusal("liver.inp", replaced(two_tetrahedra, from, to));
+}
+std::string refusal_behind(std::string_view more) {
+    return refusal("liver.inp", two_tetrahedra + std::string(more));
+}
+std::vector<int> regions_behind(std::string_view more) {
+    return read_bytes("a.inp", two_tetrahedra + std::string(more)).mesh.regions;
+}
+
+TEST(AbaqusReader, OrdersElementsByNumberAndNodesByTheFile) {
+    const auto file = read_bytes("a.inp", two_tetrahedra);
+    EXPECT_EQ(file.mesh.points[0], Vec3(0, 0, 0));
+    EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
+    EXPECT_THAT(file.mesh.corners, ElementsAre(1, 2, 3, 4, 0, 1, 2, 3));
+}
+
+TEST(AbaqusReader, ReadsRowsAndKeywordsAsTheManualAllowsThem) {
+    const auto file = read_bytes("a.inp",
+                                 "** no heading\n*ELEMENT,\n Elset = REGION_2 ,\n type=c3d8r\n"
+                                 "1, 1,2,3,4,\n** a comment within\n5,6,7, 8\n"
+                                 "* node, SYSTEM=R\n"
+                                 "1,,,\n2,1.D0,,,\n3,+1,1.,0.\n4,0,10.e-1,0.,1.,0.,0.\n"
+                                 "5,,,1\n6,1,,1\n7,1,1,1\n8,,1,1d0\n");
+    EXPECT_EQ(file.mesh.points[1], Vec3(1, 0, 0));
+    EXPECT_EQ(file.mesh.points[7], Vec3(0, 1, 1));
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(2));
+    EXPECT_THAT(file.warnings, ElementsAre());
+}
+
+TEST(AbaqusReader, TurnsWedgesToFaceAway) {
+    const auto file = read_bytes("a.inp",
+                                 "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n6,0,1,1\n"
+                                 "*ELEMENT,TYPE=C3D6\n1,1,2,3,4,5,6\n");
+    expect_wedge_of_unit_height(file.mesh);
+}
+
+TEST(AbaqusReader, ReadsWhatMeshioWrites) {
+    const auto file = read_bytes("a.inp", R"(*HEADING
+Abaqus DataFile Version 6.14
+written by meshio v5.0.0
+*NODE
+1, 0.0000000000000000e+00, 0.0000000000000000e+00, 0.0000000000000000e+00
+2, 1.0000000000000000e+00, 0.0000000000000000e+00, 0.0000000000000000e+00
+3, 0.0000000000000000e+00, 1.0000000000000000e+00, 0.0000000000000000e+00
+4, 0.0000000000000000e+00, 0.0000000000000000e+00, 1.0000000000000000e+00
+5, 1.0000000000000000e+00, 1.0000000000000000e+00, 1.0000000000000000e+00
+*ELEMENT, TYPE=STRI3
+1,1,2,3
+*ELEMENT, TYPE=C3D4
+2,1,2,3,4
+3,2,3,4,5
+*ELSET, ELSET=skin
+1
+*ELSET, ELSET=liver
+3
+*NSET, NSET=clamp
+1,2
+)");
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(0, 1));
+    EXPECT_THAT(file.warnings,
+                ElementsAre("element sets are taken as regions: region 1 is 'LIVER'; region 0 is "
+                            "in none of them",
+                            HasSubstr("ignored 1 triangle:")));
+}
+
+TEST(AbaqusReader, TakesSetsWithASectionAsRegionsFirst) {
+    const std::string lists = "*ELSET, ELSET=Left\n3\n*ELSET, ELSET=Right\n7,\n";
+    EXPECT_THAT(regions_behind(lists), ElementsAre(1, 1));  // Eall, given with the elements
+    const std::string section = "*Solid Section, elset=RIGHT, material=Soft\n1.,\n";
+    EXPECT_THAT(regions_behind(lists + section), ElementsAre(0, 1));
+    EXPECT_THAT(regions_behind(lists + section + "*SOLID SECTION, ELSET=left\n"),
+                ElementsAre(1, 2));
+    const auto bare = replaced(two_tetrahedra, ", elset=Eall", "");
+    EXPECT_THAT(read_bytes("a.inp", bare + lists).mesh.regions, ElementsAre(1, 2));
+    EXPECT_THAT(read_bytes("a.inp", bare).mesh.regions, ElementsAre(0, 0));
+    EXPECT_THAT(read_bytes("a.inp", bare + "*ELSET, ELSET=_Picked, INTERNAL\n3\n").mesh.regions,
+                ElementsAre(0, 0));
+}
+
+TEST(AbaqusReader, NumbersSetsRoundTheNamesThatHaveNumbers) {
+    const auto file = read_bytes("a.inp", replaced(two_tetrahedra, "Eall", "Region_1") +
+                                              "*ELEMENT, TYPE=C3D4, ELSET=Tumour\n"
+                                              "8, 30, 10, 20, 50\n"
+                                              "*ELEMENT, TYPE=C3D4, ELSET=REGION_-5\n"
+                                              "9, 30, 10, 20, 50\n");
+    EXPECT_THAT(file.mesh.regions, ElementsAre(1, 1, 2, -5));
+    EXPECT_THAT(file.warnings,
+                ElementsAre("element sets are taken as regions: region 2 is 'TUMOUR'"));
+}
+
+TEST(AbaqusReader, FillsSetsFromListsRangesAndSets) {
+    const auto file =
+        read_bytes("a.inp", many_tetrahedra() +
+                                "*ELSET, ELSET=Inner\n1, 2, 3,\n4\n"
+                                "*ELSET, ELSET=REGION_8, GENERATE\n10, 99, 10\n55, 56\n"
+                                "*ELSET, ELSET=REGION_9\nOuter, 60, Inner\n"
+                                "*ELSET, ELSET=Outer, GENERATE\n90, 1000000000000000000\n"
+                                "*SOLID SECTION, ELSET=REGION_8\n"
+                                "*SOLID SECTION, ELSET=REGION_9\n");
+    std::vector<int> expected(99, 0);
+    for (const std::size_t e : {10, 20, 30, 40, 50, 55, 56, 60, 70, 80, 90}) expected[e - 1] = 8;
+    for (const std::size_t e : {1, 2, 3, 4, 91, 92, 93, 94, 95, 96, 97, 98, 99})
+        expected[e - 1] = 9;
+    EXPECT_EQ(file.mesh.regions, expected);
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("some elements are in several sets")));
+}
+
+TEST(AbaqusReader, ReadsSetsThatHoldOneAnother) {
+    // Sets of sets could make work and memory grow without bound; each is gone through once.
+    std::string text = many_tetrahedra() + "*ELSET, ELSET=S0\n1, S40\n";
+    for (int i = 1; i <= 40; ++i) {
+        const auto before = std::string("S") + std::to_string(i - 1);
+        text += "*ELSET, ELSET=S" + std::to_string(i) + "\n" + before + "," + before + "," +
+                before + "\n";
+    }
+    const auto file = read_bytes("a.inp", text + "*SOLID SECTION, ELSET=S40\n");
+    EXPECT_EQ(file.mesh.regions[0], 1);
+    EXPECT_EQ(file.mesh.regions[1], 0);
+}
+
+TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
+    const auto part = std::string("*Part, name=Liver\n") + two_tetrahedra + "*End Part\n";
+    const std::string assembly =
+        "*Assembly, name=Assembly\n*Instance, name=Liver-1, part=Liver\n0., 0., 0.\n"
+        "*End Instance\n*Node\n 1, 5., 5., 5.\n*Elset, elset=Tip, instance=Liver-1\n 3,\n"
+        "*Element, type=MASS\n1, 1\n*End Assembly\n*Material, name=Soft\n*Elastic\n1000., 0.4\n";
+    const auto file = read_bytes("a.inp", part + assembly);
+    EXPECT_EQ(file.mesh.points.size(), 5u);
+    EXPECT_THAT(file.mesh.regions, ElementsAre(1, 1));
+
+    // Programs may write the mesh with the instance.
+    const auto own = std::string("*Part, name=Liver\n*End Part\n") +
+                     replaced(assembly, "0., 0., 0.\n", "** here\n" + two_tetrahedra);
+    expect_same_mesh(read_bytes("a.inp", own).mesh, file.mesh);
+
+    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "0., 0., 0.", "0., 0., 2.")),
+                HasSubstr("*INSTANCE moves the part"));
+    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "0., 0., 0.", "0., zero")),
+                HasSubstr("expected a translation or rotation, found 'zero'"));
+    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "*End Assembly",
+                                                 "*Instance, name=Liver-2, part=Liver")),
+                HasSubstr("second *INSTANCE"));
+    EXPECT_THAT(refusal("a.inp", part + replaced(part, "Liver", "Stone") + assembly),
+                AllOf(StartsWith("a.inp:19: "), HasSubstr("of a second part")));
+}
+
+TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
+    const auto file =
+        read_bytes("a.inp", two_tetrahedra +
+                                "*ELEMENT, TYPE=S3R, ELSET=Skin\n11, 30, 10, 20\n"
+                                "*ELEMENT, TYPE=STRI65\n12, 30, 10, 20,\n 50, 40, 30\n"
+                                "*ELEMENT, TYPE=SPRINGA\n13, 30, 10\n14, 10, 20\n");
+    EXPECT_EQ(file.mesh.num_cells(), 2u);
+    EXPECT_THAT(file.warnings,
+                ElementsAre(HasSubstr("region 1 is 'EALL'"),
+                            HasSubstr("ignored 1 triangle, 1 second-order triangle and 2 "
+                                      "springs:")));
+}
+
+TEST(AbaqusReader, RefusesSolidsThatAreNotLinearOrNotKnown) {
+    EXPECT_THAT(refusal_with("C3D4", "C3D10M"),
+                AllOf(StartsWith("liver.inp:11: element 7: a second-order tetrahedron (TYPE "
+                                 "C3D10M) cannot be used"),
+                      HasSubstr("export linear elements")));
+    EXPECT_THAT(refusal_with("C3D4", "C3D20R"), HasSubstr("second-order hexahedron"));
+    for (const auto* type : {"C3D7", "C3D", "SC8R", "U1", "COH3D8"})
+        EXPECT_THAT(refusal_with("C3D4", type),
+                    StartsWith(std::string("liver.inp:10: TYPE='") + type + "': is not known"));
+    EXPECT_EQ(refusal_with("type=C3D4, ", ""), "liver.inp:10: *ELEMENT has no TYPE");
+    EXPECT_THAT(refusal("liver.inp", nodes), HasSubstr("liver.inp: holds no cells at all"));
+}
+
+TEST(AbaqusReader, RefusesUnknownNodesAndNumbersGivenTwice) {
+    EXPECT_EQ(refusal_with("50, 40", "50, 927"),
+              "liver.inp:12: element 3: node 927 is not one of the 5 nodes");
+    EXPECT_EQ(refusal_with("50, 40", "50, 0"),
+              "liver.inp:12: expected a node, from 1 on, found '0'");
+    EXPECT_EQ(refusal_with(" 40, 1.", " 10, 1."), "liver.inp: number 10 is given to two nodes");
+    EXPECT_EQ(refusal_with("3, 10", "7, 10"), "liver.inp:12: number 7 is given to two elements");
+}
+
+TEST(AbaqusReader, RefusesRowsOfTheWrongLength) {
+    EXPECT_EQ(refusal_with("50, 40", "50"),
+              "liver.inp:12: element 3: has 3 of the 4 nodes of a tetrahedron; the file is cut "
+              "short or damaged");
+    EXPECT_EQ(refusal_with("20, 50\n", "20\n"),
+              "liver.inp:12: element 7: has 8 nodes; a tetrahedron has 4");
+    EXPECT_EQ(refusal_with("1., 1., 1.", "1., 1."),
+              "liver.inp:9: a node has 3 fields; it must have a number and three coordinates");
+}
+
+TEST(AbaqusReader, RefusesWhatIsNoNumber) {
+    EXPECT_EQ(refusal_with("40, 1.", "40, nan"),
+              "liver.inp:9: coordinate x is nan; it must be finite");
+    EXPECT_THAT(refusal_with("40, 1.", "40, 1.D999"), HasSubstr("found '1.D999'"));
+    EXPECT_EQ(refusal_with("40, 1.", "40, one"), "liver.inp:9: expected coordinate x, found 'one'");
+    EXPECT_THAT(refusal_with(" 40, 1.", " 4e1, 1."), HasSubstr("the number of a node"));
+    EXPECT_THAT(refusal_with("50, 40", "50, 99999999999999999999"), HasSubstr("expected a node"));
+}
+
+TEST(AbaqusReader, RefusesSetsThatAreNone) {
+    EXPECT_EQ(refusal_behind("*ELSET\n1\n"), "liver.inp:13: *ELSET has no name, ELSET=...");
+    EXPECT_EQ(refusal_behind("*ELSET, ELSET=A\n3, B\n*NODE\n"),
+              "liver.inp:14: element set 'B' is not defined");
+    EXPECT_EQ(refusal_behind("*SOLID SECTION, ELSET=B\n"),
+              "liver.inp:13: element set 'B' is not defined");
+    EXPECT_EQ(refusal_behind("*SOLID SECTION\n"), "liver.inp:13: *SOLID SECTION has no ELSET");
+    const std::string generate = "*ELSET, ELSET=A, GENERATE\n";
+    EXPECT_THAT(refusal_behind(generate + "5, 3\n"), HasSubstr("elements 5 to 3 by steps of 1"));
+    EXPECT_THAT(refusal_behind(generate + "1, 3, 0\n"), HasSubstr("found '0'"));
+    EXPECT_THAT(refusal_behind(generate + "1\n"), HasSubstr("needs a first and a last element"));
+    EXPECT_THAT(refusal_behind("*ELSET, ELSET=A\n-3\n"), HasSubstr("elements -3 to -3"));
+}
+
+TEST(AbaqusReader, RefusesWhatItDoesNotFollow) {
+    EXPECT_THAT(refusal_behind("*INCLUDE, INPUT=more.inp\n"),
+                StartsWith("liver.inp:13: *INCLUDE: other files are not read; put the lines"));
+    for (const auto* keyword :
+         {"*NGEN", "*nfill", "*NCOPY", "*NMAP", "*SYSTEM", "*El Gen", "*ELCOPY",
+          "*NODE, INPUT=nodes.txt", "*ELEMENT, TYPE=C3D4, INPUT=elements.txt", "*NODE, SYSTEM=C"})
+        EXPECT_THAT(refusal_behind(std::string(keyword) + "\n1, 2\n"),
+                    AllOf(StartsWith("liver.inp:13: "),
+                          testing::AnyOf(HasSubstr("export"), HasSubstr("put the lines"))))
+            << keyword;
+}
+
+}  // namespace
+}  // namespace incise::io
