@@ -22,6 +22,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 
 #include "io/atomic_file.h"
 
@@ -168,6 +169,21 @@ void set_compression(vtkXMLWriter& writer, Compression compression) {
     writer.SetCompressionLevel(fastest);
 }
 
+/// The text without VTK's notes on arrays (ranges of norms): nobody needs them, and VTK writes them
+/// as the process's locale would have it.
+std::string without_notes(std::string_view text) {
+    constexpr std::string_view end_mark = "</InformationKey>";
+    std::string result;
+    result.reserve(text.size());
+    while (true) {
+        const auto begin = text.find("<InformationKey");
+        result += text.substr(0, begin);
+        if (begin == text.npos) return result;
+        result.erase(result.find_last_not_of(" \n") + 1);
+        text.remove_prefix(text.find(end_mark, begin) + end_mark.size());
+    }
+}
+
 }  // namespace
 
 std::string vtu_text(const Frame& frame, Compression compression) {
@@ -181,7 +197,7 @@ std::string vtu_text(const Frame& frame, Compression compression) {
     if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError)
         throw std::runtime_error(std::string("VTK cannot make a .vtu file: ") +
                                  vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
-    return writer->GetOutputString();
+    return without_notes(writer->GetOutputString());
 }
 
 void write_vtu(const std::filesystem::path& path, const Frame& frame, Compression compression) {

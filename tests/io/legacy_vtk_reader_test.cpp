@@ -118,6 +118,11 @@ TEST(LegacyVtkReader, RefusesIndexOutOfRange) {
               "liver.vtk: cell 0: node index -2 is out of range (5 points)");
 }
 
+TEST(LegacyVtkReader, RefusesCoordinatesOfCellsThatAreNotFinite) {
+    EXPECT_EQ(refusal_with("0 0 1  1 1 1", "0 0 1  1 1 inf"),
+              "liver.vtk: cell 1: its node 4 has a coordinate that is not finite");
+}
+
 TEST(LegacyVtkReader, RefusesCountsThatTheFileCannotHold) {
     EXPECT_THAT(refusal_with("POINTS 5", "POINTS 4000000000"),
                 AllOf(StartsWith("liver.vtk:5: "), HasSubstr("4000000000"),

@@ -166,6 +166,13 @@ TEST(VtuReader, RefusesIndexOutOfRange) {
               "liver.vtu: cell 1: node index -1 is out of range (5 points)");
 }
 
+TEST(VtuReader, RefusesCoordinatesOfCellsThatAreNotFinite) {
+    EXPECT_EQ(refusal_with("0 0 0 1", "0 nan 0 1"),
+              "liver.vtu: cell 0: its node 0 has a coordinate that is not finite");
+    EXPECT_THAT(refusal_with("0 0 1 1 1 1\n", "0 0 1 1 -inf 1\n"),
+                HasSubstr("cell 1: its node 4 has"));
+}
+
 TEST(VtuReader, RefusesOffsetsThatDescendOrDoNotFit) {
     EXPECT_THAT(refusal_with(">4 8<", ">8 4<"),
                 StartsWith("liver.vtu: cell 1: ends at offset 4, before it begins at 8"));
