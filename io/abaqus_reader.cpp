@@ -161,11 +161,11 @@ class AbaqusReader {
             lines_.fail(
                 "TYPE=" + in_quotes(type_) +
                 ": is not known here; export solid elements alone (C3D4, C3D5, C3D6, C3D8)");
+        const bool is_ignored = form_->use == CellForm::Use::ignore;
         element_set_.reset();
         if (const auto name = keyword_.parameter("ELSET"))
-            element_set_ = sets_.define(*name, Role::of_elements);
-        read_row_ = form_->use == CellForm::Use::ignore ? &AbaqusReader::ignore_element
-                                                        : &AbaqusReader::read_element;
+            element_set_ = sets_.define(*name, is_ignored ? Role::internal : Role::of_elements);
+        read_row_ = is_ignored ? &AbaqusReader::ignore_element : &AbaqusReader::read_element;
     }
 
     void ignore_element() {

@@ -152,7 +152,15 @@ TEST_F(Command, ConvertsThereAndBack) {
     const auto there = run("convert two.msh two.vtu");
     EXPECT_EQ(there.status, 0);
     EXPECT_EQ(there.out, "two.vtu: 5 points, 2 cells\n");
-    EXPECT_EQ(run("info two.vtu --json").out, run("info two.msh --json").out);
+    const auto info = run("info two.msh --json").out;
+    EXPECT_EQ(run("info two.vtu --json").out, info);
+    for (const std::string name : {"two.mesh", "two.inp", "two.vtk"}) {
+        EXPECT_EQ(run("convert two.vtu " + name).status, 0) << name;
+        EXPECT_EQ(run("info " + name + " --json").out, info) << name;
+    }
+    write("two.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n");
+    write("two.ele", "2 4 1\n1 1 2 3 4 3\n2 2 3 4 5 5\n");
+    EXPECT_EQ(run("info two.ele --json").out, info);
 }
 
 TEST_F(Command, TellsInputFromOutputFailures) {

@@ -115,6 +115,8 @@ TEST(AbaqusReader, TakesSetsWithASectionAsRegionsFirst) {
                 ElementsAre(1, 2));
     const auto bare = replaced(two_tetrahedra, ", elset=Eall", "");
     EXPECT_THAT(read_bytes("a.inp", bare + lists).mesh.regions, ElementsAre(1, 2));
+    const std::string skin = "*ELEMENT, TYPE=S3, ELSET=Skin\n90, 30, 10, 20\n";
+    EXPECT_THAT(read_bytes("a.inp", bare + skin + lists).mesh.regions, ElementsAre(1, 2));
     EXPECT_THAT(read_bytes("a.inp", bare).mesh.regions, ElementsAre(0, 0));
     EXPECT_THAT(read_bytes("a.inp", bare + "*ELSET, ELSET=_Picked, INTERNAL\n3\n").mesh.regions,
                 ElementsAre(0, 0));
