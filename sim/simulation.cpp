@@ -85,8 +85,9 @@ bool Simulation::is_finished() const { return time_ >= scenario_.dynamics.end_ti
 
 void Simulation::step() {
     const auto [from, to] = next_step();
-    const bool any_tool = std::any_of(tools_.begin(), tools_.end(),
-                                      [&](const Tool& tool) { return tool.is_present(from, to); });
+    const bool any_tool =
+        std::any_of(tools_.begin(), tools_.end(),
+                    [from = from, to = to](const Tool& tool) { return tool.is_present(from, to); });
     if (any_tool) previous_positions_.assign(model_.positions().begin(), model_.positions().end());
 
     integrator_->step(model_, from, to - from);
