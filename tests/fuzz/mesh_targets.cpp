@@ -1,0 +1,55 @@
+// The readers of volume meshes, and the building of the mesh from what they read.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <string>
+
+#include "io/abaqus_reader.h"
+#include "io/gmsh_reader.h"
+#include "io/legacy_vtk_reader.h"
+#include "io/medit_reader.h"
+#include "io/tetgen_reader.h"
+#include "io/vtu_reader.h"
+#include "tests/fuzz/findings.h"
+#include "tests/fuzz/targets.h"
+#include "tests/support/mesh_consistency.h"
+#include "topology/mesh.h"
+
+namespace incise::fuzz {
+
+namespace {
+
+/// What each verb does next with what was read.
+void build(const topology::MeshData& mesh) {
+    require_none(support::inconsistency_of(mesh));
+    try {
+        topology::Mesh::build(mesh);
+    } catch (const InputError&) {
+        // Parts that fit one another may still make no mesh.
+    }
+}
+
+using Reader = io::MeshFile (*)(const io::InputFile&, const io::ReadOptions&);
+
+void read_mesh(Reader reader, const char* name, std::string_view bytes) {
+    const io::InputFile file{name, std::string(bytes)};
+    read_or_refuse(name, [&] { build(reader(file, {}).mesh); });
+}
+
+}  // namespace
+
+void vtu(std::string_view bytes) { read_mesh(io::read_vtu, "fuzz.vtu", bytes); }
+void legacy_vtk(std::string_view bytes) { read_mesh(io::read_legacy_vtk, "fuzz.vtk", bytes); }
+void gmsh(std::string_view bytes) { read_mesh(io::read_gmsh, "fuzz.msh", bytes); }
+void medit(std::string_view bytes) { read_mesh(io::read_medit, "fuzz.mesh", bytes); }
+void abaqus(std::string_view bytes) { read_mesh(io::read_abaqus, "fuzz.inp", bytes); }
+
+void tetgen(std::string_view bytes) {
+    constexpr std::string_view divider = "----\n";
+    const auto end = std::min(bytes.find(divider), bytes.size());
+    const auto rest = bytes.substr(std::min(end + divider.size(), bytes.size()));
+    const io::InputFile nodes{"fuzz.node", std::string(bytes.substr(0, end))};
+    const io::InputFile elements{"fuzz.ele", std::string(rest)};
+    read_or_refuse("fuzz.", [&] { build(io::read_tetgen_pair(nodes, elements).mesh); });
+}
+
+}  // namespace incise::fuzz
