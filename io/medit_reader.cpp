@@ -92,6 +92,9 @@ class MeditReader {
             has_end = lower == "end";
             if (!has_end) read_section(keyword, lower);
         }
+        if (num_unknown_ > 0)
+            result_.warnings.push_back("left out sections that are not known: " + unknown_ +
+                                       (num_unknown_ > most_listed ? ", ..." : ""));
         if (!has_end) result_.warnings.emplace_back("has no End: the last sections may be missing");
         if (!has_vertices_) throw InputError(file_.name() + ": has no section Vertices");
         collector_.finish(result_.mesh, result_.warnings);
@@ -182,14 +185,15 @@ class MeditReader {
 
     /// Up to the next word that is no number.
     void skip_section(std::string_view keyword, const std::string& lower) {
-        if (std::ranges::find(skipped_sections, lower) == std::end(skipped_sections))
-            result_.warnings.push_back("section " + in_quotes(keyword) +
-                                       " is not known and is left out");
+        if (std::ranges::find(skipped_sections, lower) == std::end(skipped_sections) &&
+            num_unknown_++ < most_listed)
+            unknown_ += (unknown_.empty() ? "" : ", ") + in_quotes(keyword);
         while (scanner_.skip_number()) {
         }
     }
 
     static constexpr std::size_t bytes_of_number = 2;  // at least a digit and a blank
+    static constexpr std::size_t most_listed = 5;
 
     const InputFile& file_;
     Scanner scanner_;
@@ -197,6 +201,8 @@ class MeditReader {
     std::array<std::int64_t, topology::max_corners> nodes_{};  ///< of the cell at hand
     MeshFile result_;
     bool has_vertices_ = false;
+    std::size_t num_unknown_ = 0;  ///< sections
+    std::string unknown_;          ///< the first of them, as a list
 };
 
 }  // namespace

@@ -92,7 +92,10 @@ TEST(MeditReader, StepsOverWhatItDoesNotNeed) {
     EXPECT_THAT(read_bytes("a.mesh", known).warnings, ElementsAre());
     const auto unknown = replaced(two_tetrahedra, end, "\nSpots\n1\n3" + end);
     EXPECT_THAT(read_bytes("a.mesh", unknown).warnings,
-                ElementsAre("section 'Spots' is not known and is left out"));
+                ElementsAre("left out sections that are not known: 'Spots'"));
+    const auto garbage = replaced(two_tetrahedra, end, "\na b c d e f g" + end);
+    EXPECT_THAT(read_bytes("a.mesh", garbage).warnings,
+                ElementsAre("left out sections that are not known: 'a', 'b', 'c', 'd', 'e', ..."));
     const auto surface = replaced(two_tetrahedra, end,
                                   "\nTriangles\n1\n1 2 3 1\nTrianglesP2 1\n1 2 3 4 5 1 1" + end);
     EXPECT_THAT(read_bytes("a.mesh", surface).warnings,
