@@ -23,9 +23,8 @@ namespace {
 #pragma GCC unroll 4
         for (const auto& [i, j] : HybmssKernel::springs[g]) {
             const Lanes3 v = x[j] - x[i];
-            const Lanes length = sqrt(dot(v, v));
-            // A spring without length has no direction to push in.
-            const Lanes pull = where_positive(length, k * (length - rest) / length, 0.0);
+            // Finite, so that a spring without length, v = 0, does not push.
+            const Lanes pull = k * (1.0 - rest * reciprocal_sqrt(dot(v, v)));
             f[i] = f[i] + pull * v;
             f[j] = f[j] - pull * v;
         }

@@ -53,11 +53,15 @@ struct Lanes {
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
     friend Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }
 
-    /// `a` in the lanes where x is above zero, else `b`.
-    friend Lanes where_positive(Lanes x, Lanes a, Lanes b) { return x.v > 0.0 ? a.v : b.v; }
-
-    friend Lanes sqrt(Lanes a) {
-        return a.each([](double x) { return std::sqrt(x); });
+    /// 1/sqrt(a) of normal numbers above zero within 4e-16 of it; something finite for zero. By
+    /// Newton's method from a guess by halving the exponent: several times faster than to divide
+    /// by a root, and the same everywhere.
+    friend Lanes reciprocal_sqrt(Lanes a) {
+        const Bits guess = 0x5fe6eb50c7b537a9 - (std::bit_cast<Bits>(a.v) >> 1);
+        Lanes r = std::bit_cast<Vector>(guess);
+        const Lanes half = 0.5 * a;
+        for (int i = 0; i < 4; ++i) r *= 1.5 - half * r * r;
+        return r;
     }
     friend Lanes expm1(Lanes a) {
         return a.each([](double x) { return std::expm1(x); });
