@@ -60,10 +60,13 @@ class CutFront {
     /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
     void forget(const std::vector<topology::NodeId>& nodes);
 
+    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.crossed_); }
+
   private:
     struct Node {
         bool is_exact = false;
         double reach = 0.0;
+        static void archive(auto& ar, auto& self) { ar(self.is_exact, self.reach); }
     };
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.

@@ -35,6 +35,10 @@ class ElementBoxes {
     template <class MayMeet, class Visit>
     void for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const;
 
+    static void archive(auto& ar, auto& self) {
+        ar(self.groups_, self.supergroups_, self.margin_, self.largest_margin_);
+    }
+
   private:
     static constexpr std::size_t group_size = 64;
 

@@ -17,6 +17,7 @@ struct Scar {
     Vec3 normal;      ///< of the cut, of unit length
     Vec3 to_surface;  ///< from the node to where the cut passed through an edge, m
     bool is_exact;    ///< the node was made there
+    static void archive(auto& ar, auto& self) { ar(self.normal, self.to_surface, self.is_exact); }
 };
 
 /// Nodes that counted as lying on a cut, and where it really was. A cut that passes by at the same
@@ -38,6 +39,8 @@ class Scars {
 
     /// Copies of a node, and parts of an element, are what it is.
     void follow(const topology::ChangeSet& changes);
+
+    static void archive(auto& ar, auto& self) { ar(self.scars_, self.crumbs_); }
 
     /// In units of the size of elements: nearer than this is the same place.
     static constexpr double rounding = 1e-6;

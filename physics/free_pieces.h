@@ -24,6 +24,9 @@ struct FreePiece {
     /// As few components as take these ways from it (statically determinate): held there, it
     /// stays where it is, and the reactions are zero as long as its loads are in equilibrium.
     std::vector<std::pair<topology::NodeId, int>> pins;
+
+    /// What holds it; the rest serves messages about a piece just found.
+    static void archive(auto& ar, auto& self) { ar(self.nodes, self.pins); }
 };
 
 /// Of the present positions (m, by node id). Cost: O(#nodes + #elements).

@@ -17,6 +17,11 @@ class Integrator {
     virtual void step(Model& model, double time, double dt) = 0;
     /// Called after the edits of a step, `time` being its end. Whether it has moved the body.
     virtual bool settle(Model&, double /*time*/) { return false; }
+
+    /// What it keeps from step to step, for one that goes on with a restored model; most keep
+    /// nothing.
+    virtual void save(topology::ArchiveWriter&) const {}
+    virtual void restore(topology::ArchiveReader&, const Model&) {}
 };
 
 /// Model::integrate: fast steps below the bound of stability.
@@ -51,6 +56,10 @@ class Statics final : public Integrator {
     void step(Model& model, double time, double dt) override;
     /// To the equilibrium of the edited body.
     bool settle(Model& model, double time) override;
+    void save(topology::ArchiveWriter& ar) const override { newton_.save(ar); }
+    void restore(topology::ArchiveReader& ar, const Model& model) override {
+        newton_.restore(ar, model);
+    }
 
   private:
     void require_equilibrium_of_free_pieces(const Model& model, double time);

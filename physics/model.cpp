@@ -352,6 +352,29 @@ void Model::apply(const ChangeSet& changes) {
     loads_.apply(changes, loaded_body(), touched);
 }
 
+void Model::save(topology::ArchiveWriter& ar) const {
+    const auto history = history_.values();
+    ar(positions_, velocities_, std::vector<double>(history.begin(), history.end()), reactions_,
+       reaction_moments_, external_work_, dissipated_energy_, largest_move_);
+}
+
+void Model::restore(topology::ArchiveReader& ar, double time) {
+    std::vector<Vec3> positions, velocities, reactions, moments;
+    std::vector<double> history;
+    ar(positions, velocities, history, reactions, moments, external_work_, dissipated_energy_,
+       largest_move_);
+    if (positions.size() != positions_.size() || velocities.size() != velocities_.size() ||
+        history.size() != history_.values().size() || reactions.size() != reactions_.size() ||
+        moments.size() != reaction_moments_.size())
+        throw InputError("the state is that of another body");
+    positions_ = std::move(positions);
+    velocities_ = std::move(velocities);
+    history_.set_values(history);
+    reactions_ = std::move(reactions);
+    reaction_moments_ = std::move(moments);
+    compute_forces(time);
+}
+
 double Model::own_step(ElementId e) const {
     const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
     const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());

@@ -14,6 +14,7 @@
 #include "physics/stable_step.h"
 #include "physics/supports.h"
 #include "physics/viscous_history.h"
+#include "topology/archive.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
 
@@ -37,6 +38,10 @@ struct Totals {
     Vec3 momentum = Vec3::Zero();
     Vec3 angular_momentum = Vec3::Zero();
     Vec3 centre_of_mass = Vec3::Zero();  ///< m
+    static void archive(auto& ar, auto& self) {
+        ar(self.mass, self.rest_volume, self.kinetic_energy, self.elastic_energy,
+           self.gravity_energy, self.momentum, self.angular_momentum, self.centre_of_mass);
+    }
 };
 
 /// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
@@ -103,6 +108,13 @@ class Model {
     /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
     /// the stars touched.
     void apply(const topology::ChangeSet& changes);
+
+    /// What neither the mesh nor its edits tell: state, history, work, reactions.
+    void save(topology::ArchiveWriter& ar) const;
+    /// Goes on from what a model saved that has followed the same edits of the same mesh; `time` is
+    /// that of the state. To the bit the same body then, but for what undoes merges.
+    /// Throws InputError for the data of another mesh.
+    void restore(topology::ArchiveReader& ar, double time);
 
     const ElementStore& elements() const { return elements_; }
     const Supports& supports() const { return supports_; }

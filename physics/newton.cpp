@@ -17,6 +17,8 @@ constexpr double rounding = 1e-14;
 // Where rounding is what is left, the imbalance falls no more; so far above the tolerance it may
 // be.
 constexpr double stagnation = 1e3;
+// Of edits: the body has not been looked at yet.
+constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
 /// Pins of a piece that is held in part go with its supports, by the mean of what these go.
 void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec3>& increments) {
@@ -42,21 +44,34 @@ struct NewtonSolver::Forces {
 
 void NewtonSolver::follow(const Model& model) {
     if (num_edits_ == model.num_edits()) return;
+    if (pins_free_pieces_)
+        free_pieces_ = find_free_pieces(model.mesh(), model.positions(), model.supports());
+    prepare(model);
+}
+
+void NewtonSolver::prepare(const Model& model) {
     const topology::Mesh& mesh = model.mesh();
     is_free_.assign(mesh.node_capacity(), {true, true, true});
     for (std::size_t n = 0; n < is_free_.size(); ++n)
         if (const auto* support_of = model.supports().of_node(n))
             for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*support_of)[c] < 0;
-    if (pins_free_pieces_) {
-        free_pieces_ = find_free_pieces(mesh, model.positions(), model.supports());
-        for (const FreePiece& piece : free_pieces_)
-            for (const auto& [node, component] : piece.pins)
-                is_free_[node.index()][static_cast<std::size_t>(component)] = false;
-    }
+    for (const FreePiece& piece : free_pieces_)
+        for (const auto& [node, component] : piece.pins)
+            is_free_[node.index()][static_cast<std::size_t>(component)] = false;
     tangent_.set_pattern(mesh, is_free_);
     for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_})
         scratch->assign(mesh.node_capacity(), Vec3::Zero());
     num_edits_ = model.num_edits();
+}
+
+void NewtonSolver::save(topology::ArchiveWriter& ar) const {
+    ar(num_edits_.value_or(never), free_pieces_);
+}
+
+void NewtonSolver::restore(topology::ArchiveReader& ar, const Model& model) {
+    const auto num_edits = ar.read<std::uint64_t>();
+    ar(free_pieces_);
+    if (num_edits == model.num_edits()) prepare(model);
 }
 
 NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProblem& problem,

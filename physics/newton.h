@@ -45,6 +45,9 @@ class NewtonSolver {
     /// Prepares for the body as it now is. Costs something only after edits: then the pattern of
     /// the tangent is found anew.
     void follow(const Model& model);
+    /// What follow() made of positions that are gone: the pins of free pieces.
+    void save(topology::ArchiveWriter& ar) const;
+    void restore(topology::ArchiveReader& ar, const Model& model);
 
     /// @param x  m, by node id: start and result. Without convergence, where it got to
     /// @param elastic_forces  N, by node id: those at the result, of the end of the step
@@ -59,6 +62,7 @@ class NewtonSolver {
 
   private:
     struct Forces;
+    void prepare(const Model& model);
     Forces evaluate(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x);
     void assemble(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x,
                   TangentKind kind, std::span<const Vec3> increments);

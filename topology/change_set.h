@@ -1,6 +1,6 @@
 // What one edit did to a mesh, as a value: comparable, printable and invertible, so that replay,
-// undo, logs and every follower of the mesh need neither the map nor its callbacks.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// undo, logs, checkpoints (archive.h) and every follower of the mesh need neither the map nor its
+// callbacks. SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <array>
@@ -17,6 +17,7 @@ struct NodeSource {
     NodeId node;
     double weight = 0.0;
     bool operator==(const NodeSource&) const = default;
+    static void archive(auto& ar, auto& self) { ar(self.node, self.weight); }
 };
 
 /// A node that an edit added or removed. Its values follow from those of its sources:
@@ -31,6 +32,9 @@ struct NodeRecord {
     std::array<NodeSource, 4> sources{};
     int num_sources = 0;
     bool operator==(const NodeRecord&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.id, self.rest_position, self.sources, self.num_sources);
+    }
 };
 
 /// An element that an edit added or removed, with its corners after (added) or before (removed).
@@ -41,6 +45,9 @@ struct ElementRecord {
     ElementId parent;  ///< the element it was split from; invalid if none
     std::vector<NodeId> corners;
     bool operator==(const ElementRecord&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.id, self.kind, self.region, self.parent, self.corners);
+    }
 };
 
 /// A corner of a living element that now is another node.
@@ -49,12 +56,16 @@ struct Rewiring {
     int corner = 0;
     NodeId from, to;
     bool operator==(const Rewiring&) const = default;
+    static void archive(auto& ar, auto& self) { ar(self.element, self.corner, self.from, self.to); }
 };
 
 /// The two sides of a face, the lower one first.
 struct FacePair {
     FaceId a, b;
     auto operator<=>(const FacePair&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.a.element, self.a.face, self.b.element, self.b.face);
+    }
 };
 
 /// All lists are in ascending order of their ids. Faces of removed elements that were shared are
@@ -71,6 +82,12 @@ struct ChangeSet {
 
     bool is_empty() const;
     bool operator==(const ChangeSet&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.epoch_before, self.epoch_after, self.node_capacity_before, self.node_capacity_after,
+           self.element_capacity_before, self.element_capacity_after, self.nodes_added,
+           self.nodes_removed, self.elements_added, self.elements_removed, self.rewired,
+           self.faces_opened, self.faces_closed);
+    }
 };
 
 /// Appends what the added nodes have of a quantity that their sources have: copies the same, nodes

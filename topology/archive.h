@@ -1,0 +1,190 @@
+// State as bytes and back, bit for bit: what checkpoints are made of.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "topology/error.h"
+#include "topology/types.h"
+
+namespace incise::topology {
+
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// A type that lists its members once, for both directions:
+///     static void archive(auto& ar, auto& self) { ar(self.first, self.second); }
+template <class T, class Archive>
+concept Archivable = requires(Archive& ar, T& value) {
+    T::archive(ar, value);
+};
+
+namespace detail {
+/// Little-endian from the machine's order, and the other way.
+template <Number T>
+std::array<char, sizeof(T)> little_endian(std::array<char, sizeof(T)> bytes) {
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+}
+}  // namespace detail
+
+/// Appends values to a string of bytes, without types, names and padding: reading them takes the
+/// same list of types. The same values give the same bytes; unordered containers are sorted.
+class ArchiveWriter {
+  public:
+    template <class... T>
+    void operator()(const T&... values) {
+        (put(values), ...);
+    }
+
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    template <Number T>
+    void put(T value) {
+        const auto bytes =
+            detail::little_endian<T>(std::bit_cast<std::array<char, sizeof(T)>>(value));
+        bytes_.append(bytes.data(), bytes.size());
+    }
+    template <class Tag>
+    void put(Id<Tag> id) {
+        put(id.value);
+    }
+    void put(const Vec3& v) { (*this)(v.x(), v.y(), v.z()); }
+    void put(const Eigen::AlignedBox3d& box) { (*this)(box.min(), box.max()); }
+    void put(const std::string& text) {
+        put(std::uint64_t{text.size()});
+        bytes_ += text;
+    }
+    template <class T, std::size_t size>
+    void put(const std::array<T, size>& values) {
+        for (const T& value : values) put(value);
+    }
+    template <class A, class B>
+    void put(const std::pair<A, B>& pair) {
+        (*this)(pair.first, pair.second);
+    }
+    template <class T>
+    void put(const std::vector<T>& values) {
+        put(std::uint64_t{values.size()});
+        for (const T& value : values) put(value);
+    }
+    template <class Key, class T>
+    void put(const std::unordered_map<Key, T>& map) {
+        std::vector<Key> keys;
+        for (const auto& [key, value] : map) keys.push_back(key);
+        std::sort(keys.begin(), keys.end());
+        put(std::uint64_t{keys.size()});
+        for (const Key& key : keys) (*this)(key, map.at(key));
+    }
+    template <class Key>
+    void put(const std::unordered_set<Key>& set) {
+        std::vector<Key> keys(set.begin(), set.end());
+        std::sort(keys.begin(), keys.end());
+        put(keys);
+    }
+    template <Archivable<ArchiveWriter> T>
+    void put(const T& value) {
+        T::archive(*this, value);
+    }
+
+    std::string bytes_;
+};
+
+/// Reads what an ArchiveWriter wrote, as the same types in the same order. Throws InputError where
+/// the bytes end too early; other faults are for a checksum to find.
+class ArchiveReader {
+  public:
+    /// @param bytes must outlive the reader
+    explicit ArchiveReader(std::string_view bytes) : rest_(bytes) {}
+
+    template <class... T>
+    void operator()(T&... values) {
+        (get(values), ...);
+    }
+    template <class T>
+    T read() {
+        T value;
+        get(value);
+        return value;
+    }
+
+    bool is_at_end() const { return rest_.empty(); }
+
+  private:
+    std::string_view take(std::uint64_t size) {
+        if (size > rest_.size()) throw InputError("the data end too early");
+        const std::string_view taken = rest_.substr(0, size);
+        rest_.remove_prefix(size);
+        return taken;
+    }
+    /// Of elements, each of which takes a byte or more.
+    std::size_t count() {
+        const auto count = read<std::uint64_t>();
+        if (count > rest_.size()) throw InputError("the data end too early");
+        return count;
+    }
+
+    template <Number T>
+    void get(T& value) {
+        std::array<char, sizeof(T)> bytes;
+        std::memcpy(bytes.data(), take(sizeof(T)).data(), sizeof(T));
+        value = std::bit_cast<T>(detail::little_endian<T>(bytes));
+    }
+    void get(bool& value) { value = read<std::uint8_t>() != 0; }
+    template <class Tag>
+    void get(Id<Tag>& id) {
+        get(id.value);
+    }
+    void get(Vec3& v) { (*this)(v.x(), v.y(), v.z()); }
+    void get(Eigen::AlignedBox3d& box) { (*this)(box.min(), box.max()); }
+    void get(std::string& text) { text = take(read<std::uint64_t>()); }
+    template <class T, std::size_t size>
+    void get(std::array<T, size>& values) {
+        for (T& value : values) get(value);
+    }
+    template <class A, class B>
+    void get(std::pair<A, B>& pair) {
+        (*this)(pair.first, pair.second);
+    }
+    template <class T>
+    void get(std::vector<T>& values) {
+        values.resize(count());
+        for (T& value : values) get(value);
+    }
+    template <class Key, class T>
+    void get(std::unordered_map<Key, T>& map) {
+        map.clear();
+        for (std::size_t i = count(); i > 0; --i) {
+            const Key key = read<Key>();
+            get(map[key]);
+        }
+    }
+    template <class Key>
+    void get(std::unordered_set<Key>& set) {
+        const auto keys = read<std::vector<Key>>();
+        set = std::unordered_set<Key>(keys.begin(), keys.end());
+    }
+    template <Archivable<ArchiveReader> T>
+    void get(T& value) {
+        T::archive(*this, value);
+    }
+
+    std::string_view rest_;
+};
+
+}  // namespace incise::topology
