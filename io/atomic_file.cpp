@@ -7,10 +7,13 @@
 
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "io/file_descriptor.h"
+#include "io/number_text.h"
 #include "topology/error.h"
 
 namespace incise::io {
@@ -47,6 +50,9 @@ const char* remedy(int error_number) {
     }
 }
 
+/// Between the name of a file and the process that is writing it.
+constexpr std::string_view temporary_mark = ".tmp";
+
 /// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept.
 class TemporaryFile {
   public:
@@ -56,7 +62,7 @@ class TemporaryFile {
         constexpr std::size_t longest_stem = 200;  // of the 255 that file systems allow
         auto stem = name.substr(0, longest_stem);
         stem.insert(stem.begin(), '.');
-        stem += ".tmp" + std::to_string(::getpid());
+        stem += std::string(temporary_mark) + std::to_string(::getpid());
         for (int attempt = 0; attempt < 1000; ++attempt) {
             path_ = folder / (stem + "-" + std::to_string(attempt));
             file_ = FileDescriptor(path_, O_WRONLY | O_CREAT | O_EXCL);
@@ -145,6 +151,26 @@ void make_output_folder(const fs::path& folder) {
     if (error) throw_output_error(folder, error.value());
     // Permissions alone do not tell (root, read-only mounts, quotas): try it.
     const TemporaryFile probe(folder, "probe", folder);
+}
+
+void remove_unfinished_files(const fs::path& folder) {
+    std::vector<fs::path> stale;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const auto name = entry->path().filename().string();
+        const auto mark = name.rfind(temporary_mark);
+        if (!name.starts_with('.') || mark == name.npos) continue;
+        std::string_view digits = std::string_view(name).substr(mark + temporary_mark.size());
+        digits = digits.substr(0, digits.find('-'));
+        const auto process = parse_number<pid_t>(digits);
+        // One of our own number is of a process that had it before: we are not writing now.
+        if (process && *process > 0 &&
+            (*process == ::getpid() || (::kill(*process, 0) != 0 && errno == ESRCH)))
+            stale.push_back(entry->path());
+    }
+    // A folder that may be written to but not read keeps them.
+    for (const auto& path : stale) remove_output_file(path);
 }
 
 void remove_output_file(const fs::path& path) {

@@ -21,6 +21,10 @@ void write_file(const std::filesystem::path& path, std::string_view bytes);
 /// written in it. Throws OutputError as above.
 void make_output_folder(const std::filesystem::path& folder);
 
+/// Removes from the folder the hidden files that processes left there which are no more: those that
+/// were killed in the middle of write_file. Throws OutputError as above.
+void remove_unfinished_files(const std::filesystem::path& folder);
+
 /// Removes a file if it is there. Throws OutputError as above.
 void remove_output_file(const std::filesystem::path& path);
 

@@ -74,6 +74,7 @@ Series::Series(fs::path folder, std::string name, Compression compression,
     check_name(name_);
     make_output_folder(folder_);
     make_output_folder(folder_ / "frames");
+    remove_unfinished_files(folder_ / "frames");
     for (std::size_t i = 0; i < times_.size(); ++i) {
         std::error_code error;
         if (!fs::is_regular_file(frame_path(i), error))
@@ -110,8 +111,7 @@ std::string Series::frame_name(std::size_t index) const {
     return "frames/" + name_ + "_" + digits + std::string(frame_suffix);
 }
 
-/// Removes the frames of this name (NAME_, digits, suffix) that are numbered `first` and above,
-/// and what a kill left of one in the making.
+/// Removes the frames of this name (NAME_, digits, suffix) that are numbered `first` and above.
 void Series::remove_frames_from(std::size_t first) {
     const auto frames = folder_ / "frames";
     const auto prefix = name_ + "_";
@@ -121,10 +121,6 @@ void Series::remove_frames_from(std::size_t first) {
          entry.increment(error)) {
         const auto file_name = entry->path().filename().string();
         std::string_view text = file_name;
-        if (text.starts_with("." + prefix) && text.find(".vtu.tmp") != text.npos) {
-            stale.push_back(entry->path());
-            continue;
-        }
         if (!text.starts_with(prefix) || !text.ends_with(frame_suffix)) continue;
         text.remove_prefix(prefix.size());
         text.remove_suffix(std::min(text.size(), frame_suffix.size()));

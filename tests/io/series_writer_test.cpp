@@ -96,7 +96,7 @@ TEST(Series, RemovesFramesOfAFormerRunButNothingElse) {
     const auto frames = folder / "frames";
     write_file(frames / "a_notes.vtu", "");
     write_file(frames / "a_.vtu", "");
-    write_file(frames / ".a_000003.vtu.tmp77-0", "of a killed run");
+    write_file(frames / ".a_000003.vtu.tmp99999999-0", "of a killed run");
     write_file(folder / "history.csv", "");
 
     Series series(folder.path(), "a");

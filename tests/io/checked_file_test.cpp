@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "io/checked_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "io/atomic_file.h"
+#include "io/output_folder.h"
+#include "tests/support/temporary_folder.h"
+#include "topology/error.h"
+
+namespace incise::io {
+namespace {
+
+using support::count_entries;
+using support::read_text;
+
+TEST(Checksum, IsThatOfXz) {
+    EXPECT_EQ(checksum("123456789"), 0x995DC9BBDF1939FAu);  // the catalogue's check value
+}
+
+TEST(CheckedFile, GivesTheBytesBack) {
+    const support::TemporaryFolder folder;
+    for (const std::string& bytes :
+         {std::string(), std::string("a\0b\n", 4), std::string(9999, 'x')}) {
+        write_checked_file(folder / "file", bytes);
+        EXPECT_EQ(read_checked_file(folder / "file"), bytes);
+    }
+}
+
+TEST(CheckedFile, FindsEveryFlippedBitAndEveryCut) {
+    const support::TemporaryFolder folder;
+    write_checked_file(folder / "file", "some bytes, not many");
+    const std::string whole = read_text(folder / "file");
+    const auto expect_refused = [&](const std::string& bytes, std::size_t where) {
+        write_file(folder / "file", bytes);
+        EXPECT_THROW(read_checked_file(folder / "file"), InputError) << where;
+    };
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+        std::string damaged = whole;
+        damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+        expect_refused(damaged, bit);
+    }
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        expect_refused(whole.substr(0, size), size);
+    expect_refused(whole + '\0', whole.size());
+    expect_refused(std::string(whole.size(), '\0'), 0);
+    EXPECT_THROW(read_checked_file(folder / "missing"), InputError);
+}
+
+TEST(OutputFolder, IsOnesOwnUntilItGoes) {
+    const support::TemporaryFolder folder;
+    const auto path = folder / "a/b";
+    {
+        const OutputFolder ours(path);
+        EXPECT_THROW(OutputFolder{path}, InputError);
+        EXPECT_NO_THROW(OutputFolder{folder / "a"});
+    }
+    EXPECT_NO_THROW(OutputFolder{path});
+    EXPECT_EQ(count_entries(path), 0u);  // the lock leaves nothing behind
+}
+
+TEST(OutputFolder, RemovesOnlyWhatDeadProcessesLeft) {
+    const support::TemporaryFolder folder;
+    const pid_t dead = ::fork();
+    if (dead == 0) ::_exit(0);
+    ASSERT_EQ(::waitpid(dead, nullptr, 0), dead);
+    const std::string of_dead = ".summary.json.tmp" + std::to_string(dead) + "-0";
+    const std::string of_parent = ".summary.json.tmp" + std::to_string(::getppid()) + "-0";
+    for (const std::string& name : {of_dead, of_parent, std::string(".hidden"),
+                                    std::string(".x.tmp"), std::string("x.tmp1-0")})
+        write_file(folder / name, "x");
+    const OutputFolder ours(folder.path());
+    EXPECT_FALSE(std::filesystem::exists(folder / of_dead));
+    EXPECT_EQ(count_entries(folder.path()), 4u);
+}
+
+}  // namespace
+}  // namespace incise::io
