@@ -49,17 +49,6 @@ std::string written_formats() {
     return text;
 }
 
-/// An option of the program to come: refused with what to do instead, and not among the help.
-void declare_planned(CLI::App& verb, const std::string& name, const std::string& remedy) {
-    verb.add_option_function<std::vector<std::string>>(
-            name,
-            [name, remedy](const std::vector<std::string>&) {
-                throw InputError(name + " is not supported by this version yet: " + remedy);
-            })
-        ->expected(0, 1)
-        ->group("");
-}
-
 void declare_run(CLI::App& app, Action& action) {
     auto options = std::make_shared<RunOptions>();
     auto* verb = app.add_subcommand("run", "Simulate a scenario and write its frames and figures");
@@ -77,13 +66,17 @@ void declare_run(CLI::App& app, Action& action) {
                      "How many threads compute (default: one a core); results are the same bits")
         ->type_name("N")
         ->check(CLI::Range(1, 1024).description(""));
+    verb->add_flag("--resume", options->resume,
+                   "Go on with a run that was stopped, from its last checkpoint, to the same files "
+                   "as if it had not been; with the SCENARIO, --out, --set and --end-time that it "
+                   "began with");
     verb->add_flag("--dry-run", options->dry_run, "Do everything but simulate and write");
     verb->add_flag("--quiet", options->quiet, "No progress, only problems");
-    declare_planned(*verb, "--resume", "start the run anew");
     verb->footer(
         "Examples:\n"
         "  incise run liver.toml --out results --end-time 0.5\n"
         "  incise run liver.toml --set dynamics.damping=2 --set material[0].young=2e3\n"
+        "  incise run liver.toml --out results --end-time 0.5 --resume\n"
         "Elements of lists are counted from 0.");
     verb->callback([options, &action] { action = [options] { return run(*options); }; });
 }

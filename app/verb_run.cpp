@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "app/messages.h"
 #include "app/progress.h"
+#include "app/stopped_run.h"
 #include "app/verbs.h"
 #include "io/number_format.h"
 #include "sim/run_writer.h"
@@ -63,6 +66,11 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
+int num_threads(const RunOptions& options) {
+    if (options.num_threads > 0) return options.num_threads;
+    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 /// Errors of the body name the scenario.
 std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
                                        const std::filesystem::path& file) {
@@ -104,30 +112,16 @@ std::string describe(const sim::Simulation& simulation) {
     return text.str();
 }
 
-}  // namespace
+int tell_expectations(const sim::Scenario& scenario, const sim::Quantities& quantities) {
+    const auto failures = sim::failed_expectations(scenario, quantities);
+    for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
+    return failures.empty() ? done : missed_expectation;
+}
 
-int run(const RunOptions& options) {
-    auto overrides = options.overrides;
-    if (options.end_time)
-        overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
-    const sim::Scenario scenario = load_scenario(options.scenario, overrides);
-
-    const auto built = build(scenario, options.scenario);
-    built->set_num_threads(options.num_threads > 0 ? options.num_threads
-                                                   : static_cast<int>(std::max(
-                                                         1u, std::thread::hardware_concurrency())));
-    sim::Simulation& simulation = *built;
-    std::size_t num_told = 0;
-    const auto tell_warnings = [&] {
-        for (; num_told < simulation.warnings().size(); ++num_told)
-            print_warning(simulation.warnings()[num_told]);
-    };
-    tell_warnings();
-    if (!options.quiet) std::cerr << scenario.name << ": " << describe(simulation) << '\n';
-    if (options.dry_run) return done;
-
-    const std::filesystem::path folder = options.out.value_or(scenario.name + ".out");
-    sim::RunWriter writer(simulation, folder);
+/// From where the simulation is to its end, or to a signal.
+int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptions& options) {
+    const sim::Scenario& scenario = simulation.scenario();
+    const std::size_t num_told = simulation.warnings().size();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
     simulation.add_observer(progress);
@@ -140,7 +134,7 @@ int run(const RunOptions& options) {
         writer.finish(simulation, outcome);
     };
     try {
-        simulation.start();
+        if (!options.resume) simulation.start();
         while (!simulation.is_finished() && stop_signal == 0) simulation.step();
     } catch (const PhysicsError& error) {
         std::ostringstream text;
@@ -150,14 +144,17 @@ int run(const RunOptions& options) {
         finish({"failed", text.str()});
         throw PhysicsError(text.str());
     }
-    if (stop_signal != 0) {
+    if (!simulation.is_finished()) {
+        writer.take_checkpoint(simulation);
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
-                    " s; what was written so far is in " + writer.main_result().string());
+                    " s; what was written so far is in " + writer.main_result().string() +
+                    "; to go on: " + resuming_command(options));
         return 128 + stop_signal;
     }
     finish({});
-    tell_warnings();  // what the run has shown
+    for (std::size_t i = num_told; i < simulation.warnings().size(); ++i)  // what it has shown
+        print_warning(simulation.warnings()[i]);
     warn_of_idle_tools(simulation);
 
     if (!options.quiet)
@@ -165,9 +162,54 @@ int run(const RunOptions& options) {
                   << duration_text(watch.seconds()) << ", " << simulation.ledger().edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
     std::cout << writer.main_result().string() << '\n';
-    const auto failures = sim::failed_expectations(simulation);
-    for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
-    return failures.empty() ? done : missed_expectation;
+    return tell_expectations(scenario, sim::summary_quantities(simulation));
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    auto overrides = options.overrides;
+    if (options.end_time)
+        overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
+    const sim::Scenario scenario = load_scenario(options.scenario, overrides);
+    const std::filesystem::path folder = options.out.value_or(scenario.name + ".out");
+
+    std::optional<StoppedRun> stopped;
+    if (options.resume) {
+        if (const auto quantities = sim::finished_quantities(folder, scenario)) {
+            if (!options.quiet)
+                std::cerr << scenario.name << ": the run in " << folder.string()
+                          << " is finished; there is nothing to resume\n";
+            const auto index = folder / (scenario.name + ".pvd");
+            std::cout << (std::filesystem::exists(index) ? index : folder).string() << '\n';
+            return tell_expectations(scenario, *quantities);
+        }
+        stopped.emplace(stopped_run(folder, scenario));
+    }
+
+    const auto built = build(scenario, options.scenario);
+    sim::Simulation& simulation = *built;
+    simulation.set_num_threads(num_threads(options));
+    if (stopped) stopped->checkpoint.restore(simulation);
+    for (const std::string& warning : simulation.warnings()) print_warning(warning);
+    if (!options.quiet) {
+        std::cerr << scenario.name << ": " << describe(simulation) << '\n';
+        if (stopped)
+            std::cerr << scenario.name << ": goes on at t = " << simulation.time() << " s, step "
+                      << simulation.num_steps() << '\n';
+    }
+    if (options.dry_run) return done;
+
+    sim::RunWriter writer = stopped ? sim::RunWriter(simulation, std::move(stopped->folder),
+                                                     stopped->checkpoint.written())
+                                    : sim::RunWriter(simulation, folder);
+    try {
+        return simulate(simulation, writer, options);
+    } catch (const OutputError& error) {
+        if (!writer.has_checkpoint()) throw;
+        throw OutputError(std::string(error.what()) +
+                          "; to go on then: " + resuming_command(options));
+    }
 }
 
 }  // namespace incise::app

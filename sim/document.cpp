@@ -182,6 +182,39 @@ void add_value(Hash& hash, const Value& value) {
     }
 }
 
+std::string text_of(const Value& value) {
+    if (const auto* text = value.get<std::string>()) return '"' + *text + '"';
+    if (const auto* integer = value.get<std::int64_t>())
+        return io::format_number(static_cast<double>(*integer));
+    if (const auto* real = value.get<double>()) return io::format_number(*real);
+    if (const auto* flag = value.get<bool>()) return *flag ? "true" : "false";
+    if (value.get<DateOrTime>()) return value.description();
+    if (value.get<Table>()) return "{}";
+    std::string list;
+    for (const Value& element : *value.get<Array>())
+        list += (list.empty() ? "" : ", ") + text_of(element);
+    return '[' + list + ']';
+}
+
+void append_contents(const Value& value, const std::string& path,
+                     std::vector<std::pair<std::string, std::string>>& contents) {
+    const auto* table = value.get<Table>();
+    const auto* array = value.get<Array>();
+    const bool holds_more = array && std::any_of(array->begin(), array->end(), [](const Value& v) {
+                                return v.get<Table>() || v.get<Array>();
+                            });
+    if (table && !table->empty()) {
+        for (const Entry& entry : *table)
+            append_contents(entry.value, path.empty() ? entry.key : path + "." + entry.key,
+                            contents);
+    } else if (holds_more) {
+        for (std::size_t i = 0; i < array->size(); ++i)
+            append_contents((*array)[i], path + "[" + std::to_string(i) + "]", contents);
+    } else {
+        contents.emplace_back(path, text_of(value));
+    }
+}
+
 }  // namespace
 
 std::string Value::description() const {
@@ -254,6 +287,13 @@ std::string content_hash(const Value& value) {
     for (std::size_t i = 0; i < 16; ++i)
         digits[i] = hexadecimal[(hash.state >> (60 - 4 * i)) & 15u];
     return digits.data();
+}
+
+std::vector<std::pair<std::string, std::string>> contents_of(const Value& value) {
+    std::vector<std::pair<std::string, std::string>> contents;
+    append_contents(value, "", contents);
+    std::sort(contents.begin(), contents.end());
+    return contents;
 }
 
 }  // namespace incise::sim

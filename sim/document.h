@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -65,5 +66,9 @@ void apply_override(Value& document, std::string_view text, int number);
 
 /// 16 hexadecimal digits; equal for equal contents, whatever the order of keys and the layout.
 std::string content_hash(const Value& value);
+
+/// What the hash is of, to be read: each value as text with its path, such as
+/// ("material[0].young", "2000"), in the order of the paths.
+std::vector<std::pair<std::string, std::string>> contents_of(const Value& value);
 
 }  // namespace incise::sim

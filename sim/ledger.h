@@ -20,6 +20,9 @@ struct Account {
     int components = 0;
     physics::Totals totals;
     double stable_step = 0.0;
+    static void archive(auto& ar, auto& self) {
+        ar(self.nodes, self.elements, self.components, self.totals, self.stable_step);
+    }
 };
 
 /// One edit, by one tool.
@@ -42,6 +45,12 @@ struct EditRecord {
     /// least of the mesh at the start; not a number if none were.
     double min_altitude_ratio = std::numeric_limits<double>::quiet_NaN();
     Account before, after;
+    static void archive(auto& ar, auto& self) {
+        ar(self.time, self.step, self.tool, self.elements_removed, self.elements_crossed,
+           self.elements_split, self.elements_added, self.faces_opened, self.nodes_added,
+           self.nodes_duplicated, self.nodes_removed, self.nodes_snapped, self.cut_area,
+           self.mass_removed, self.min_altitude_ratio, self.before, self.after);
+    }
 };
 
 class Ledger {
@@ -55,6 +64,13 @@ class Ledger {
     const EditRecord& record(double time, std::uint64_t step, const std::string& tool,
                              const cutting::Split& done, const Account& before,
                              double mass_removed);
+
+    /// What it has booked. The rest it has from the model: it restores after that.
+    void save(topology::ArchiveWriter& ar) const { ar(edits_, mass_removed_, energy_removed_); }
+    void restore(topology::ArchiveReader& ar) {
+        ar(edits_, mass_removed_, energy_removed_);
+        counts_ = count();
+    }
 
     const std::vector<EditRecord>& edits() const { return edits_; }
     const Account& initial() const { return initial_; }

@@ -3,13 +3,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/number_format.h"
 #include "sim/frame_builder.h"
 #include "sim/quantities.h"
+#include "topology/error.h"
 
 namespace incise::sim {
 
@@ -17,10 +23,24 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::filesystem::path make_folder(std::filesystem::path folder) {
-    io::make_output_folder(folder);
+/// The folder, prepared for a new run or to go on with one.
+io::OutputFolder prepared(io::OutputFolder folder, const Written* written) {
+    const auto require = [&](const char* name, std::uint64_t size) {
+        const auto path = folder.path() / name;
+        std::error_code error;
+        const auto there = std::filesystem::file_size(path, error);
+        if (error || there < size)
+            throw InputError(path.string() + ": has " + (error ? "gone" : "become shorter") +
+                             " since the run was stopped; begin anew without --resume");
+    };
+    if (written) {
+        require("history.csv", written->history_size);
+        require("edits.jsonl", written->edits_size);
+    } else {
+        remove_checkpoints(folder.path());
+    }
     // A summary speaks of a whole run: that of a former one must not outlive its frames.
-    io::remove_output_file(folder / "summary.json");
+    io::remove_output_file(folder.path() / "summary.json");
     return folder;
 }
 
@@ -69,11 +89,11 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> history_row(const Simulation& simulation) {
+Quantities history_row(const Simulation& simulation) {
     const physics::Model& model = simulation.model();
     const Account account = simulation.ledger().account();
     const physics::Totals& t = account.totals;
-    std::vector<std::pair<std::string, double>> row;
+    Quantities row;
     append(row, history_quantities,
            std::array{simulation.time(),
                       static_cast<double>(simulation.num_steps()),
@@ -104,7 +124,7 @@ std::vector<std::pair<std::string, double>> history_row(const Simulation& simula
     return row;
 }
 
-std::vector<std::pair<std::string, double>> summary_quantities(const Simulation& simulation) {
+Quantities summary_quantities(const Simulation& simulation) {
     auto quantities = history_row(simulation);
     std::size_t removed = 0, split = 0, added = 0, opened = 0;
     double cut_area = 0.0, mass_removed = 0.0;
@@ -127,10 +147,10 @@ std::vector<std::pair<std::string, double>> summary_quantities(const Simulation&
     return quantities;
 }
 
-std::vector<std::string> failed_expectations(const Simulation& simulation) {
-    const auto quantities = summary_quantities(simulation);
+std::vector<std::string> failed_expectations(const Scenario& scenario,
+                                             const Quantities& quantities) {
     std::vector<std::string> failures;
-    for (const Expectation& expected : simulation.scenario().expect) {
+    for (const Expectation& expected : scenario.expect) {
         const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) {
             return q.first == expected.quantity;
         });
@@ -148,14 +168,41 @@ std::vector<std::string> failed_expectations(const Simulation& simulation) {
     return failures;
 }
 
-RunWriter::RunWriter(const Simulation& simulation, std::filesystem::path folder)
-    : folder_(make_folder(std::move(folder))),
-      series_(folder_, simulation.scenario().name, simulation.scenario().output.compression),
-      history_(folder_ / "history.csv"),
-      edits_(folder_ / "edits.jsonl") {
+std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
+                                              const Scenario& scenario) {
+    std::ifstream file(folder / "summary.json");
+    const Json summary = Json::parse(file, nullptr, false);
+    if (!summary.is_object() || summary.value("status", "") != "finished" ||
+        summary.value("scenario_hash", "") != scenario.hash)
+        return std::nullopt;
+    Quantities quantities;
+    // What is not finite is null in JSON.
+    for (const auto& [name, value] : summary.items())
+        if (value.is_number() || value.is_null())
+            quantities.emplace_back(name, value.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                                          : value.get<double>());
+    return quantities;
+}
+
+RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written)
+    : folder_(prepared(std::move(folder), written)),
+      series_(this->folder(), simulation.scenario().name, simulation.scenario().output.compression,
+              written ? std::span<const double>(written->frame_times) : std::span<const double>()),
+      history_(this->folder() / "history.csv", written ? written->history_size : 0),
+      edits_(this->folder() / "edits.jsonl", written ? written->edits_size : 0),
+      last_row_(history_row(simulation)),
+      first_time_(simulation.time()),
+      first_step_(simulation.num_steps()),
+      next_checkpoint_(0.0),
+      has_checkpoint_(written != nullptr) {
+    if (written) {
+        for (std::size_t i = 0; i < std::min(last_row_.size(), written->last_row.size()); ++i)
+            last_row_[i].second = written->last_row[i];
+        note_checkpoint(simulation);
+        return;
+    }
     std::string header;
-    for (const auto& [name, value] : history_row(simulation))
-        header += (header.empty() ? "" : ",") + name;
+    for (const auto& [name, value] : last_row_) header += (header.empty() ? "" : ",") + name;
     history_.append(header);
 }
 
@@ -185,6 +232,29 @@ void RunWriter::on_frame(const Simulation& simulation) {
     append_history(simulation);
 }
 
+void RunWriter::on_pause(const Simulation& simulation) {
+    const double interval = simulation.scenario().output.checkpoint_interval;
+    const bool is_due = interval > 0.0 && simulation.time() >= next_checkpoint_ * interval;
+    if (is_due && !simulation.is_finished()) take_checkpoint(simulation);
+}
+
+void RunWriter::take_checkpoint(const Simulation& simulation) {
+    history_.sync();
+    edits_.sync();
+    Written written{history_.size(), edits_.size(), {}, {}};
+    written.frame_times.assign(series_.times().begin(), series_.times().end());
+    for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
+    write_checkpoint(folder(), simulation, written);
+    has_checkpoint_ = true;
+    note_checkpoint(simulation);
+}
+
+/// The next is due after the interval that has begun, wherever in it this one was taken.
+void RunWriter::note_checkpoint(const Simulation& simulation) {
+    const double interval = simulation.scenario().output.checkpoint_interval;
+    if (interval > 0.0) next_checkpoint_ = std::floor(simulation.time() / interval) + 1.0;
+}
+
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     // The state that a run failed in is not one to keep: the last row written stands.
     const bool has_failed = outcome.status == "failed";
@@ -211,11 +281,11 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     summary["wall_time"] = outcome.wall_time;
     if (outcome.wall_time > 0.0) {
         summary["steps_per_second"] =
-            static_cast<double>(simulation.num_steps()) / outcome.wall_time;
-        summary["real_time_factor"] = simulation.time() / outcome.wall_time;
+            static_cast<double>(simulation.num_steps() - first_step_) / outcome.wall_time;
+        summary["real_time_factor"] = (simulation.time() - first_time_) / outcome.wall_time;
     }
     summary["warnings"] = simulation.warnings();
-    io::write_file(folder_ / "summary.json", summary.dump(2) + "\n");
+    io::write_file(folder() / "summary.json", summary.dump(2) + "\n");
 }
 
 }  // namespace incise::sim

@@ -4,18 +4,24 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/line_file.h"
+#include "io/output_folder.h"
 #include "io/series.h"
+#include "sim/checkpoint.h"
 #include "sim/simulation.h"
 
 namespace incise::sim {
 
+/// Values by their names.
+using Quantities = std::vector<std::pair<std::string, double>>;
+
 /// The quantities of a moment by their names in history.csv, in its order.
-std::vector<std::pair<std::string, double>> history_row(const Simulation& simulation);
+Quantities history_row(const Simulation& simulation);
 
 /// How a run ended.
 struct Outcome {
@@ -26,36 +32,58 @@ struct Outcome {
 
 /// The quantities of summary.json that an [expect] can name: the last history row and totals over
 /// the run.
-std::vector<std::pair<std::string, double>> summary_quantities(const Simulation& simulation);
+Quantities summary_quantities(const Simulation& simulation);
 
 /// What is not as the scenario's [expect] says; each a sentence. Its quantities must exist, which
 /// the scenario reader sees to.
-std::vector<std::string> failed_expectations(const Simulation& simulation);
+std::vector<std::string> failed_expectations(const Scenario& scenario,
+                                             const Quantities& quantities);
+
+/// The quantities of summary.json, if the run of this scenario in `folder` is finished.
+std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
+                                              const Scenario& scenario);
 
 /// Everything is on disk, readable, when a function returns; a kill at any moment leaves whole
-/// files and whole lines. All functions throw OutputError.
+/// files and whole lines, and a checkpoint to resume from. All functions throw OutputError.
 class RunWriter : public Observer {
   public:
-    /// Makes the folder; a former run there is replaced.
-    RunWriter(const Simulation& simulation, std::filesystem::path folder);
+    /// Makes the folder; a former run there is replaced. InputError: see io::OutputFolder.
+    RunWriter(const Simulation& simulation, const std::filesystem::path& folder)
+        : RunWriter(simulation, io::OutputFolder(folder), nullptr) {}
+    /// Goes on where a checkpoint was taken: what was written after it is removed. The simulation
+    /// is restored from it already. Throws InputError, and has removed only the summary, if files
+    /// of before are missing or cut short.
+    RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written& written)
+        : RunWriter(simulation, std::move(folder), &written) {}
 
     void on_start(const Simulation& simulation) override;
     void on_edit(const Simulation& simulation, const EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
+    void on_pause(const Simulation& simulation) override;  ///< takes a checkpoint when one is due
+    void take_checkpoint(const Simulation& simulation);
+    bool has_checkpoint() const { return has_checkpoint_; }
     void finish(const Simulation& simulation, const Outcome& outcome);
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
     /// The run's index, or its folder if it has no frames.
-    std::filesystem::path main_result() const { return num_frames() > 0 ? pvd_path() : folder_; }
+    std::filesystem::path main_result() const { return num_frames() > 0 ? pvd_path() : folder(); }
     std::size_t num_frames() const { return series_.times().size(); }
 
   private:
-    void append_history(const Simulation& simulation);
+    RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written);
 
-    std::filesystem::path folder_;
+    const std::filesystem::path& folder() const { return folder_.path(); }
+    void append_history(const Simulation& simulation);
+    void note_checkpoint(const Simulation& simulation);
+
+    io::OutputFolder folder_;
     io::Series series_;
     io::LineFile history_, edits_;
-    std::vector<std::pair<std::string, double>> last_row_;  // of the history
+    Quantities last_row_;  // of the history
+    double first_time_;    // s, where this process took up the run, which its wall time is of
+    std::uint64_t first_step_;
+    double next_checkpoint_;  // in intervals
+    bool has_checkpoint_;
 };
 
 }  // namespace incise::sim

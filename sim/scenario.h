@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -193,8 +194,9 @@ struct ToolSpec {
 enum class Field { displacement, velocity, mass, force, stress, von_mises, J, energy_density };
 
 struct OutputSpec {
-    double interval = 0.01;     ///< simulated seconds between frames; 0: none
-    std::vector<Field> fields;  ///< each once
+    double interval = 0.01;            ///< simulated seconds between frames; 0: none
+    std::vector<Field> fields;         ///< each once
+    double checkpoint_interval = 0.0;  ///< simulated seconds; 0: only where a signal stops the run
     io::Compression compression = io::Compression::zlib;
 };
 
@@ -219,6 +221,8 @@ struct Scenario {
     /// 16 hexadecimal digits that change with anything the scenario says (overrides included),
     /// not with layout or comments, nor with the contents of the mesh file.
     std::string hash;
+    /// What the hash is of: each value as text with its path, in the order of the paths.
+    std::vector<std::pair<std::string, std::string>> contents;
 };
 
 /// The names by which scenarios and frames know fields and compressions, indexed by them.

@@ -28,8 +28,7 @@ constexpr Keys dynamics_keys[] = {"mode",   "integrator", "end_time", "time_step
                                   "safety", "damping",    "gravity",  "seed"};
 constexpr Keys mode_names[] = {"dynamic", "static"};
 constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
-constexpr Keys output_keys[] = {"interval", "fields", "compression"};
-constexpr Keys planned_output_keys[] = {"checkpoint_interval"};
+constexpr Keys output_keys[] = {"interval", "fields", "compression", "checkpoint_interval"};
 constexpr Keys expectation_keys[] = {"min", "max"};
 
 /// More than memory can hold on any machine that this program is made for.
@@ -182,11 +181,13 @@ DynamicsSpec read_dynamics(const TableReader& root) {
 
 OutputSpec read_output(const TableReader& root, double end_time) {
     OutputSpec spec;
+    // Ten in a short run; so that little of a long one is lost.
+    spec.checkpoint_interval = std::min(0.5, end_time / 10.0);
     const auto all_fields = [&] {
         for (std::size_t i = 0; i < field_names.size(); ++i)
             spec.fields.push_back(static_cast<Field>(i));
     };
-    const auto output = root.table("output", {output_keys, planned_output_keys});
+    const auto output = root.table("output", {output_keys});
     if (!output) {
         all_fields();
         return spec;
@@ -207,6 +208,8 @@ OutputSpec read_output(const TableReader& root, double end_time) {
         all_fields();
     if (const auto index = output->choice("compression", {compression_names}))
         spec.compression = static_cast<io::Compression>(*index);
+    spec.checkpoint_interval =
+        output->number("checkpoint_interval", spec.checkpoint_interval, limits::non_negative);
     return spec;
 }
 
@@ -270,6 +273,7 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
         const TableReader root(*document.get<Table>(), Place{}, "", {root_keys}, diagnostics);
         report.scenario = read_all(root, file);
         report.scenario.hash = content_hash(document);
+        report.scenario.contents = contents_of(document);
     } catch (const DocumentError& failure) {
         diagnostics.error(failure.place, failure.text);
     } catch (const InputError& failure) {

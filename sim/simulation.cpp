@@ -8,8 +8,11 @@
 #include <sstream>
 
 #include "cutting/step_length.h"
+#include "io/checked_file.h"
+#include "io/input_file.h"
 #include "sim/body.h"
 #include "topology/error.h"
+#include "topology/mesh_edit.h"
 
 namespace incise::sim {
 
@@ -37,6 +40,25 @@ std::unique_ptr<physics::Integrator> make_integrator(const DynamicsSpec& dynamic
     if (dynamics.integrator == TimeIntegrator::implicit_euler)
         return std::make_unique<physics::ImplicitEuler>();
     return std::make_unique<physics::SemiImplicitEuler>();
+}
+
+/// Of what the body is made of at the start, and of the files of tools.
+std::uint64_t fingerprint_of(const physics::Model& model, const std::vector<ToolSpec>& tools) {
+    const topology::Mesh& mesh = model.mesh();
+    topology::ArchiveWriter ar;
+    for (const Vec3& x : mesh.rest_positions()) ar(x);
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        ar(mesh.label(e), mesh.kind(e), mesh.region(e));
+        for (const topology::NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
+        for (int f = 0; f < mesh.num_faces(e); ++f) ar(mesh.neighbor({e, f}).element);
+    }
+    for (const Vec3& fibre : model.fibres()) ar(fibre);
+    for (const ToolSpec& tool : tools)
+        if (const auto* cut = std::get_if<Cut>(&tool.kind))
+            if (const auto* file = std::get_if<std::filesystem::path>(&cut->along))
+                ar(io::load_input_file(*file).bytes);
+    return io::checksum(ar.bytes());
 }
 
 /// Blades get a mode that suits the mesh, unless they have one.
@@ -73,12 +95,14 @@ Simulation::Simulation(const Scenario& scenario, SourceMesh source)
     const cutting::UncutBody uncut = uncut_body(model_);
     for (const ToolSpec& spec : scenario.tools)
         tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_);
+    fingerprint_ = fingerprint_of(model_, scenario.tools);
     step_limit();  // a fixed step that is too large is refused before anything is written
 }
 
 void Simulation::start() {
     for (Observer* observer : observers_) observer->on_start(*this);
     tell_frame();
+    tell_pause();
 }
 
 bool Simulation::is_finished() const { return time_ >= scenario_.dynamics.end_time; }
@@ -104,6 +128,34 @@ void Simulation::step() {
     for (Observer* observer : observers_) observer->on_step(*this);
     if (is_finished()) warn_of_inverted_elements();
     tell_frame();
+    tell_pause();
+}
+
+void Simulation::save(topology::ArchiveWriter& ar) const {
+    ar(edits_.bytes(), time_);
+    model_.save(ar);
+    integrator_->save(ar);
+    ledger_.save(ar);
+    for (const Tool& tool : tools_) ar(tool);
+    ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
+}
+
+// What follows edits follows them again, in the same order: mesh, elements, selections. What moves,
+// and what tools remember, is as it was.
+void Simulation::restore(topology::ArchiveReader& ar) {
+    const auto edits = ar.read<std::string>();
+    for (topology::ArchiveReader edit(edits); !edit.is_at_end();) {
+        const auto changes = edit.read<topology::ChangeSet>();
+        topology::replay(mesh_, changes);
+        model_.apply(changes);
+        edits_(changes);
+    }
+    ar(time_);
+    model_.restore(ar, time_);
+    integrator_->restore(ar, model_);
+    ledger_.restore(ar);
+    for (Tool& tool : tools_) ar(tool);
+    ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
 }
 
 void Simulation::warn_of_inverted_elements() {
@@ -136,6 +188,7 @@ void Simulation::cut(Tool& tool, double from, double to) {
     }();
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
+    edits_(changes);
     const Account before = ledger_.account();  // the model has not followed yet
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
@@ -210,6 +263,10 @@ void Simulation::tell_frame() {
     if (!is_due && !is_finished()) return;
     ++num_frames_;
     for (Observer* observer : observers_) observer->on_frame(*this);
+}
+
+void Simulation::tell_pause() {
+    for (Observer* observer : observers_) observer->on_pause(*this);
 }
 
 }  // namespace incise::sim

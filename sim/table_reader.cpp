@@ -23,12 +23,8 @@ std::string text_of(const IntegerLimits& limits) {
 }  // namespace
 
 std::optional<std::string> complaint(std::string_view name, const Names& names) {
-    const auto is_among = [&](std::span<const std::string_view> list) {
-        return std::find(list.begin(), list.end(), name) != list.end();
-    };
-    if (is_among(names.supported)) return std::nullopt;
-    if (is_among(names.planned))
-        return "this version does not support it yet; supported: " + list_of(names.supported);
+    if (std::find(names.supported.begin(), names.supported.end(), name) != names.supported.end())
+        return std::nullopt;
     std::string text =
         "is not known; did you mean " + in_quotes(nearest(name, names.supported)) + "?";
     if (names.supported.size() > 1) text += " Known here: " + list_of(names.supported);

@@ -19,14 +19,13 @@
 
 namespace incise::sim {
 
-/// Names that are taken, and names that are known but not supported yet.
+/// Names that are taken.
 struct Names {
     std::span<const std::string_view> supported;
-    std::span<const std::string_view> planned = {};
 };
 
-/// What is wrong with `name`: not supported yet, or unknown and nearest to which; nothing if it
-/// is among the supported ones.
+/// What is wrong with `name`: unknown, and nearest to which; nothing if it is among the supported
+/// ones.
 std::optional<std::string> complaint(std::string_view name, const Names& names);
 
 struct IntegerLimits {

@@ -41,6 +41,9 @@ class Tool {
     /// Its front keeps up with what another tool did.
     void follow(const topology::ChangeSet& changes) { front_.follow(changes); }
 
+    /// What it remembers of its cut so far.
+    static void archive(auto& ar, auto& self) { ar(self.front_); }
+
   private:
     cutting::Split cut_with(const Carver& carver, topology::Mesh& mesh,
                             const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,

@@ -67,18 +67,6 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
 }
 
-TEST_F(Command, TellsOfOptionsThatAreToCome) {
-    write("scene.toml", scenario);
-    for (const auto* arguments : {"scene.toml --resume", "scene.toml --resume scene.out"}) {
-        const auto outcome = run(std::string("run ") + arguments);
-        EXPECT_EQ(outcome.status, 2) << arguments;
-        EXPECT_EQ(outcome.err,
-                  "incise: --resume is not supported by this version yet: start the run anew\n");
-    }
-    const auto help = run("run --help").out;
-    EXPECT_EQ(help.find("--resume"), std::string::npos);
-}
-
 TEST_F(Command, RefusesNumbersOfThreadsThatCannotBe) {
     for (const auto* number : {"0", "-1", "two", "1000000"}) {
         const auto outcome = run(std::string("run scene.toml --threads ") + number);

@@ -182,7 +182,7 @@ TEST_F(RunFiles, IndexesNameTheFramesAndTheirTimes) {
         EXPECT_GT(io::read_mesh(folder_ / ("out/" + files[i])).mesh.num_cells(), 0u);
     }
     EXPECT_EQ(support::count_entries(folder_ / "out/frames"), 11u);
-    EXPECT_EQ(support::count_entries(folder_ / "out"), 6u);
+    EXPECT_EQ(support::count_entries(folder_ / "out"), 7u);
 }
 
 TEST_F(RunFiles, FramesDeclareTheArraysOfTheContract) {
@@ -381,7 +381,7 @@ TEST(Expectations, AreHeldAgainstTheEndOfTheRun) {
         Simulation simulation(
             scenario_of(soft_cube + two_tools + dynamics(0.2) + "[expect]\n" + expect));
         run(simulation);
-        return failed_expectations(simulation);
+        return failed_expectations(simulation.scenario(), summary_quantities(simulation));
     };
     using Failures = std::vector<std::string>;
     EXPECT_EQ(failures("time = { min = 0.2, max = 0.2 }\nelements = { max = 161 }\n"

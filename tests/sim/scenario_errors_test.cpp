@@ -297,11 +297,6 @@ TEST(ScenarioErrors, OfViscosity) {
                   std::string::npos);
 }
 
-TEST(ScenarioErrors, OfWhatThisVersionDoesNotSupport) {
-    EXPECT_NE(error_of("[output]\ncheckpoint_interval = 1\n").find("not support it yet"),
-              std::string::npos);
-}
-
 TEST(ScenarioErrors, OfConstraints) {
     const auto error = [](const std::string& lines) {
         return error_of("[[constraint]]\nwhere = { surface = true }\n" + lines);

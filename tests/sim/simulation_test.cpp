@@ -189,7 +189,7 @@ TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
             << name;
         ++num_files;
     }
-    EXPECT_EQ(num_files, 21u + 4u);  // frames; two indexes, history and edits
+    EXPECT_EQ(num_files, 21u + 4u + 2u);  // frames; two indexes, history, edits; checkpoints
 }
 
 TEST(Ledger, AccountsForEveryEdit) {

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/checkpoint.h"
+
+#include <algorithm>
+#include <iterator>
+#include <system_error>
+
+#include "io/atomic_file.h"
+#include "io/checked_file.h"
+#include "topology/archive.h"
+#include "topology/error.h"
+
+namespace incise::sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view prefix = "step_", suffix = ".checkpoint";
+
+fs::path folder_of_checkpoints(const fs::path& folder) { return folder / "checkpoints"; }
+
+/// In the order of their steps.
+std::vector<fs::path> checkpoints(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_of_checkpoints(folder), error), end;
+         !error && entry != end; entry.increment(error)) {
+        const auto name = entry->path().filename().string();
+        if (name.starts_with(prefix) && name.ends_with(suffix)) found.push_back(entry->path());
+    }
+    // The numbers have leading zeros; only a longer one has more digits.
+    std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
+        const auto x = a.filename().string(), y = b.filename().string();
+        return x.size() != y.size() ? x.size() < y.size() : x < y;
+    });
+    return found;
+}
+
+fs::path path_of(const fs::path& folder, std::uint64_t step) {
+    constexpr std::size_t num_digits = 12;
+    std::string digits = std::to_string(step);
+    digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
+    return folder_of_checkpoints(folder) / (std::string(prefix) + digits + std::string(suffix));
+}
+
+/// "KEY was A and is B" of the first few values that are not the same.
+std::string differences(const std::vector<std::pair<std::string, std::string>>& before,
+                        const std::vector<std::pair<std::string, std::string>>& now) {
+    constexpr std::size_t most_named = 3;
+    std::vector<std::pair<std::string, std::string>> changed;
+    std::set_symmetric_difference(before.begin(), before.end(), now.begin(), now.end(),
+                                  std::back_inserter(changed));
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : changed)
+        if (keys.empty() || keys.back() != key) keys.push_back(key);
+    const auto value_of = [](const auto& contents, const std::string& key) -> std::string {
+        for (const auto& [name, value] : contents)
+            if (name == key) return value;
+        return "not given";
+    };
+    std::string text;
+    for (std::size_t i = 0; i < std::min(keys.size(), most_named); ++i)
+        text += (i == 0 ? "" : ", ") + keys[i] + " was " + value_of(before, keys[i]) + " and is " +
+                value_of(now, keys[i]);
+    if (keys.size() > most_named)
+        text += ", and " + std::to_string(keys.size() - most_named) + " more";
+    return text;
+}
+
+}  // namespace
+
+void write_checkpoint(const fs::path& folder, const Simulation& simulation,
+                      const Written& written) {
+    if (!fs::is_directory(folder_of_checkpoints(folder)))
+        io::make_output_folder(folder_of_checkpoints(folder));
+    io::remove_unfinished_files(folder_of_checkpoints(folder));
+    topology::ArchiveWriter state, ar;
+    simulation.save(state);
+    ar(std::string(INCISE_VERSION), simulation.scenario().contents, simulation.fingerprint(),
+       written, state.bytes());
+    io::write_checked_file(path_of(folder, simulation.num_steps()), ar.bytes());
+    constexpr std::size_t num_kept = 2;
+    const auto all = checkpoints(folder);
+    for (std::size_t i = 0; i + num_kept < all.size(); ++i) io::remove_output_file(all[i]);
+}
+
+void remove_checkpoints(const fs::path& folder) {
+    for (const fs::path& path : checkpoints(folder)) io::remove_output_file(path);
+}
+
+Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
+    topology::ArchiveReader ar(bytes);
+    ar(version_);
+    if (version_ != INCISE_VERSION)
+        throw InputError(path_.string() + ": was written by version " + version_ +
+                         " of incise, and this is " + INCISE_VERSION +
+                         "; resume with that one, or begin anew without --resume");
+    ar(contents_, fingerprint_, written_, state_);
+}
+
+Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& warnings) {
+    auto all = checkpoints(folder);
+    std::reverse(all.begin(), all.end());
+    for (const fs::path& path : all) {
+        std::string bytes;
+        try {
+            bytes = io::read_checked_file(path);
+        } catch (const InputError& damage) {
+            warnings.push_back(std::string(damage.what()) + "; trying the checkpoint before it");
+            continue;
+        }
+        return Checkpoint(path, std::move(bytes));
+    }
+    throw InputError(folder.string() + ": there is no " + (all.empty() ? "" : "whole ") +
+                     "checkpoint of a run to resume; check --out, or begin anew without --resume");
+}
+
+void Checkpoint::require_same(const Scenario& scenario) const {
+    if (contents_ == scenario.contents) return;
+    throw InputError(path_.string() + ": the run was of another scenario: " +
+                     differences(contents_, scenario.contents) +
+                     "; resume with the scenario, --set and --end-time that it began with, or "
+                     "begin anew without --resume");
+}
+
+void Checkpoint::restore(Simulation& simulation) const {
+    require_same(simulation.scenario());
+    if (fingerprint_ != simulation.fingerprint())
+        throw InputError(path_.string() +
+                         ": the run was of another body: the file of the mesh, or of a surface "
+                         "that cuts it, has changed since; put the former one back, or begin anew "
+                         "without --resume");
+    topology::ArchiveReader ar(state_);
+    simulation.restore(ar);
+}
+
+}  // namespace incise::sim

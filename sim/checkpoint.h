@@ -1,0 +1,61 @@
+// Moments of a run from which it can be resumed: FOLDER/checkpoints.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/simulation.h"
+
+namespace incise::sim {
+
+/// What a run has written when a checkpoint is taken, and where it goes on writing.
+struct Written {
+    std::uint64_t history_size = 0, edits_size = 0;  ///< bytes of the files
+    std::vector<double> frame_times;                 ///< s
+    std::vector<double> last_row;                    ///< of the history
+    static void archive(auto& ar, auto& self) {
+        ar(self.history_size, self.edits_size, self.frame_times, self.last_row);
+    }
+};
+
+/// Writes a checkpoint, which is whole or not there (io/checked_file.h), and removes all but it and
+/// the one before. Everything that `written` speaks of must be on the disk. Throws OutputError.
+void write_checkpoint(const std::filesystem::path& folder, const Simulation& simulation,
+                      const Written& written);
+
+/// Throws OutputError.
+void remove_checkpoints(const std::filesystem::path& folder);
+
+/// A checkpoint that has been read: whole, and of this version of the program.
+class Checkpoint {
+  public:
+    /// The newest of the run in `folder` that is whole; for each that is not, and is newer, a
+    /// warning. Changes nothing. Throws InputError if there is none, or if another version of the
+    /// program, which might not go on to the same bits, has written it.
+    static Checkpoint newest(const std::filesystem::path& folder,
+                             std::vector<std::string>& warnings);
+
+    /// Throws InputError, naming what differs, if the scenario is not the one of the run.
+    void require_same(const Scenario& scenario) const;
+    /// Takes a simulation of that scenario, just built, to the moment of the checkpoint.
+    /// Throws InputError if its body began as another.
+    void restore(Simulation& simulation) const;
+
+    const Written& written() const { return written_; }
+
+  private:
+    Checkpoint(std::filesystem::path path, std::string bytes);
+
+    std::filesystem::path path_;
+    std::string version_;
+    std::vector<std::pair<std::string, std::string>> contents_;  // of the scenario
+    std::uint64_t fingerprint_ = 0;
+    Written written_;
+    std::string state_;  // of the simulation
+};
+
+}  // namespace incise::sim

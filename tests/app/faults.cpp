@@ -1,0 +1,75 @@
+// Preloaded into the program: makes the n-th of its calls that change files fail, or the last one
+// it makes. INCISE_FAULT_AT is n, from 1; INCISE_FAULT is the number of the error to report, or
+// "kill", or "half": half of what is to be written is, and then the disk is full. The number of
+// calls goes to the file INCISE_FAULT_COUNT when the program ends by itself.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+long num_calls = 0;
+
+template <class Function>
+Function* original(const char* name) {
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+/// Whether this call is to fail, with errno set. Does not return if it is to be the last one.
+bool fails() {
+    const char* at = std::getenv("INCISE_FAULT_AT");
+    if (++num_calls != (at ? std::atol(at) : 0)) return false;
+    const char* fault = std::getenv("INCISE_FAULT");
+    if (std::strcmp(fault, "kill") == 0) ::raise(SIGKILL);
+    errno = std::strcmp(fault, "half") == 0 ? ENOSPC : std::atoi(fault);
+    return true;
+}
+
+struct Counter {
+    ~Counter() {
+        const char* path = std::getenv("INCISE_FAULT_COUNT");
+        if (!path) return;
+        if (std::FILE* file = std::fopen(path, "w")) {
+            std::fprintf(file, "%ld", num_calls);
+            std::fclose(file);
+        }
+    }
+} counter;
+
+}  // namespace
+
+extern "C" {
+
+ssize_t write(int file, const void* bytes, size_t size) {
+    const auto next = original<ssize_t(int, const void*, size_t)>("write");
+    if (file <= STDERR_FILENO) return next(file, bytes, size);
+    // A kill may cut a long write short, but not one of a few pages.
+    constexpr size_t few_pages = 16384;
+    const char* fault = std::getenv("INCISE_FAULT");
+    const bool halves = fault && (std::strcmp(fault, "half") == 0 ||
+                                  (std::strcmp(fault, "kill") == 0 && size > few_pages));
+    const char* at = std::getenv("INCISE_FAULT_AT");
+    if (halves && num_calls + 1 == (at ? std::atol(at) : 0)) (void)!next(file, bytes, size / 2);
+    return fails() ? -1 : next(file, bytes, size);
+}
+int fsync(int file) { return fails() ? -1 : original<int(int)>("fsync")(file); }
+int rename(const char* from, const char* to) {
+    return fails() ? -1 : original<int(const char*, const char*)>("rename")(from, to);
+}
+int unlink(const char* path) {
+    // Of use to kill in, but hidden files may stay: that is no failure to report.
+    const char* fault = std::getenv("INCISE_FAULT");
+    if (fault && std::strcmp(fault, "kill") == 0) fails();
+    return original<int(const char*)>("unlink")(path);
+}
+int ftruncate(int file, off_t size) {
+    return fails() ? -1 : original<int(int, off_t)>("ftruncate")(file, size);
+}
+
+}  // extern "C"
