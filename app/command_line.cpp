@@ -65,7 +65,7 @@ void declare_run(CLI::App& app, Action& action) {
     verb->add_option("--threads", options->num_threads,
                      "How many threads compute (default: one a core); results are the same bits")
         ->type_name("N")
-        ->check(CLI::Range(1, 1024).description(""));
+        ->check(CLI::Range(1, 256).description(""));
     verb->add_flag("--resume", options->resume,
                    "Go on with a run that was stopped, from its last checkpoint, to the same files "
                    "as if it had not been; with the SCENARIO, --out, --set and --end-time that it "

@@ -33,6 +33,7 @@ std::string resuming_command(const RunOptions& options) {
     if (options.out) text += " --out " + quoted(options.out->string());
     if (options.end_time) text += " --end-time " + io::format_number(*options.end_time);
     for (const std::string& value : options.overrides) text += " --set " + quoted(value);
+    if (options.num_threads > 0) text += " --threads " + std::to_string(options.num_threads);
     return text + " --resume";
 }
 

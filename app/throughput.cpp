@@ -7,7 +7,6 @@
 #include <fstream>
 #include <limits>
 #include <random>
-#include <thread>
 
 #include "cutting/element_boxes.h"
 #include "cutting/splitter.h"
@@ -159,7 +158,7 @@ EditRate measure_split(topology::Mesh mesh, const physics::Material& material) {
     return rate;
 }
 
-/// Ten balls of about a hundred neighbours each, one after the other.
+/// Ten times a hundred elements that follow one another, so that they lie together.
 EditRate measure_removal(topology::Mesh mesh, const physics::Material& material) {
     physics::Model model(mesh, table_of(material));
     constexpr std::size_t num_batches = 10, batch = 100;
@@ -199,7 +198,7 @@ MachineSpeed measure_machine(int num_cores) {
 
 Throughput measure_throughput(const ThroughputPlan& plan,
                               const std::function<void(double, const std::string&)>& tell) {
-    const int num_cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int num_cores = physics::Workers::num_cores();
     std::vector<int> threads{1};
     if (const int most = plan.num_threads > 0 ? plan.num_threads : num_cores; most > 1)
         threads.push_back(most);

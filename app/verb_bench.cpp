@@ -82,7 +82,8 @@ void print_text(const Throughput& throughput) {
 
 int bench(const BenchOptions& options) {
     // What cannot be written is told before the work, not after.
-    if (options.json && *options.json != "-") io::write_file(*options.json, "");
+    if (options.json && *options.json != "-" && !std::filesystem::exists(*options.json))
+        io::write_file(*options.json, "{}\n");
     Throughput throughput;
     {
         Progress progress(1.0, "measuring", false);

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <sstream>
-#include <thread>
 #include <utility>
 
 #include "app/messages.h"
@@ -16,6 +15,7 @@
 #include "app/stopped_run.h"
 #include "app/verbs.h"
 #include "io/number_format.h"
+#include "physics/workers.h"
 #include "sim/run_writer.h"
 #include "sim/simulation.h"
 #include "topology/error.h"
@@ -68,7 +68,7 @@ class ProgressObserver : public sim::Observer {
 
 int num_threads(const RunOptions& options) {
     if (options.num_threads > 0) return options.num_threads;
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    return physics::Workers::num_cores();
 }
 
 /// Errors of the body name the scenario.

@@ -123,7 +123,8 @@ void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
 
 void ElementStore::number_nodes(std::size_t num_nodes) {
     local_numbers_.resize(std::max(local_numbers_.size(), num_nodes), ElementBlock::unnumbered);
-    ranges_.assign(num_node_ranges(num_nodes), {});
+    ranges_.resize(num_node_ranges(num_nodes));
+    for (auto& range : ranges_) range.clear();
     parts_.resize(blocks_.size());
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         if (!blocks_[b]) continue;
@@ -144,7 +145,8 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
 
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   Workers& workers, std::span<Vec3> forces) {
-    if (!is_numbered_) number_nodes(positions.size());
+    if (!is_numbered_ || ranges_.size() != num_node_ranges(positions.size()))
+        number_nodes(positions.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
         thread_local std::vector<LocalVector> places;

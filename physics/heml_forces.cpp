@@ -97,13 +97,7 @@ template <class Law>
         g2 = g2 + p * across2;
         g3 = g3 + p * across3;
     }
-    const auto add = [&](const Lanes3& f, int k) {
-        scatter_add(f, forces, group.nodes[k] + first);
-    };
-    add(g1 + g2 + g3, 0);
-    add(-1.0 * g1, 1);
-    add(-1.0 * g2, 2);
-    add(-1.0 * g3, 3);
+    scatter_add<4>({g1 + g2 + g3, -1.0 * g1, -1.0 * g2, -1.0 * g3}, forces, group.nodes, first);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ namespace {
             f[k] = side[2] > 0 ? f[k] + along_c : f[k] - along_c;
         }
     }
-    for (std::size_t k = 0; k < 8; ++k) scatter_add(f[k], forces, group.nodes[k] + first);
+    scatter_add(f, forces, group.nodes, first);
 }
 
 }  // namespace

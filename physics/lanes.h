@@ -128,7 +128,7 @@ struct Lanes {
     using Aliasing = Vector __attribute__((may_alias));
 };
 
-/// What follows the law's formulas where they are templates, and asks lane by lane elsewhere.
+/// The law's response: by its formulas if these are templates, else lane by lane.
 template <class Law>
 LawResponse<Lanes> response_of_lanes(const Law& law, const LinkStrain<Lanes>& s, double J0) {
     if constexpr (requires { law.response(s, J0); }) {
@@ -204,24 +204,30 @@ inline Lanes3 gather(const LocalVector* nodes, const std::uint16_t* places) {
 #endif
 }
 
-/// Adds to what `nodes` has at these places, lane by lane in ascending order.
-inline void scatter_add(const Lanes3& sum, LocalVector* nodes, const std::uint16_t* places) {
-    const auto quads = [&](Quad x, Quad y, Quad z, int first) {
+/// Adds the elements' vectors, by corner, to what `nodes` has at their places, element by element
+/// in fours, corner by corner within: elements may share nodes, and sums must not depend on how
+/// many lanes there are.
+template <std::size_t num_corners>
+[[gnu::always_inline]] inline void scatter_add(const std::array<Lanes3, num_corners>& f,
+                                               LocalVector* nodes,
+                                               const std::uint16_t (&places)[num_corners][8],
+                                               std::size_t first) {
+    const auto add_four = [&](Quad x, Quad y, Quad z, const std::uint16_t* at) {
         Quad w{};
         transpose(x, y, z, w);
         const Quad all[] = {x, y, z, w};
-        for (int l = 0; l < 4; ++l) {
-            auto& node = *reinterpret_cast<Quad*>(nodes[places[first + l]].data());
-            node += all[l];
-        }
+        for (int l = 0; l < 4; ++l) *reinterpret_cast<Quad*>(nodes[at[l]].data()) += all[l];
     };
 #ifdef __AVX512F__
     const auto low = [](Lanes a) { return __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3); };
     const auto high = [](Lanes a) { return __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7); };
-    quads(low(sum.x), low(sum.y), low(sum.z), 0);
-    quads(high(sum.x), high(sum.y), high(sum.z), 4);
+    for (std::size_t k = 0; k < num_corners; ++k)
+        add_four(low(f[k].x), low(f[k].y), low(f[k].z), places[k] + first);
+    for (std::size_t k = 0; k < num_corners; ++k)
+        add_four(high(f[k].x), high(f[k].y), high(f[k].z), places[k] + first + 4);
 #else
-    quads(sum.x.v, sum.y.v, sum.z.v, 0);
+    for (std::size_t k = 0; k < num_corners; ++k)
+        add_four(f[k].x.v, f[k].y.v, f[k].z.v, places[k] + first);
 #endif
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/workers.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -18,6 +19,8 @@ Workers::Workers(int num_threads)
 Workers::~Workers() = default;
 Workers::Workers(Workers&&) noexcept = default;
 Workers& Workers::operator=(Workers&&) noexcept = default;
+
+int Workers::num_cores() { return tbb::info::default_concurrency(); }
 
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t)>& work) {
     constexpr std::size_t few = 4;  // done sooner than other threads are woken

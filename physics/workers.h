@@ -26,6 +26,9 @@ class Workers {
 
     int num_threads() const { return num_threads_; }
 
+    /// How many the process may run at the same time.
+    static int num_cores();
+
     /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
     /// to be worth it; returns when all are done. The first exception thrown comes out.
     void for_each(std::size_t n, const std::function<void(std::size_t)>& work);

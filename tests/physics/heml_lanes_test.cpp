@@ -47,7 +47,7 @@ struct Elements {
     std::vector<LocalVector> forces(const HemlKernel& kernel, Processor processor) const {
         std::vector<LocalVector> f(positions.size());
         heml_forces_for(processor)(kernel.law, kernel.inversion_threshold, groups, fibres,
-                                positions.data(), f.data());
+                                   positions.data(), f.data());
         return f;
     }
 };
@@ -86,7 +86,11 @@ TEST(HemlLanes, HaveTheSameBitsOnEachProcessor) {
     test::Random random(2);
     for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
         SCOPED_TRACE(name);
-        const Elements elements = random_elements(kernel, 100, random);
+        Elements elements = random_elements(kernel, 100, random);
+        // Few nodes, which lanes share: the order of sums tells.
+        for (LinkGroup& group : elements.groups)
+            for (auto& corner : group.nodes)
+                for (std::uint16_t& node : corner) node = static_cast<std::uint16_t>(node % 12);
         const auto expected = elements.forces(kernel, Processor::plain);
         for (const Processor processor : processors_at_hand()) {
             const auto f = elements.forces(kernel, processor);
