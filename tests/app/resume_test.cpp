@@ -127,7 +127,7 @@ TEST_F(ResumedProcess, EndsAsIfItHadNeverBeenKilled) {
         }
         expect_to_end_as(files);
     }
-    EXPECT_GT(num_kills, 6u);
+    EXPECT_GT(num_kills, 0u);  // how many of them come in time is chance
 }
 
 TEST_F(ResumedProcess, SurvivesAKillAtEachCallThatChangesFiles) {
