@@ -111,7 +111,9 @@ TEST_F(ResumedProcess, EndsAsIfItHadNeverBeenKilled) {
     const auto files = whole(cut_scene);
     Random random(11);
     std::size_t num_kills = 0;
-    for (int round = 0; round < 6; ++round) {
+    // How many kills come in time is chance: more rounds until there are enough.
+    constexpr std::size_t enough = 7;
+    for (int round = 0; round < 6 || (num_kills < enough && round < 60); ++round) {
         SCOPED_TRACE(round);
         fs::remove_all(folder_ / "scene.out");
         // Again and again.
@@ -127,7 +129,7 @@ TEST_F(ResumedProcess, EndsAsIfItHadNeverBeenKilled) {
         }
         expect_to_end_as(files);
     }
-    EXPECT_GT(num_kills, 0u);  // how many of them come in time is chance
+    EXPECT_GE(num_kills, enough);
 }
 
 TEST_F(ResumedProcess, SurvivesAKillAtEachCallThatChangesFiles) {

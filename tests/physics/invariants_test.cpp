@@ -14,8 +14,8 @@ using topology::Mesh;
 
 /// Stretched and sheared by about `amplitude`, with about as much kinetic as elastic energy, and
 /// no momentum to speak of.
-BodyState swinging_state(const Mesh& mesh, double amplitude) {
-    test::Random random(12);
+BodyState swinging_state(const Mesh& mesh, double amplitude, unsigned seed = 12) {
+    test::Random random(seed);
     BodyState state = rest_state(mesh);
     Mat3 F = Mat3::Identity(), G;
     for (int c = 0; c < 3; ++c) {
@@ -70,6 +70,50 @@ double average(std::span<const double> energies) {
     return sum / static_cast<double>(energies.size());
 }
 
+/// Of a momentum in one step, by its scale: what round-off adds up from as a random walk does.
+constexpr double deviation_per_step = 1e-15;
+
+/// Sums over the nodes of what momenta are differences of.
+struct MomentumScales {
+    double linear = 0.0, angular = 0.0;
+
+    explicit MomentumScales(const Model& model) {
+        for (std::size_t n = 0; n < model.masses().size(); ++n) {
+            const double p = model.masses()[n] * model.velocities()[n].norm();
+            linear += p;
+            angular += p * model.positions()[n].norm();
+        }
+    }
+};
+
+TEST(FreeMotion, KeepsMomentaToTheRandomWalkOfRoundOff) {
+    const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
+    constexpr int num_steps = 5'000;
+    constexpr unsigned num_starts = 12;
+    for (const Law& law :
+         {Law(NeoHookean{1923.0, 5769.0}), Law(MooneyRivlin{1346.0, 577.0, 3462.0}),
+          Law(SaintVenantKirchhoff{5769.0, 3846.0})}) {
+        SCOPED_TRACE(law.index());
+        double linear = 0.0, angular = 0.0;  // sums of squares
+        for (unsigned seed = 0; seed < num_starts; ++seed) {
+            Model model(mesh, table_of_one_law(law));
+            set_state(model, swinging_state(mesh, 0.01, seed));
+            const Totals start = model.totals();
+            const MomentumScales scale(model);
+            const double dt = 0.5 * model.stable_step();
+            double time = 0.0;
+            for (int i = 0; i < num_steps; ++i) step(model, time, dt);
+            const Totals end = model.totals();
+            linear += (end.momentum - start.momentum).squaredNorm() / (scale.linear * scale.linear);
+            angular += (end.angular_momentum - start.angular_momentum).squaredNorm() /
+                       (scale.angular * scale.angular);
+        }
+        const double deviation = deviation_per_step * std::sqrt(num_steps);
+        EXPECT_LE(std::sqrt(linear / num_starts), deviation);
+        EXPECT_LE(std::sqrt(angular / num_starts), deviation);
+    }
+}
+
 struct FreeRun {
     const char* name;
     Law law;
@@ -86,19 +130,14 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
         Model model(mesh, table_of_one_law(free.law));
         set_state(model, swinging_state(mesh, 0.01));
         const Totals start = model.totals();
-        double momentum_scale = 0.0, angular_scale = 0.0;
-        for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
-            const double p = model.masses()[n] * model.velocities()[n].norm();
-            momentum_scale += p;
-            angular_scale += p * model.positions()[n].norm();
-        }
+        const MomentumScales scale(model);
         const EnergyRecord record = run(model, 0.5 * model.stable_step(), free.num_steps);
         const Totals end = model.totals();
-        // Round-off of each step, adding up as a random walk does; three of its deviations.
-        const double round_off = 3e-15 * std::sqrt(free.num_steps);
-        EXPECT_LE((end.momentum - start.momentum).norm(), round_off * momentum_scale);
+        // One draw of the random walk of round-off: three of the deviations that are held below.
+        const double round_off = 3.0 * deviation_per_step * std::sqrt(free.num_steps);
+        EXPECT_LE((end.momentum - start.momentum).norm(), round_off * scale.linear);
         EXPECT_LE((end.angular_momentum - start.angular_momentum).norm(),
-                  round_off * angular_scale);
+                  round_off * scale.angular);
 
         const std::span<const double> energies = record.staggered;
         const std::size_t tenth = energies.size() / 10;
