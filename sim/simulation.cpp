@@ -10,6 +10,7 @@
 #include "cutting/step_length.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
+#include "physics/winding.h"
 #include "sim/body.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -126,7 +127,7 @@ void Simulation::step() {
 
     model_.compute_forces(time_);
     for (Observer* observer : observers_) observer->on_step(*this);
-    if (is_finished()) warn_of_inverted_elements();
+    if (is_finished()) warn_of_lost_elements();
     tell_frame();
     tell_pause();
 }
@@ -158,19 +159,34 @@ void Simulation::restore(topology::ArchiveReader& ar) {
     ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
 }
 
-void Simulation::warn_of_inverted_elements() {
-    if (model_.min_volume_ratio() > 0.0) return;
-    std::size_t num_inverted = 0;
-    for (std::size_t i = 0; i < mesh_.element_capacity(); ++i)
-        if (const topology::ElementId e(i); mesh_.is_alive(e))
-            num_inverted += model_.element_result(e).volume_ratio <= 0.0;
-    if (num_inverted == 0) return;  // no element at all
+void Simulation::warn_of_lost_elements() {
+    // Tissue keeps its volume: with less it has been crushed, whatever the law thinks of it.
+    constexpr double least_volume_ratio = 0.01;
+    std::size_t num_crushed = 0;
+    if (model_.min_volume_ratio() < least_volume_ratio)
+        for (std::size_t i = 0; i < mesh_.element_capacity(); ++i)
+            if (const topology::ElementId e(i); mesh_.is_alive(e))
+                num_crushed += model_.element_result(e).volume_ratio < least_volume_ratio;
     std::ostringstream text;
-    text << "at the end, t = " << time_ << " s, " << num_inverted
-         << (num_inverted == 1 ? " element is" : " elements are")
-         << " flat or inverted (J of 0 and less): the body has been pressed through itself, which "
-            "tissue cannot; see min_J in history.csv for when, and use smaller motions or loads, a "
-            "finer mesh, or law = \"stable-neo-hookean\"";
+    text << "at the end, t = " << time_ << " s, ";
+    if (num_crushed > 0) {
+        text << num_crushed << (num_crushed == 1 ? " element is" : " elements are")
+             << " flat or inverted (J below " << least_volume_ratio
+             << "): the body has been pressed through itself, which tissue cannot; see min_J in "
+                "history.csv for when, and use smaller motions or loads, a finer mesh, or law = "
+                "\"stable-neo-hookean\"";
+    } else if (const auto winding = physics::find_winding(mesh_, model_.positions());
+               winding.num_edges > 0) {
+        text << "the body is wound up: round " << winding.num_edges
+             << (winding.num_edges == 1 ? " edge" : " edges")
+             << " elements make more than a full turn and lie in each other, one of them element "
+             << mesh_.label(winding.element)
+             << ", though none is inverted; no law can undo that: see the frames for when it "
+                "happened, and use smaller motions or loads, a smaller dynamics.safety, or a lower "
+                "Poisson's ratio";
+    } else {
+        return;
+    }
     warnings_.push_back(text.str());
 }
 

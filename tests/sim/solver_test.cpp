@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <sstream>
+
 #include "run_folder.h"
 #include "topology/error.h"
 
@@ -88,6 +92,45 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 0.1, by = [0, 0, -)" +
     ASSERT_LE(through.model().min_volume_ratio(), 0.0);
     ASSERT_FALSE(through.warnings().empty());
     EXPECT_NE(through.warnings().back().find("flat or inverted"), std::string::npos);
+}
+
+// All corners of a cube are led to where their angles about its diagonal are twice what they were.
+TEST(Simulation, TellsOfABodyThatEndsWoundUp) {
+    std::ostringstream text;
+    text << R"(
+[mesh]
+box = { size = [1, 1, 1], cells = [1, 1, 1] }
+[[material]]
+density = 1000
+young = 1000
+poisson = 0.3
+[dynamics]
+end_time = 1
+)";
+    const Vec3 axis = Vec3::Ones().normalized(), across = Vec3(1, -1, 0).normalized();
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 x(i & 1, (i >> 1) & 1, i >> 2), beside = x - axis.dot(x) * axis;
+        const double angle = std::atan2(axis.cross(across).dot(beside), across.dot(beside));
+        const bool is_on_axis = beside.norm() < 1e-9;
+        const Vec3 way =
+            is_on_axis ? Vec3::Zero().eval() : (Eigen::AngleAxisd(angle, axis) * x - x).eval();
+        const auto list = [](const Vec3& v) {
+            std::ostringstream numbers;
+            numbers << "[" << v[0] << ", " << v[1] << ", " << v[2] << "]";
+            return numbers.str();
+        };
+        text << "[[constraint]]\nname = \"corner_" << i
+             << "\"\nwhere = { box = { min = " << list(x - Vec3::Constant(0.1))
+             << ", max = " << list(x + Vec3::Constant(0.1))
+             << " } }\nmove = [{ time = 0, by = [0, 0, 0] }, { time = 1, by = " << list(way)
+             << " }]\n";
+    }
+    Simulation simulation(scenario_of(text.str()));
+    run(simulation);
+    EXPECT_GT(simulation.model().min_volume_ratio(), 0.3);
+    ASSERT_FALSE(simulation.warnings().empty());
+    EXPECT_NE(simulation.warnings().back().find("the body is wound up: round "), std::string::npos)
+        << simulation.warnings().back();
 }
 
 TEST(StaticRun, TakesOneLoadStepForEachFrameUnlessToldOtherwise) {
