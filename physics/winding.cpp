@@ -53,14 +53,14 @@ Winding find_winding(const topology::Mesh& mesh, std::span<const Vec3> positions
         return std::array{u.a.index(), u.b.index(), u.element.index()} <
                std::array{v.a.index(), v.b.index(), v.element.index()};
     });
-    constexpr double full_turn = 2.0 * std::numbers::pi * (1.0 + 1e-9);  // and rounding
+    constexpr double one_and_a_half_turns = 3.0 * std::numbers::pi;
     Winding winding;
     for (auto first = wedges.begin(); first != wedges.end();) {
         double angle = 0.0;
         auto next = first;
         for (; next != wedges.end() && next->a == first->a && next->b == first->b; ++next)
             angle += next->angle;
-        if (angle > full_turn) {
+        if (angle > one_and_a_half_turns) {
             if (winding.num_edges == 0 || first->element < winding.element)
                 winding.element = first->element;
             ++winding.num_edges;

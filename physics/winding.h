@@ -10,8 +10,10 @@
 
 namespace incise::physics {
 
-/// Edges of tetrahedra round which dihedral angles add up to more than a full turn: there elements
-/// lie in each other, though none need be inverted. No law of an element's own strain undoes it.
+/// Edges of tetrahedra round which dihedral angles add up to more than one and a half turns: inside
+/// a body they make whole turns, so two there. Elements lie in each other then, though none need be
+/// inverted, and no law of an element's own strain undoes it. Lips of a cut that overlap, which
+/// nothing keeps apart, make somewhat more than one turn round the cut's end and are not meant.
 struct Winding {
     std::size_t num_edges = 0;
     topology::ElementId element;  ///< the one of the lowest id at such an edge; if there are any

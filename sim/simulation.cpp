@@ -179,7 +179,7 @@ void Simulation::warn_of_lost_elements() {
                winding.num_edges > 0) {
         text << "the body is wound up: round " << winding.num_edges
              << (winding.num_edges == 1 ? " edge" : " edges")
-             << " elements make more than a full turn and lie in each other, one of them element "
+             << " elements go twice and lie in each other, one of them element "
              << mesh_.label(winding.element)
              << ", though none is inverted; no law can undo that: see the frames for when it "
                 "happened, and use smaller motions or loads, a smaller dynamics.safety, or a lower "
