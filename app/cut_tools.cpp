@@ -15,7 +15,7 @@ namespace {
 
 enum class Kind { plane, surface, sweep, sphere, box, capsule };
 
-constexpr std::array<CutToolOption, 6> options = {{
+constexpr std::array<CutToolOption, 6> tool_options = {{
     {"--plane", "px,py,pz,nx,ny,nz", "Cut through with the plane at p with normal n"},
     {"--surface", "FILE", "Cut along a triangulated surface, open or closed: STL, PLY, OFF, OBJ"},
     {"--sweep", "\"x,y,z;x,y,z | x,y,z;x,y,z\"",
@@ -98,12 +98,12 @@ struct Reader {
 
 }  // namespace
 
-std::span<const CutToolOption> cut_tool_options() { return options; }
+std::span<const CutToolOption> cut_tool_options() { return tool_options; }
 
 ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
     std::size_t row = 0;
-    while (argument.option != options.at(row).name) ++row;
-    const Reader reader{argument, options[row]};
+    while (argument.option != tool_options.at(row).name) ++row;
+    const Reader reader{argument, tool_options[row]};
     ParsedCutTool parsed;
     switch (static_cast<Kind>(row)) {
         case Kind::plane:

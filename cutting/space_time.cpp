@@ -9,13 +9,14 @@ namespace {
 
 /// A point in space and time; time is 0 before the step and 1 after it.
 using Event = ShiftedPoint<4>;
-using Triangle = std::array<const Event*, 3>;
+using EventTriangle = std::array<const Event*, 3>;
 
 /// Six events span one more point than four dimensions have, so some combination of them
 /// vanishes: its coefficients are the minors with alternating signs. The triangles meet if those
 /// of the first are all of one sign and those of the second all of the other; then the first
 /// three are the weights of the meeting point in the first triangle.
-bool triangles_meet(const Triangle& s, const Triangle& t, std::array<double, 3>& weights) {
+bool triangles_meet(const EventTriangle& s, const EventTriangle& t,
+                    std::array<double, 3>& weights) {
     const std::array<const Event*, 6> events = {s[0], s[1], s[2], t[0], t[1], t[2]};
     int first = 0;
     for (std::size_t k = 0; k < 6; ++k) {

@@ -19,7 +19,7 @@ namespace incise::io {
 
 namespace {
 
-struct Format {
+struct ReadFormat {
     const char* name;
     const char* suffix;
     std::string_view magic;  ///< how its text begins, in lower case; empty: told by the suffix only
@@ -27,7 +27,7 @@ struct Format {
 };
 
 // clang-format off
-constexpr Format formats[] = {
+constexpr ReadFormat read_formats[] = {
     {"VTU", ".vtu", "<", read_vtu},
     {"legacy VTK", ".vtk", "# vtk datafile", read_legacy_vtk},
     {"Gmsh", ".msh", "$", read_gmsh},
@@ -40,19 +40,19 @@ constexpr Format formats[] = {
 
 constexpr std::size_t longest_magic = 64;
 
-const Format* format_of(const InputFile& file) {
+const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
         const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
         text = {begin, text.end()};
         const auto head = lower_case(text.substr(0, longest_magic));
-        for (const auto& format : formats)
+        for (const auto& format : read_formats)
             if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
     const auto suffix = lower_case(file.path.extension().string());
-    for (const auto& format : formats)
+    for (const auto& format : read_formats)
         if (format.magic.empty() && suffix == format.suffix) return &format;
     return nullptr;
 }
@@ -61,10 +61,10 @@ const Format* format_of(const InputFile& file) {
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const auto file = load_input_file(path);
-    const auto* format = format_of(file);
+    const auto* format = read_format_of(file);
     if (format == nullptr) {
         std::string known;
-        for (const auto& row : formats)
+        for (const auto& row : read_formats)
             known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
         throw InputError(file.name() +
                          ": begins like no mesh format known here; convert it to one of: " + known);

@@ -15,7 +15,7 @@ namespace incise::io {
 
 namespace {
 
-struct Format {
+struct WrittenFormat {
     const char* suffix;
     std::string (*text)(const topology::MeshData&);
 };
@@ -26,7 +26,7 @@ std::string plain_vtu_text(const topology::MeshData& mesh) {
     return vtu_text(frame);
 }
 
-constexpr std::array<Format, 5> formats = {{
+constexpr std::array<WrittenFormat, 5> written_formats = {{
     {".inp", abaqus_text},
     {".mesh", medit_text},
     {".msh", gmsh_text},
@@ -34,15 +34,15 @@ constexpr std::array<Format, 5> formats = {{
     {".vtu", plain_vtu_text},
 }};
 
-const Format& format_of(const std::filesystem::path& path) {
+const WrittenFormat& written_format_of(const std::filesystem::path& path) {
     auto suffix = path.extension().string();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const auto& format : formats)
+    for (const auto& format : written_formats)
         if (suffix == format.suffix) return format;
 
     std::string known;
-    for (const auto& format : formats)
+    for (const auto& format : written_formats)
         known += (known.empty() ? "" : ", ") + std::string(format.suffix);
     const auto what = suffix.empty() ? "a name without a suffix tells no format"
                                      : "meshes cannot be written as '" + suffix + "'";
@@ -71,14 +71,14 @@ void append_point(std::string& text, const Vec3& point, char separator) {
 }
 
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
-    write_file(path, format_of(path).text(mesh));
+    write_file(path, written_format_of(path).text(mesh));
 }
 
-void check_writable(const std::filesystem::path& path) { format_of(path); }
+void check_writable(const std::filesystem::path& path) { written_format_of(path); }
 
 std::vector<std::string> writable_suffixes() {
     std::vector<std::string> suffixes;
-    for (const auto& format : formats) suffixes.emplace_back(format.suffix);
+    for (const auto& format : written_formats) suffixes.emplace_back(format.suffix);
     return suffixes;
 }
 

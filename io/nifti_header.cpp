@@ -35,9 +35,9 @@ Layout layout_of(std::string_view bytes) {
 }
 
 /// The fields of either version.
-class Fields {
+class NiftiFields {
   public:
-    Fields(std::string_view bytes, bool swap, bool is_second)
+    NiftiFields(std::string_view bytes, bool swap, bool is_second)
         : bytes_(bytes), swap_(swap), is_second_(is_second) {}
 
     std::string_view magic() const { return bytes_.substr(is_second_ ? 4 : 344, 3); }
@@ -110,7 +110,7 @@ ScalarType type_of(const InputFile& file, int datatype) {
     }
 }
 
-std::array<std::int64_t, 3> dimensions_of(const InputFile& file, const Fields& fields) {
+std::array<std::int64_t, 3> dimensions_of(const InputFile& file, const NiftiFields& fields) {
     const auto rank = fields.dim(0);
     if (rank < 1 || rank > 7)
         throw InputError(file.name() + ": has " + std::to_string(rank) +
@@ -129,7 +129,7 @@ std::array<std::int64_t, 3> dimensions_of(const InputFile& file, const Fields& f
     return image_dimensions(file, numbers);
 }
 
-void set_sform(ImageHeader& header, const Fields& fields) {
+void set_sform(ImageHeader& header, const NiftiFields& fields) {
     Eigen::Matrix3d steps;
     for (std::size_t row = 0; row < 3; ++row) {
         const auto r = static_cast<Eigen::Index>(row);
@@ -150,7 +150,7 @@ void set_sform(ImageHeader& header, const Fields& fields) {
     }
 }
 
-void set_qform(ImageHeader& header, const Fields& fields) {
+void set_qform(ImageHeader& header, const NiftiFields& fields) {
     const double b = fields.quaternion(0), c = fields.quaternion(1), d = fields.quaternion(2);
     const double a = std::sqrt(std::max(0.0, 1.0 - b * b - c * c - d * d));
     header.directions = Eigen::Quaterniond(a, b, c, d).normalized().toRotationMatrix();
@@ -159,7 +159,7 @@ void set_qform(ImageHeader& header, const Fields& fields) {
         header.origin[static_cast<Eigen::Index>(i)] = fields.qoffset(i);
 }
 
-void set_pose(ImageHeader& header, const Fields& fields) {
+void set_pose_by_forms(ImageHeader& header, const NiftiFields& fields) {
     for (std::size_t i = 0; i < 3; ++i)
         header.spacing[static_cast<Eigen::Index>(i)] = fields.pixdim(i + 1);
     if (fields.sform_code() > 0)
@@ -194,7 +194,7 @@ ImageHeader read_nifti_header(const InputFile& file) {
     if (layout.size == 0)
         throw InputError(file.name() +
                          ": does not begin as a NIfTI image; check what it is, or get it anew");
-    const Fields fields(bytes, layout.swap, layout.size == size_of_2);
+    const NiftiFields fields(bytes, layout.swap, layout.size == size_of_2);
     if (fields.magic() != (layout.size == size_of_2 ? "n+2" : "n+1"))
         throw InputError(file.name() +
                          ": is no NIfTI image in one file (Analyze, or a pair of .hdr and .img); "
@@ -215,7 +215,7 @@ ImageHeader read_nifti_header(const InputFile& file) {
                          " by its header, which is damaged");
     header.skip_bytes = static_cast<std::size_t>(offset);
     if (is_packed) header.encoding = ImageHeader::Encoding::zlib_or_gzip;
-    set_pose(header, fields);
+    set_pose_by_forms(header, fields);
     return header;
 }
 

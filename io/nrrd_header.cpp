@@ -20,9 +20,9 @@ struct Field {
     std::size_t line = 0;
 };
 
-class Fields {
+class NrrdFields {
   public:
-    explicit Fields(const InputFile& file) : file_(file) {
+    explicit NrrdFields(const InputFile& file) : file_(file) {
         const std::string_view bytes = file.bytes;
         std::size_t line = 1;
         for (std::size_t begin = 0; begin < bytes.size(); ++line) {
@@ -118,7 +118,7 @@ class Fields {
     std::size_t data_begin_ = 0;
 };
 
-ScalarType type_of(const Fields& fields) {
+ScalarType type_of(const NrrdFields& fields) {
     constexpr std::pair<std::string_view, ScalarType> types[] = {
         {"signed char", ScalarType::int8},
         {"int8", ScalarType::int8},
@@ -169,7 +169,7 @@ ScalarType type_of(const Fields& fields) {
 }
 
 /// Refuses axes that are not of space: colours, vectors, segments, time.
-void require_axes_of_space(const Fields& fields, std::size_t num_axes) {
+void require_axes_of_space(const NrrdFields& fields, std::size_t num_axes) {
     const auto refuse = [&](const Field& field, std::string_view kind) {
         fields.fail(field, "has an axis " + in_quotes(kind) +
                                " that is not of space, that is more than one component a voxel; "
@@ -183,7 +183,7 @@ void require_axes_of_space(const Fields& fields, std::size_t num_axes) {
         if (directions->value.find("none") != std::string_view::npos) refuse(*directions, "none");
 }
 
-void set_encoding(ImageHeader& header, const Fields& fields) {
+void set_encoding(ImageHeader& header, const NrrdFields& fields) {
     using enum ImageHeader::Encoding;
     constexpr std::pair<std::string_view, ImageHeader::Encoding> encodings[] = {
         {"raw", raw}, {"txt", text},          {"text", text},       {"ascii", text},
@@ -203,7 +203,7 @@ void set_encoding(ImageHeader& header, const Fields& fields) {
     header.swap_bytes = (endian.value == "big") != (std::endian::native == std::endian::big);
 }
 
-void set_pose(ImageHeader& header, const Fields& fields) {
+void set_pose_by_fields(ImageHeader& header, const NrrdFields& fields) {
     if (const auto* directions = fields.find({"space directions"})) {
         const auto vectors = fields.vectors(*directions, 3);
         Eigen::Matrix3d steps;
@@ -219,7 +219,7 @@ void set_pose(ImageHeader& header, const Fields& fields) {
         header.origin = fields.vectors(*origin, 1)[0];
 }
 
-void set_place(ImageHeader& header, const InputFile& file, const Fields& fields) {
+void set_place(ImageHeader& header, const InputFile& file, const NrrdFields& fields) {
     if (const auto* data = fields.find({"data file", "datafile"})) {
         if (data->value.starts_with("LIST") || data->value.find('%') != data->value.npos)
             fields.fail(*data,
@@ -245,7 +245,7 @@ ImageHeader read_nrrd_header(const InputFile& file) {
     if (!begins_as_nrrd(file))
         throw InputError(file.name() +
                          ": does not begin as a NRRD image; check what it is, or get it anew");
-    const Fields fields(file);
+    const NrrdFields fields(file);
     const auto& dimension = fields.need("dimension");
     const auto num_axes = fields.number<std::uint32_t>(dimension, dimension.value);
     if (num_axes < 1 || num_axes > 16)
@@ -257,7 +257,7 @@ ImageHeader read_nrrd_header(const InputFile& file) {
         image_dimensions(file, fields.numbers<std::int64_t>(fields.need("sizes"), num_axes));
     header.type = type_of(fields);
     set_encoding(header, fields);
-    set_pose(header, fields);
+    set_pose_by_fields(header, fields);
     set_place(header, file, fields);
     return header;
 }

@@ -23,7 +23,7 @@ using topology::CellKind;
 using enum CellForm::Use;
 
 // By the number of their nodes. TetGen's tetrahedra have positive volume in VTK's order too.
-constexpr CellForm forms[] = {
+constexpr CellForm tetrahedra_forms[] = {
     {4, "tetrahedron", 4, keep, CellKind::tetrahedron},
     {10, "second-order tetrahedron", 10},
 };
@@ -126,7 +126,7 @@ class TetgenReader {
         const auto num_attributes = elements_.num_columns() > 2 ? elements_.number<std::uint32_t>(
                                                                       2, "the number of attributes")
                                                                 : 0;
-        const auto* form = find_form(forms, num_corners);
+        const auto* form = find_form(tetrahedra_forms, num_corners);
         if (form == nullptr)
             elements_.fail("elements have " + std::to_string(num_corners) +
                            " nodes; they must have 4");

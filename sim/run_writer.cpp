@@ -194,7 +194,8 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
       first_time_(simulation.time()),
       first_step_(simulation.num_steps()),
       next_checkpoint_(0.0),
-      has_checkpoint_(written != nullptr) {
+      has_checkpoint_(written != nullptr),
+      num_frames_(series_.times().size()) {
     if (written) {
         for (std::size_t i = 0; i < std::min(last_row_.size(), written->last_row.size()); ++i)
             last_row_[i].second = written->last_row[i];
@@ -227,9 +228,18 @@ void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
 }
 
 void RunWriter::on_frame(const Simulation& simulation) {
-    series_.add(
-        build_frame(simulation.model(), simulation.time(), simulation.scenario().output.fields));
+    auto frame =
+        build_frame(simulation.model(), simulation.time(), simulation.scenario().output.fields);
+    wait_for_frame();
+    // By this policy the frame is written by whoever waits for it if no thread can be had.
+    frame_ = std::async(std::launch::async | std::launch::deferred,
+                        [this, frame = std::move(frame)] { series_.add(frame); });
+    ++num_frames_;
     append_history(simulation);
+}
+
+void RunWriter::wait_for_frame() {
+    if (frame_.valid()) frame_.get();
 }
 
 void RunWriter::on_pause(const Simulation& simulation) {
@@ -239,6 +249,7 @@ void RunWriter::on_pause(const Simulation& simulation) {
 }
 
 void RunWriter::take_checkpoint(const Simulation& simulation) {
+    wait_for_frame();
     history_.sync();
     edits_.sync();
     Written written{history_.size(), edits_.size(), {}, {}};
@@ -256,6 +267,7 @@ void RunWriter::note_checkpoint(const Simulation& simulation) {
 }
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
+    wait_for_frame();
     // The state that a run failed in is not one to keep: the last row written stands.
     const bool has_failed = outcome.status == "failed";
     if (!has_failed && simulation.scenario().output.interval == 0.0) append_history(simulation);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,8 +44,10 @@ std::vector<std::string> failed_expectations(const Scenario& scenario,
 std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
                                               const Scenario& scenario);
 
-/// Everything is on disk, readable, when a function returns; a kill at any moment leaves whole
-/// files and whole lines, and a checkpoint to resume from. All functions throw OutputError.
+/// Frames are written by a thread of their own while the simulation goes on, one at a time: the next
+/// waits for it, as does a checkpoint and the end. Everything else is on disk, readable, when a
+/// function returns; a kill at any moment leaves whole files and whole lines, and a checkpoint to
+/// resume from. All functions throw OutputError, that of a frame the first that waits for it.
 class RunWriter : public Observer {
   public:
     /// Makes the folder; a former run there is replaced. InputError: see io::OutputFolder.
@@ -66,8 +69,9 @@ class RunWriter : public Observer {
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
     /// The run's index, or its folder if it has no frames.
-    std::filesystem::path main_result() const { return num_frames() > 0 ? pvd_path() : folder(); }
-    std::size_t num_frames() const { return series_.times().size(); }
+    std::filesystem::path main_result() const { return num_frames_ > 0 ? pvd_path() : folder(); }
+    /// With the one that is being written.
+    std::size_t num_frames() const { return num_frames_; }
 
   private:
     RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written);
@@ -75,6 +79,7 @@ class RunWriter : public Observer {
     const std::filesystem::path& folder() const { return folder_.path(); }
     void append_history(const Simulation& simulation);
     void note_checkpoint(const Simulation& simulation);
+    void wait_for_frame();
 
     io::OutputFolder folder_;
     io::Series series_;
@@ -84,6 +89,8 @@ class RunWriter : public Observer {
     std::uint64_t first_step_;
     double next_checkpoint_;  // in intervals
     bool has_checkpoint_;
+    std::size_t num_frames_;
+    std::future<void> frame_;  // which is being written; the last member, as its thread uses others
 };
 
 }  // namespace incise::sim

@@ -64,7 +64,7 @@ constexpr FaceDarts opposite_darts(const CellTraits& t) {
     return places;
 }
 
-constexpr std::array<FaceDarts, num_cell_kinds> opposite = {
+constexpr std::array<FaceDarts, num_cell_kinds> opposite_places = {
     opposite_darts(cell_traits[0]), opposite_darts(cell_traits[1]), opposite_darts(cell_traits[2]),
     opposite_darts(cell_traits[3])};
 
@@ -141,7 +141,7 @@ void CellMap::add_element(ElementId e, CellKind kind, std::span<const NodeId> co
             complex.basic_link_beta_1(row[p], row[(p + 1) % face.size()]);
         m.first_darts[m.face_begin[e.index()] + static_cast<std::size_t>(f)] = row[0];
     }
-    const FaceDarts& places = opposite[static_cast<std::size_t>(kind)];
+    const FaceDarts& places = opposite_places[static_cast<std::size_t>(kind)];
     for (int f = 0; f < t.num_faces; ++f)
         for (int p = 0; p < t.face_sizes[static_cast<std::size_t>(f)]; ++p) {
             const auto i = static_cast<std::size_t>(f), j = static_cast<std::size_t>(p);

@@ -16,14 +16,14 @@ using physics::BodyState;
 using physics::Model;
 using topology::Mesh;
 
-constexpr physics::SaintVenantKirchhoff stvk{5769.0, 3846.0};
+constexpr physics::SaintVenantKirchhoff tissue{5769.0, 3846.0};
 constexpr double density = 1000.0;  // kg/m3
 constexpr double dt = 0.01;         // s, many times the bound of an explicit step
 
 struct Body {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.2, 1)).mesh;
     std::vector<Nodes> tetrahedra = tetrahedra_of(mesh);
-    Model model{mesh, physics::table_of_one_law(stvk, density)};
+    Model model{mesh, physics::table_of_one_law(tissue, density)};
     BodyState state;
 
     explicit Body(std::uint64_t seed) {
@@ -65,7 +65,7 @@ Eigen::MatrixXd matrix_by_differences(Body& body) {
 TEST(ImplicitStep, HasTheTangentOfTheForcesOfHeml) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         Body body(seed);
-        ImplicitStep implicit(stvk, density, body.tetrahedra, body.mesh.rest_positions());
+        ImplicitStep implicit(tissue, density, body.tetrahedra, body.mesh.rest_positions());
         implicit.assemble(dt, body.state.positions, body.state.velocities);
         const Eigen::MatrixXd expected = matrix_by_differences(body);
         const Eigen::MatrixXd lower = implicit.matrix();
@@ -93,7 +93,7 @@ TEST(ImplicitStep, GoesWhereADenseSolutionSays) {
     }
     const Eigen::VectorXd d = reduced.partialPivLu().solve(right);
 
-    ImplicitStep implicit(stvk, density, body.tetrahedra, body.mesh.rest_positions(), held);
+    ImplicitStep implicit(tissue, density, body.tetrahedra, body.mesh.rest_positions(), held);
     BodyState after = body.state;
     ASSERT_TRUE(implicit.step(dt, after.positions, after.velocities));
     const double scale = d.cwiseAbs().maxCoeff();
@@ -109,7 +109,7 @@ TEST(ImplicitStep, GoesWhereADenseSolutionSays) {
 
 TEST(ImplicitStep, KeepsTheMomentumOfAFreeBody) {
     Body body(5);
-    ImplicitStep implicit(stvk, density, body.tetrahedra, body.mesh.rest_positions());
+    ImplicitStep implicit(tissue, density, body.tetrahedra, body.mesh.rest_positions());
     const auto momentum = [&] {
         Vec3 sum = Vec3::Zero();
         for (std::size_t n = 0; n < body.state.velocities.size(); ++n)
@@ -125,7 +125,7 @@ TEST(ImplicitStep, KeepsTheMomentumOfAFreeBody) {
 TEST(ImplicitStep, ReportsAMatrixThatIsNotPositive) {
     Body body(6);
     for (Vec3& x : body.state.positions) x *= 0.3;  // far beyond where the law turns soft
-    ImplicitStep implicit(stvk, density, body.tetrahedra, body.mesh.rest_positions());
+    ImplicitStep implicit(tissue, density, body.tetrahedra, body.mesh.rest_positions());
     BodyState after = body.state;
     EXPECT_FALSE(implicit.step(10.0, after.positions, after.velocities));
     EXPECT_EQ(after.positions, body.state.positions);

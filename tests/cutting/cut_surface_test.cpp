@@ -35,12 +35,6 @@ double angle(const Vec3& u, const Vec3& v) {
     return std::atan2(u.cross(v).norm(), std::abs(u.dot(v)));
 }
 
-Vec3 grid_point(Random& random, std::size_t size) {
-    const auto coordinate = [&] { return static_cast<double>(random.below(size)); };
-    const double x = coordinate(), y = coordinate(), z = coordinate();
-    return {x, y, z};
-}
-
 // ---- the edge of a blade in space and time
 
 TEST(CrossingPlaces, AreWhereABladeMeetsTissueInRelativeMotion) {
@@ -142,7 +136,7 @@ TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
         Random random(seed);
         const std::size_t size = 2 + random.below(3);
         std::array<Vec3, 4> x;
-        for (Vec3& corner : x) corner = grid_point(random, size);
+        for (Vec3& corner : x) corner = random.grid_point(size);
         const auto parity = [&](const Vec3& p, const Vec3& q) {
             bool is_odd = false;
             for (std::size_t k = 0; k < 4; ++k) {
@@ -152,8 +146,8 @@ TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
             }
             return is_odd;
         };
-        const Vec3 direction = grid_point(random, 5) - Vec3(2, 2, 2);
-        const Vec3 through = grid_point(random, size);
+        const Vec3 direction = random.grid_point(5) - Vec3(2, 2, 2);
+        const Vec3 through = random.grid_point(size);
         ASSERT_FALSE(parity(through - 64 * direction, through + 64 * direction)) << seed;
     }
     EXPECT_GT(num_pierced, 100);
@@ -259,14 +253,14 @@ TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
             // Between grid points, through corners and along edges and faces.
             std::vector<Vec3> loop;
             for (std::size_t i = 0; i < 3 + random.below(3); ++i)
-                loop.push_back(grid_point(random, 5));
+                loop.push_back(random.grid_point(5));
             std::size_t count = 0;
             for (std::size_t i = 0; i < loop.size(); ++i)
                 count += crossings(surface, loop[i], loop[(i + 1) % loop.size()]).size();
             ASSERT_EQ(count % 2, 0u) << "a loop, seed " << seed;
             num_crossed += count > 0;
-            const Vec3 by = 64 * (grid_point(random, 5) - Vec3(2, 2, 2));
-            const Vec3 through = grid_point(random, 5);
+            const Vec3 by = 64 * (random.grid_point(5) - Vec3(2, 2, 2));
+            const Vec3 through = random.grid_point(5);
             ASSERT_EQ(crossings(surface, through - by, through + by).size() % 2, 0u)
                 << "right through, seed " << seed;
         }
@@ -274,7 +268,7 @@ TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
         for (std::uint64_t seed = 0; seed < 200; ++seed) {
             Random random(seed);
             const Vec3 inside(1.75, 1.5, 1.75);
-            Vec3 by = grid_point(random, 5) - Vec3(2, 2, 2);
+            Vec3 by = random.grid_point(5) - Vec3(2, 2, 2);
             if (by.isZero()) by.x() = 1;
             ASSERT_EQ(crossings(surface, inside, inside + 64 * by).size() % 2, 1u) << seed;
         }

@@ -185,19 +185,12 @@ History with_half_steps(const History& history) {
     return result;
 }
 
-/// Points with coordinates 0 to size - 1, where anything touches anything.
-Vec3 grid_point(Random& random, std::size_t size) {
-    const auto coordinate = [&] { return static_cast<double>(random.below(size)); };
-    const double x = coordinate(), y = coordinate(), z = coordinate();
-    return {x, y, z};
-}
-
 /// A chain that jumps about on the grid. A closed one ends where it begins.
 History grid_chain(Random& random, std::size_t size, std::size_t num_points, std::size_t num_steps,
                    bool is_closed) {
     History history(num_steps + 1);
     for (auto& points : history) {
-        for (std::size_t i = 0; i < num_points; ++i) points.push_back(grid_point(random, size));
+        for (std::size_t i = 0; i < num_points; ++i) points.push_back(random.grid_point(size));
         if (is_closed) points.push_back(points.front());
     }
     return history;
@@ -290,8 +283,8 @@ TEST(Crossing, OfStraightSweepsIsTheSameHoweverTheyAreDivided) {
         for (std::uint64_t seed = 0; seed < 1500; ++seed) {
             Random random(1000 * size + seed);
             const auto swept = [&] {
-                const Vec3 a = grid_point(random, size), b = grid_point(random, size);
-                const Vec3 by = grid_point(random, size) - grid_point(random, size);
+                const Vec3 a = random.grid_point(size), b = random.grid_point(size);
+                const Vec3 by = random.grid_point(size) - random.grid_point(size);
                 return History{{a, b}, {a + by, b + by}};
             };
             const History tissue = swept(), blade = swept();

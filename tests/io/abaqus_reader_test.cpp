@@ -27,7 +27,7 @@ const std::string nodes = R"(*Heading
  50, 0., 0., 1.
  40, 1., 1., 1.
 )";
-const std::string two_tetrahedra = nodes + R"(*Element, type=C3D4, elset=Eall
+const std::string abaqus_tetrahedra = nodes + R"(*Element, type=C3D4, elset=Eall
 7, 30, 10, 20, 50
 3, 10, 20, 50, 40
 )";
@@ -38,18 +38,18 @@ std::string many_tetrahedra() {
     return text;
 }
 
-std::string refusal_with(std::string_view from, std::string_view to) {
-    return refusal("liver.inp", replaced(two_tetrahedra, from, to));
+std::string abaqus_refusal_with(std::string_view from, std::string_view to) {
+    return refusal("liver.inp", replaced(abaqus_tetrahedra, from, to));
 }
-std::string refusal_behind(std::string_view more) {
-    return refusal("liver.inp", two_tetrahedra + std::string(more));
+std::string abaqus_refusal_behind(std::string_view more) {
+    return refusal("liver.inp", abaqus_tetrahedra + std::string(more));
 }
 std::vector<int> regions_behind(std::string_view more) {
-    return read_bytes("a.inp", two_tetrahedra + std::string(more)).mesh.regions;
+    return read_bytes("a.inp", abaqus_tetrahedra + std::string(more)).mesh.regions;
 }
 
 TEST(AbaqusReader, OrdersElementsByNumberAndNodesByTheFile) {
-    const auto file = read_bytes("a.inp", two_tetrahedra);
+    const auto file = read_bytes("a.inp", abaqus_tetrahedra);
     EXPECT_EQ(file.mesh.points[0], Vec3(0, 0, 0));
     EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
     EXPECT_THAT(file.mesh.corners, ElementsAre(1, 2, 3, 4, 0, 1, 2, 3));
@@ -113,7 +113,7 @@ TEST(AbaqusReader, TakesSetsWithASectionAsRegionsFirst) {
     EXPECT_THAT(regions_behind(lists + section), ElementsAre(0, 1));
     EXPECT_THAT(regions_behind(lists + section + "*SOLID SECTION, ELSET=left\n"),
                 ElementsAre(1, 2));
-    const auto bare = replaced(two_tetrahedra, ", elset=Eall", "");
+    const auto bare = replaced(abaqus_tetrahedra, ", elset=Eall", "");
     EXPECT_THAT(read_bytes("a.inp", bare + lists).mesh.regions, ElementsAre(1, 2));
     const std::string skin = "*ELEMENT, TYPE=S3, ELSET=Skin\n90, 30, 10, 20\n";
     EXPECT_THAT(read_bytes("a.inp", bare + skin + lists).mesh.regions, ElementsAre(1, 2));
@@ -123,7 +123,7 @@ TEST(AbaqusReader, TakesSetsWithASectionAsRegionsFirst) {
 }
 
 TEST(AbaqusReader, NumbersSetsRoundTheNamesThatHaveNumbers) {
-    const auto file = read_bytes("a.inp", replaced(two_tetrahedra, "Eall", "Region_1") +
+    const auto file = read_bytes("a.inp", replaced(abaqus_tetrahedra, "Eall", "Region_1") +
                                               "*ELEMENT, TYPE=C3D4, ELSET=Tumour\n"
                                               "8, 30, 10, 20, 50\n"
                                               "*ELEMENT, TYPE=C3D4, ELSET=REGION_-5\n"
@@ -164,7 +164,7 @@ TEST(AbaqusReader, ReadsSetsThatHoldOneAnother) {
 }
 
 TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
-    const auto part = std::string("*Part, name=Liver\n") + two_tetrahedra + "*End Part\n";
+    const auto part = std::string("*Part, name=Liver\n") + abaqus_tetrahedra + "*End Part\n";
     const std::string assembly =
         "*Assembly, name=Assembly\n*Instance, name=Liver-1, part=Liver\n0., 0., 0.\n"
         "*End Instance\n*Node\n 1, 5., 5., 5.\n*Elset, elset=Tip, instance=Liver-1\n 3,\n"
@@ -175,7 +175,7 @@ TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
 
     // Programs may write the mesh with the instance.
     const auto own = std::string("*Part, name=Liver\n*End Part\n") +
-                     replaced(assembly, "0., 0., 0.\n", "** here\n" + two_tetrahedra);
+                     replaced(assembly, "0., 0., 0.\n", "** here\n" + abaqus_tetrahedra);
     expect_same_mesh(read_bytes("a.inp", own).mesh, file.mesh);
 
     EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "0., 0., 0.", "0., 0., 2.")),
@@ -191,7 +191,7 @@ TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
 
 TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
     const auto file =
-        read_bytes("a.inp", two_tetrahedra +
+        read_bytes("a.inp", abaqus_tetrahedra +
                                 "*ELEMENT, TYPE=S3R, ELSET=Skin\n11, 30, 10, 20\n"
                                 "*ELEMENT, TYPE=STRI65\n12, 30, 10, 20,\n 50, 40, 30\n"
                                 "*ELEMENT, TYPE=SPRINGA\n13, 30, 10\n14, 10, 20\n");
@@ -203,67 +203,74 @@ TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
 }
 
 TEST(AbaqusReader, RefusesSolidsThatAreNotLinearOrNotKnown) {
-    EXPECT_THAT(refusal_with("C3D4", "C3D10M"),
+    EXPECT_THAT(abaqus_refusal_with("C3D4", "C3D10M"),
                 AllOf(StartsWith("liver.inp:11: element 7: a second-order tetrahedron (TYPE "
                                  "C3D10M) cannot be used"),
                       HasSubstr("export linear elements")));
-    EXPECT_THAT(refusal_with("C3D4", "C3D20R"), HasSubstr("second-order hexahedron"));
+    EXPECT_THAT(abaqus_refusal_with("C3D4", "C3D20R"), HasSubstr("second-order hexahedron"));
     for (const auto* type : {"C3D7", "C3D", "SC8R", "U1", "COH3D8"})
-        EXPECT_THAT(refusal_with("C3D4", type),
+        EXPECT_THAT(abaqus_refusal_with("C3D4", type),
                     StartsWith(std::string("liver.inp:10: TYPE='") + type + "': is not known"));
-    EXPECT_EQ(refusal_with("type=C3D4, ", ""), "liver.inp:10: *ELEMENT has no TYPE");
+    EXPECT_EQ(abaqus_refusal_with("type=C3D4, ", ""), "liver.inp:10: *ELEMENT has no TYPE");
     EXPECT_THAT(refusal("liver.inp", nodes), HasSubstr("liver.inp: holds no cells at all"));
 }
 
 TEST(AbaqusReader, RefusesUnknownNodesAndNumbersGivenTwice) {
-    EXPECT_EQ(refusal_with("50, 40", "50, 927"),
+    EXPECT_EQ(abaqus_refusal_with("50, 40", "50, 927"),
               "liver.inp:12: element 3: node 927 is not one of the 5 nodes");
-    EXPECT_EQ(refusal_with("50, 40", "50, 0"),
+    EXPECT_EQ(abaqus_refusal_with("50, 40", "50, 0"),
               "liver.inp:12: expected a node, from 1 on, found '0'");
-    EXPECT_EQ(refusal_with(" 40, 1.", " 10, 1."), "liver.inp: number 10 is given to two nodes");
-    EXPECT_EQ(refusal_with("3, 10", "7, 10"), "liver.inp:12: number 7 is given to two elements");
+    EXPECT_EQ(abaqus_refusal_with(" 40, 1.", " 10, 1."),
+              "liver.inp: number 10 is given to two nodes");
+    EXPECT_EQ(abaqus_refusal_with("3, 10", "7, 10"),
+              "liver.inp:12: number 7 is given to two elements");
 }
 
 TEST(AbaqusReader, RefusesRowsOfTheWrongLength) {
-    EXPECT_EQ(refusal_with("50, 40", "50"),
+    EXPECT_EQ(abaqus_refusal_with("50, 40", "50"),
               "liver.inp:12: element 3: has 3 of the 4 nodes of a tetrahedron; the file is cut "
               "short or damaged");
-    EXPECT_EQ(refusal_with("20, 50\n", "20\n"),
+    EXPECT_EQ(abaqus_refusal_with("20, 50\n", "20\n"),
               "liver.inp:12: element 7: has 8 nodes; a tetrahedron has 4");
-    EXPECT_EQ(refusal_with("1., 1., 1.", "1., 1."),
+    EXPECT_EQ(abaqus_refusal_with("1., 1., 1.", "1., 1."),
               "liver.inp:9: a node has 3 fields; it must have a number and three coordinates");
 }
 
 TEST(AbaqusReader, RefusesWhatIsNoNumber) {
-    EXPECT_EQ(refusal_with("40, 1.", "40, nan"),
+    EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, nan"),
               "liver.inp:9: coordinate x is nan; it must be finite");
-    EXPECT_THAT(refusal_with("40, 1.", "40, 1.D999"), HasSubstr("found '1.D999'"));
-    EXPECT_EQ(refusal_with("40, 1.", "40, one"), "liver.inp:9: expected coordinate x, found 'one'");
-    EXPECT_THAT(refusal_with(" 40, 1.", " 4e1, 1."), HasSubstr("the number of a node"));
-    EXPECT_THAT(refusal_with("50, 40", "50, 99999999999999999999"), HasSubstr("expected a node"));
+    EXPECT_THAT(abaqus_refusal_with("40, 1.", "40, 1.D999"), HasSubstr("found '1.D999'"));
+    EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, one"),
+              "liver.inp:9: expected coordinate x, found 'one'");
+    EXPECT_THAT(abaqus_refusal_with(" 40, 1.", " 4e1, 1."), HasSubstr("the number of a node"));
+    EXPECT_THAT(abaqus_refusal_with("50, 40", "50, 99999999999999999999"),
+                HasSubstr("expected a node"));
 }
 
 TEST(AbaqusReader, RefusesSetsThatAreNone) {
-    EXPECT_EQ(refusal_behind("*ELSET\n1\n"), "liver.inp:13: *ELSET has no name, ELSET=...");
-    EXPECT_EQ(refusal_behind("*ELSET, ELSET=A\n3, B\n*NODE\n"),
+    EXPECT_EQ(abaqus_refusal_behind("*ELSET\n1\n"), "liver.inp:13: *ELSET has no name, ELSET=...");
+    EXPECT_EQ(abaqus_refusal_behind("*ELSET, ELSET=A\n3, B\n*NODE\n"),
               "liver.inp:14: element set 'B' is not defined");
-    EXPECT_EQ(refusal_behind("*SOLID SECTION, ELSET=B\n"),
+    EXPECT_EQ(abaqus_refusal_behind("*SOLID SECTION, ELSET=B\n"),
               "liver.inp:13: element set 'B' is not defined");
-    EXPECT_EQ(refusal_behind("*SOLID SECTION\n"), "liver.inp:13: *SOLID SECTION has no ELSET");
+    EXPECT_EQ(abaqus_refusal_behind("*SOLID SECTION\n"),
+              "liver.inp:13: *SOLID SECTION has no ELSET");
     const std::string generate = "*ELSET, ELSET=A, GENERATE\n";
-    EXPECT_THAT(refusal_behind(generate + "5, 3\n"), HasSubstr("elements 5 to 3 by steps of 1"));
-    EXPECT_THAT(refusal_behind(generate + "1, 3, 0\n"), HasSubstr("found '0'"));
-    EXPECT_THAT(refusal_behind(generate + "1\n"), HasSubstr("needs a first and a last element"));
-    EXPECT_THAT(refusal_behind("*ELSET, ELSET=A\n-3\n"), HasSubstr("elements -3 to -3"));
+    EXPECT_THAT(abaqus_refusal_behind(generate + "5, 3\n"),
+                HasSubstr("elements 5 to 3 by steps of 1"));
+    EXPECT_THAT(abaqus_refusal_behind(generate + "1, 3, 0\n"), HasSubstr("found '0'"));
+    EXPECT_THAT(abaqus_refusal_behind(generate + "1\n"),
+                HasSubstr("needs a first and a last element"));
+    EXPECT_THAT(abaqus_refusal_behind("*ELSET, ELSET=A\n-3\n"), HasSubstr("elements -3 to -3"));
 }
 
 TEST(AbaqusReader, RefusesWhatItDoesNotFollow) {
-    EXPECT_THAT(refusal_behind("*INCLUDE, INPUT=more.inp\n"),
+    EXPECT_THAT(abaqus_refusal_behind("*INCLUDE, INPUT=more.inp\n"),
                 StartsWith("liver.inp:13: *INCLUDE: other files are not read; put the lines"));
     for (const auto* keyword :
          {"*NGEN", "*nfill", "*NCOPY", "*NMAP", "*SYSTEM", "*El Gen", "*ELCOPY",
           "*NODE, INPUT=nodes.txt", "*ELEMENT, TYPE=C3D4, INPUT=elements.txt", "*NODE, SYSTEM=C"})
-        EXPECT_THAT(refusal_behind(std::string(keyword) + "\n1, 2\n"),
+        EXPECT_THAT(abaqus_refusal_behind(std::string(keyword) + "\n1, 2\n"),
                     AllOf(StartsWith("liver.inp:13: "),
                           testing::AnyOf(HasSubstr("export"), HasSubstr("put the lines"))))
             << keyword;

@@ -58,7 +58,7 @@ std::map<int, int> cells_of_regions(const MeshData& mesh) {
     return cells;
 }
 
-std::string refusal(const LabelImage& image, std::optional<double> size) {
+std::string meshing_refusal(const LabelImage& image, std::optional<double> size) {
     try {
         hex_mesh(image, size);
     } catch (const InputError& error) {
@@ -261,21 +261,24 @@ TEST(HexMesh, GivesCubesTheLabelsOfTheirCentresInAnyPose) {
 TEST(HexMesh, RefusesWhatCannotBe) {
     auto labels = filled({10, 10, 10});
     for (const double size : {0.0, -1.0, std::nan(""), HUGE_VAL})
-        EXPECT_THAT(refusal(labels, size), HasSubstr("it must be above 0")) << size;
+        EXPECT_THAT(meshing_refusal(labels, size), HasSubstr("it must be above 0")) << size;
     EXPECT_THAT(
-        refusal(labels, 0.02),
+        meshing_refusal(labels, 0.02),
         HasSubstr("a mesh of 125000000 cells is too large, 1e8 are the most; give a larger"));
-    EXPECT_THAT(refusal(labels, 1e-3), HasSubstr("more than 2147483647 in the box"));
-    EXPECT_THAT(refusal(labels, 1e-300), HasSubstr("give a larger size"));
-    EXPECT_THAT(refusal(labels, 1e-320), HasSubstr("give a larger size"));
-    EXPECT_THAT(refusal(labels, 100.0), HasSubstr("no cube of edge 100 has its centre"));
-    EXPECT_THAT(refusal(labels, 1e300), testing::Not(testing::IsEmpty()));
+    EXPECT_THAT(meshing_refusal(labels, 1e-3), HasSubstr("more than 2147483647 in the box"));
+    EXPECT_THAT(meshing_refusal(labels, 1e-300), HasSubstr("give a larger size"));
+    EXPECT_THAT(meshing_refusal(labels, 1e-320), HasSubstr("give a larger size"));
+    EXPECT_THAT(meshing_refusal(labels, 100.0), HasSubstr("no cube of edge 100 has its centre"));
+    EXPECT_THAT(meshing_refusal(labels, 1e300), testing::Not(testing::IsEmpty()));
     labels.origin = {1e17, 0, 0};
-    EXPECT_THAT(refusal(labels, std::nullopt), HasSubstr("beyond the precision of numbers"));
+    EXPECT_THAT(meshing_refusal(labels, std::nullopt),
+                HasSubstr("beyond the precision of numbers"));
     labels.origin = Vec3::Zero();
     labels.spacing = Vec3::Constant(1e-200);
-    EXPECT_THAT(refusal(labels, std::nullopt), HasSubstr("beyond the precision of numbers"));
-    EXPECT_EQ(refusal(filled({2, 2, 2}, 0), std::nullopt), "no voxel with a label: all are 0");
+    EXPECT_THAT(meshing_refusal(labels, std::nullopt),
+                HasSubstr("beyond the precision of numbers"));
+    EXPECT_EQ(meshing_refusal(filled({2, 2, 2}, 0), std::nullopt),
+              "no voxel with a label: all are 0");
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ CELL_TYPES 2
 10
 )";
 
-std::string refusal_with(std::string_view from, std::string_view to) {
+std::string old_refusal_with(std::string_view from, std::string_view to) {
     return refusal("liver.vtk", replaced(old_layout, from, to));
 }
 std::string new_refusal_with(std::string_view from, std::string_view to) {
@@ -112,25 +112,26 @@ TEST(LegacyVtkReader, StartsFromTheRestPositionsOfAFrame) {
 }
 
 TEST(LegacyVtkReader, RefusesIndexOutOfRange) {
-    EXPECT_EQ(refusal_with("4 1 2 3 4", "4 1 2 3 927"),
+    EXPECT_EQ(old_refusal_with("4 1 2 3 4", "4 1 2 3 927"),
               "liver.vtk: cell 1: node index 927 is out of range (5 points)");
     EXPECT_EQ(new_refusal_with("0 1 2 3 1", "0 1 -2 3 1"),
               "liver.vtk: cell 0: node index -2 is out of range (5 points)");
 }
 
 TEST(LegacyVtkReader, RefusesCoordinatesOfCellsThatAreNotFinite) {
-    EXPECT_EQ(refusal_with("0 0 1  1 1 1", "0 0 1  1 1 inf"),
+    EXPECT_EQ(old_refusal_with("0 0 1  1 1 1", "0 0 1  1 1 inf"),
               "liver.vtk: cell 1: its node 4 has a coordinate that is not finite");
 }
 
 TEST(LegacyVtkReader, RefusesCountsThatTheFileCannotHold) {
-    EXPECT_THAT(refusal_with("POINTS 5", "POINTS 4000000000"),
+    EXPECT_THAT(old_refusal_with("POINTS 5", "POINTS 4000000000"),
                 AllOf(StartsWith("liver.vtk:5: "), HasSubstr("4000000000"),
                       HasSubstr("more than can be in the remaining")));
-    EXPECT_THAT(refusal_with("CELLS 2 10", "CELLS 2 4000000000"), HasSubstr("4000000000"));
-    EXPECT_THAT(refusal_with("POINTS 5", "POINTS -5"),
+    EXPECT_THAT(old_refusal_with("CELLS 2 10", "CELLS 2 4000000000"), HasSubstr("4000000000"));
+    EXPECT_THAT(old_refusal_with("POINTS 5", "POINTS -5"),
                 HasSubstr("expected the number of points, found '-5'"));
-    EXPECT_THAT(refusal_with("fibre 3 2", "fibre 4294967295 4294967295"), HasSubstr("remaining"));
+    EXPECT_THAT(old_refusal_with("fibre 3 2", "fibre 4294967295 4294967295"),
+                HasSubstr("remaining"));
     for (const auto& sample : legacy_vtk_samples()) {
         SCOPED_TRACE(sample.name);
         EXPECT_THAT(refusal("liver.vtk", replaced(sample.bytes, "POINTS 12", "POINTS 99999")),
@@ -139,16 +140,16 @@ TEST(LegacyVtkReader, RefusesCountsThatTheFileCannotHold) {
 }
 
 TEST(LegacyVtkReader, RefusesCellListsThatDoNotAddUp) {
-    EXPECT_THAT(refusal_with("4 1 2 3 4", "9 1 2 3 4"),
+    EXPECT_THAT(old_refusal_with("4 1 2 3 4", "9 1 2 3 4"),
                 StartsWith("liver.vtk: cell 1: has 9 nodes; the cell list has 5 of its 10 entries "
                            "left"));
-    EXPECT_THAT(refusal_with("4 0 1 2 3", "-4 0 1 2 3"), HasSubstr("cell 0: has -4 nodes"));
-    EXPECT_THAT(refusal_with("CELLS 2 10", "CELLS 3 10"), HasSubstr("cell 2: is missing"));
-    EXPECT_THAT(refusal_with("CELLS 2 10", "CELLS 1 10"),
+    EXPECT_THAT(old_refusal_with("4 0 1 2 3", "-4 0 1 2 3"), HasSubstr("cell 0: has -4 nodes"));
+    EXPECT_THAT(old_refusal_with("CELLS 2 10", "CELLS 3 10"), HasSubstr("cell 2: is missing"));
+    EXPECT_THAT(old_refusal_with("CELLS 2 10", "CELLS 1 10"),
                 HasSubstr("has 10 entries, but its 1 cells fill 5"));
     EXPECT_THAT(new_refusal_with("CELL_TYPES 2\n10\n10", "CELL_TYPES 1\n10"),
                 HasSubstr("has 1 CELL_TYPES for 2 CELLS"));
-    EXPECT_THAT(refusal_with("CELL_TYPES 2\n10 10", "CELL_TYPES 1\n10"),
+    EXPECT_THAT(old_refusal_with("CELL_TYPES 2\n10 10", "CELL_TYPES 1\n10"),
                 HasSubstr("array 'region' has 2 values for 1 cells"));
     EXPECT_THAT(new_refusal_with("0 4 8", "0 8 4"), HasSubstr("cell 1: ends at offset 4"));
     EXPECT_THAT(new_refusal_with("0 4 8", "1 4 8"), HasSubstr("do not begin with 0"));
@@ -157,21 +158,21 @@ TEST(LegacyVtkReader, RefusesCellListsThatDoNotAddUp) {
 }
 
 TEST(LegacyVtkReader, RefusesWhatItCannotRead) {
-    EXPECT_THAT(refusal_with("UNSTRUCTURED_GRID", "POLYDATA"),
+    EXPECT_THAT(old_refusal_with("UNSTRUCTURED_GRID", "POLYDATA"),
                 StartsWith("liver.vtk:4: holds a dataset of kind 'POLYDATA'"));
-    EXPECT_THAT(refusal_with("Version 3.0", "Version 9.0"), HasSubstr("from 1.0 to 5.x"));
-    EXPECT_THAT(refusal_with("ASCII", "ASKII"),
+    EXPECT_THAT(old_refusal_with("Version 3.0", "Version 9.0"), HasSubstr("from 1.0 to 5.x"));
+    EXPECT_THAT(old_refusal_with("ASCII", "ASKII"),
                 StartsWith("liver.vtk:3: expected ASCII or BINARY, found 'ASKII'"));
-    EXPECT_THAT(refusal_with("1 1 1\n", "1 1 one\n"),
+    EXPECT_THAT(old_refusal_with("1 1 1\n", "1 1 one\n"),
                 StartsWith("liver.vtk:7: expected the points, found 'one'"));
-    EXPECT_THAT(refusal_with("1 1 1\n", "1 1 1 1\n"),
+    EXPECT_THAT(old_refusal_with("1 1 1\n", "1 1 1 1\n"),
                 StartsWith("liver.vtk:7: '1' is not a section"));
-    EXPECT_THAT(refusal_with("fibre 3 2 float", "fibre 3 2 quaternion"),
+    EXPECT_THAT(old_refusal_with("fibre 3 2 float", "fibre 3 2 quaternion"),
                 HasSubstr("type 'quaternion' is not known"));
-    EXPECT_THAT(refusal_with("region int 1", "region string 1"), HasSubstr("must be numbers"));
-    EXPECT_THAT(refusal_with("10 10", "10 25"),
+    EXPECT_THAT(old_refusal_with("region int 1", "region string 1"), HasSubstr("must be numbers"));
+    EXPECT_THAT(old_refusal_with("10 10", "10 25"),
                 HasSubstr("cell 1: a quadratic hexahedron (VTK cell type 25)"));
-    EXPECT_THAT(refusal_with("10 10", "5 5"), HasSubstr("cell 0: a triangle has 3 nodes"));
+    EXPECT_THAT(old_refusal_with("10 10", "5 5"), HasSubstr("cell 0: a triangle has 3 nodes"));
     EXPECT_THAT(refusal("liver.vtk", old_layout.substr(0, old_layout.find("CELL_TYPES"))),
                 HasSubstr("has no CELL_TYPES section"));
 }

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 // The layout is TetGen's (option -g): the number of dimensions on a line of its own, comments.
-const std::string two_tetrahedra = R"(MeshVersionFormatted 1
+const std::string medit_tetrahedra = R"(MeshVersionFormatted 1
 
 Dimension
 3
@@ -46,12 +46,12 @@ Corners
 End
 )";
 
-std::string refusal_with(std::string_view from, std::string_view to) {
-    return refusal("liver.mesh", replaced(two_tetrahedra, from, to));
+std::string medit_refusal_with(std::string_view from, std::string_view to) {
+    return refusal("liver.mesh", replaced(medit_tetrahedra, from, to));
 }
 
 TEST(MeditReader, TakesReferencesOfCellsAsRegions) {
-    const auto file = read_bytes("a.mesh", two_tetrahedra);
+    const auto file = read_bytes("a.mesh", medit_tetrahedra);
     EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
     EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
     EXPECT_THAT(file.mesh.regions, ElementsAre(10, -4));
@@ -84,71 +84,76 @@ End
 
 TEST(MeditReader, StepsOverWhatItDoesNotNeed) {
     const std::string end = "\nEnd";
-    const auto known = replaced(two_tetrahedra, end,
+    const auto known = replaced(medit_tetrahedra, end,
                                 "\nIdentifier\n\"a liver, Vertices and all\"\n"
                                 "Geometry \"liver.geom\"\nNormals # unit\n1\n0 nan 1 # outwards\n"
                                 "EDGES 0\nAngleOfCornerBound 44.5\nRidges 0\nTetrahedraP2 0" +
                                     end + "\nanything at all");
     EXPECT_THAT(read_bytes("a.mesh", known).warnings, ElementsAre());
-    const auto unknown = replaced(two_tetrahedra, end, "\nSpots\n1\n3" + end);
+    const auto unknown = replaced(medit_tetrahedra, end, "\nSpots\n1\n3" + end);
     EXPECT_THAT(read_bytes("a.mesh", unknown).warnings,
                 ElementsAre("left out sections that are not known: 'Spots'"));
-    const auto garbage = replaced(two_tetrahedra, end, "\na b c d e f g" + end);
+    const auto garbage = replaced(medit_tetrahedra, end, "\na b c d e f g" + end);
     EXPECT_THAT(read_bytes("a.mesh", garbage).warnings,
                 ElementsAre("left out sections that are not known: 'a', 'b', 'c', 'd', 'e', ..."));
-    const auto surface = replaced(two_tetrahedra, end,
+    const auto surface = replaced(medit_tetrahedra, end,
                                   "\nTriangles\n1\n1 2 3 1\nTrianglesP2 1\n1 2 3 4 5 1 1" + end);
     EXPECT_THAT(read_bytes("a.mesh", surface).warnings,
                 ElementsAre(HasSubstr("ignored 1 triangle and 1 second-order triangle:")));
-    EXPECT_THAT(read_bytes("a.mesh", replaced(two_tetrahedra, end, "\n")).warnings,
+    EXPECT_THAT(read_bytes("a.mesh", replaced(medit_tetrahedra, end, "\n")).warnings,
                 ElementsAre(HasSubstr("has no End")));
 }
 
 TEST(MeditReader, RefusesUnknownVertices) {
-    EXPECT_EQ(refusal_with("4      5", "4      927"),
+    EXPECT_EQ(medit_refusal_with("4      5", "4      927"),
               "liver.mesh:19: tetrahedron 2: vertex 927 is out of range (5 vertices, numbered from "
               "1)");
-    EXPECT_THAT(refusal_with("4      5", "4      0"), HasSubstr("vertex 0 is out of range"));
-    EXPECT_THAT(refusal_with("4      5", "4      -1"), HasSubstr("vertex -1 is out of range"));
+    EXPECT_THAT(medit_refusal_with("4      5", "4      0"), HasSubstr("vertex 0 is out of range"));
+    EXPECT_THAT(medit_refusal_with("4      5", "4      -1"),
+                HasSubstr("vertex -1 is out of range"));
     EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2 Tetrahedra 1 1 2 3 4 0 Vertices 0 End"),
                 HasSubstr("Tetrahedra comes before Vertices"));
-    EXPECT_THAT(refusal_with("Vertices", "Normals"), HasSubstr("Tetrahedra comes before Vertices"));
+    EXPECT_THAT(medit_refusal_with("Vertices", "Normals"),
+                HasSubstr("Tetrahedra comes before Vertices"));
 }
 
 TEST(MeditReader, RefusesCountsThatTheFileCannotHold) {
-    EXPECT_THAT(refusal_with("Vertices\n5", "Vertices\n4000000000"),
+    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n4000000000"),
                 AllOf(StartsWith("liver.mesh:8: the number of vertices is 4000000000"),
                       HasSubstr("more than can be in the remaining")));
-    EXPECT_THAT(refusal_with("Tetrahedra\n2", "Tetrahedra\n18446744073709551615"),
+    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "Tetrahedra\n18446744073709551615"),
                 StartsWith("liver.mesh:17: the number of rows of Tetrahedra is 1844674407370955"));
-    EXPECT_THAT(refusal_with("Vertices\n5", "Vertices\n-5"), HasSubstr("found '-5'"));
-    EXPECT_EQ(refusal_with("Vertices\n5", "Vertices\n4"),
+    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n-5"), HasSubstr("found '-5'"));
+    EXPECT_EQ(medit_refusal_with("Vertices\n5", "Vertices\n4"),
               "liver.mesh:13: expected a keyword behind the rows of the section before, found '1'");
-    EXPECT_EQ(refusal_with("Tetrahedra\n2", "Tetrahedra\n3"),
+    EXPECT_EQ(medit_refusal_with("Tetrahedra\n2", "Tetrahedra\n3"),
               "liver.mesh:21: expected a vertex, found 'Corners'");
 }
 
 TEST(MeditReader, RefusesWhatIsNoNumber) {
-    EXPECT_EQ(refusal_with("0  1  0    0", "0  nan  0    0"),
+    EXPECT_EQ(medit_refusal_with("0  1  0    0", "0  nan  0    0"),
               "liver.mesh:11: a y coordinate is nan; it must be finite");
-    EXPECT_THAT(refusal_with("0  1  0    0", "0  1  -inf    0"), HasSubstr("z coordinate is -inf"));
-    EXPECT_THAT(refusal_with("0  1  0    0", "0  1,5  0    0"), HasSubstr("found '1,5'"));
-    EXPECT_EQ(refusal_with("4  10", "4  1e10"),
+    EXPECT_THAT(medit_refusal_with("0  1  0    0", "0  1  -inf    0"),
+                HasSubstr("z coordinate is -inf"));
+    EXPECT_THAT(medit_refusal_with("0  1  0    0", "0  1,5  0    0"), HasSubstr("found '1,5'"));
+    EXPECT_EQ(medit_refusal_with("4  10", "4  1e10"),
               "liver.mesh:18: expected a reference, a whole number of 32 bits, found '1e10'");
-    EXPECT_THAT(refusal_with("4  10", "4  3000000000"), HasSubstr("of 32 bits"));
+    EXPECT_THAT(medit_refusal_with("4  10", "4  3000000000"), HasSubstr("of 32 bits"));
 }
 
 TEST(MeditReader, RefusesWhatItCannotRead) {
-    EXPECT_EQ(refusal_with("Formatted 1", "Formatted 5"),
+    EXPECT_EQ(medit_refusal_with("Formatted 1", "Formatted 5"),
               "liver.mesh:1: the version is 5; it must be 1 to 4: save it as version 2");
-    EXPECT_EQ(refusal_with("Dimension\n3", "Dimension\n2"),
+    EXPECT_EQ(medit_refusal_with("Dimension\n3", "Dimension\n2"),
               "liver.mesh:4: the dimension is 2; it must be 3: a volume mesh has points in space");
-    EXPECT_THAT(refusal_with("Tetrahedra\n2", "TetrahedraP2\n1"),
+    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "TetrahedraP2\n1"),
                 AllOf(StartsWith("liver.mesh:17: a second-order tetrahedron (MEDIT section "
                                  "TetrahedraP2) cannot be used"),
                       HasSubstr("export linear elements")));
-    EXPECT_THAT(refusal_with("Tetrahedra\n2", "Corners\n10"), HasSubstr("holds no cells at all"));
-    EXPECT_THAT(refusal_with("\nEnd", "\nVertices 0\nEnd"), HasSubstr("second section Vertices"));
+    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "Corners\n10"),
+                HasSubstr("holds no cells at all"));
+    EXPECT_THAT(medit_refusal_with("\nEnd", "\nVertices 0\nEnd"),
+                HasSubstr("second section Vertices"));
     EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2\nEnd\n"),
                 HasSubstr("has no section Vertices"));
 }

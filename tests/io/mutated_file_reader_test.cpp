@@ -19,7 +19,7 @@ namespace incise::io {
 namespace {
 
 using Reader = MeshFile (*)(const InputFile&, const ReadOptions&);
-constexpr int num_mutations = 1500;  // of each sample
+constexpr int mutations_of_a_sample = 1500;  // of each sample
 
 /// One to four bytes changed, inserted, removed or copied; one in eight files is cut short.
 std::string mutated(std::string bytes, std::mt19937& random) {
@@ -54,7 +54,7 @@ void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
     int num_refused = 0;
     for (const auto& sample : samples) {
         std::mt19937 random(12345);
-        for (int i = 0; i < num_mutations; ++i) {
+        for (int i = 0; i < mutations_of_a_sample; ++i) {
             const InputFile file{sample.name, mutated(sample.bytes, random)};
             try {
                 ASSERT_EQ(support::inconsistency_of(reader(file, {}).mesh), "");

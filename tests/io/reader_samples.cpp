@@ -47,7 +47,7 @@ MeshData sample_mesh() {
 
 namespace {
 
-constexpr std::array<std::array<vtkIdType, 3>, 2> triangles = {{{0, 1, 2}, {1, 3, 2}}};
+constexpr std::array<std::array<vtkIdType, 3>, 2> sample_triangles = {{{0, 1, 2}, {1, 3, 2}}};
 
 /// The mesh as VTK's grid: a line first, triangles among the cells, the hexahedron as a voxel.
 vtkNew<vtkUnstructuredGrid> sample_grid() {
@@ -301,7 +301,7 @@ std::string gmsh_2(GmshText::Mode mode) {
     block(1, 1);
     element(1, 9, std::array<std::int64_t, 2>{0, 1});
     block(2, 2);
-    for (const auto& triangle : triangles) element(2, 9, triangle);
+    for (const auto& triangle : sample_triangles) element(2, 9, triangle);
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         block(gmsh_type(mesh.kinds[c]), 1);
         element(gmsh_type(mesh.kinds[c]), mesh.regions[c], gmsh_nodes(mesh, c));
@@ -399,7 +399,7 @@ std::string gmsh_4(GmshText::Mode mode, bool is_partitioned) {
     block(1, 1, 1, 1);
     element(std::array<std::int64_t, 2>{0, 1});
     block(2, 10, 2, 2);
-    for (const auto& triangle : triangles) element(triangle);
+    for (const auto& triangle : sample_triangles) element(triangle);
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         block(3, 10 * mesh.regions[c], gmsh_type(mesh.kinds[c]), 1);
         element(gmsh_nodes(mesh, c));
@@ -431,7 +431,7 @@ std::vector<Sample> medit_samples() {
         text += "0\n";
     }
     text += "Corners\n2\n1\n2\nEdges\n1\n1 2 9\nTriangles\n2\n";
-    for (const auto& [a, b, c] : triangles)
+    for (const auto& [a, b, c] : sample_triangles)
         text += std::to_string(a + 1) + " " + std::to_string(b + 1) + " " + std::to_string(c + 1) +
                 " 9\n";
     constexpr std::array keywords = {"Prisms", "Hexahedra", "Pyramids", "Tetrahedra"};
@@ -460,7 +460,7 @@ std::vector<Sample> abaqus_samples() {
     text += "*ELEMENT, TYPE=T3D2\n";
     add_row(90, tags(std::array<std::int64_t, 2>{0, 1}));
     text += "*ELEMENT, TYPE=S3\n";
-    for (const auto& triangle : triangles) add_row(91, tags(triangle));
+    for (const auto& triangle : sample_triangles) add_row(91, tags(triangle));
     constexpr std::array types = {"C3D6", "C3D8R", "C3D5", "C3D4"};
     for (std::size_t c = mesh.num_cells(); c-- > 0;) {
         text += std::string("*ELEMENT, TYPE=") + types[c] + ", ELSET=REGION_" +

@@ -22,8 +22,6 @@ using topology::Mesh;
 using topology::MeshEdit;
 using topology::NodeId;
 
-const NeoHookean law{1.5e3, 4e3};
-
 struct Edge {
     ElementId element;
     NodeId a, b;
@@ -259,7 +257,7 @@ struct LoadedTetrahedron {
 
     explicit LoadedTetrahedron(int loaded_face)
         : descent(mesh, {{}, {}, {{ElementId(0), loaded_face}}, {ElementId(0)}}),
-          model(mesh, table_of_one_law(law), surroundings()) {}
+          model(mesh, table_of_one_law(soft_law), surroundings()) {}
 
     void apply(const ChangeSet& changes) {
         model.apply(changes);
@@ -267,7 +265,7 @@ struct LoadedTetrahedron {
         expect_loads_of_a_fresh_model();
     }
     void expect_loads_of_a_fresh_model() {
-        Model fresh(mesh, table_of_one_law(law), surroundings());
+        Model fresh(mesh, table_of_one_law(soft_law), surroundings());
         EXPECT_EQ(loads_at_rest(model), loads_at_rest(fresh));
     }
     Surroundings surroundings() const {
@@ -351,7 +349,7 @@ TEST(Bisection, AndJoiningInOneEditKeepsLoadsAndState) {
         std::erase(loaded, other);
         Surroundings s;
         s.loads = {{"wind", TractionLoad{loaded, traction}, {}}};
-        Model model(mesh, table_of_one_law(law), s);
+        Model model(mesh, table_of_one_law(soft_law), s);
         const Vec3 force = sum_of(loads_at_rest(model));
         const BodyState state = rest_state(mesh);
         set_state(model, state);
@@ -393,7 +391,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     const Vec3 force(1.0, -2.0, 0.5);
     Surroundings s;
     s.loads.push_back({"hooks", NodalLoad{NodeSet(loaded), force, {}}, {}});
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     const std::vector<Vec3> before = loads_at_rest(model);
     const Vec3 total = static_cast<double>(loaded.size()) * force;
     ASSERT_LE((sum_of(before) - total).norm(), 1e-12);
@@ -439,7 +437,7 @@ TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
         s.gravity = {0.0, 0.0, -9.81};
         s.supports = {holding("left", NodeSet(nodes_where(mesh, left))),
                       holding("right", NodeSet(nodes_where(mesh, right)))};
-        Model model(mesh, table_of_one_law(law), s);
+        Model model(mesh, table_of_one_law(soft_law), s);
         const ChangeSet changes = bisect(
             mesh, edge_where(mesh, [&](const Vec3& a, const Vec3& b) { return c.a(a) && c.b(b); }),
             0.5);

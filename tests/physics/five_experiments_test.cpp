@@ -40,7 +40,7 @@ std::vector<Experiment> experiments() {
     return all;
 }
 
-Law law_of(const Experiment& experiment) {
+Law law_of_experiment(const Experiment& experiment) {
     const double mu = experiment.young / (2.0 * (1.0 + experiment.poisson));
     const double lambda = 2.0 * mu * experiment.poisson / (1.0 - 2.0 * experiment.poisson);
     if (experiment.law == "stvk") return SaintVenantKirchhoff{lambda, mu};
@@ -77,7 +77,7 @@ Outcome solve(const Experiment& experiment, int n) {
     }
     Surroundings surroundings;
     surroundings.supports = {holding("base", plate(0.0)), top};
-    Model model(mesh, table_of_one_law(law_of(experiment)), surroundings);
+    Model model(mesh, table_of_one_law(law_of_experiment(experiment)), surroundings);
     Statics statics;
     const int num_steps = amount > 0.1 ? 5 : 1;
     for (int i = 0; i < num_steps; ++i)

@@ -80,9 +80,9 @@ std::vector<Support> plates(const Case& c, const Mesh& mesh, double ramp_time) {
 }
 
 /// A body on its way to equilibrium. Times are in units of how long a shear wave takes through it.
-class Relaxation {
+class PlateRelaxation {
   public:
-    Relaxation(const Case& c, const Mesh& mesh)
+    PlateRelaxation(const Case& c, const Mesh& mesh)
         : mesh_(mesh),
           unit_(c.size().maxCoeff() *
                 std::sqrt(2.0 * (1.0 + c.at("nu")) * c.row.value("rho", 1000.0) / c.at("E"))),
@@ -151,7 +151,7 @@ TEST(HybMssStatic, PlatesGluedToABlockFeelTheForceAndTorqueOfTheReference) {
     const auto check = [](const Case& c, bool is_static) {
         SCOPED_TRACE(c.row.dump());
         const Mesh mesh = c.mesh();
-        Relaxation body(c, mesh);
+        PlateRelaxation body(c, mesh);
         if (is_static)
             body.settle(2);
         else
@@ -206,7 +206,7 @@ TEST(HybMssStatic, ANotchedBlockOpensAsTheReferenceWheneverItIsCut) {
             SCOPED_TRACE(c.row.dump());
             Mesh mesh = c.mesh();
             if (is_cut_before) open_notch(mesh, c);
-            Relaxation body(c, mesh);
+            PlateRelaxation body(c, mesh);
             if (!is_cut_before) {
                 body.run_until(1.0);
                 body.model().apply(open_notch(mesh, c));
@@ -224,7 +224,7 @@ TEST(HybMssStatic, ABeamBendsUnderGravityAsTheReference) {
     for (const Case& c : cases_of({"cantilever_gravity"})) {
         SCOPED_TRACE(c.row.dump());
         const Mesh mesh = c.mesh();
-        Relaxation body(c, mesh);
+        PlateRelaxation body(c, mesh);
         body.run_to_equilibrium();
         const Vec3 end(0.5 * c.size().x(), 0.5 * c.size().y(), c.size().z());
         const auto tip = nodes_where(mesh, [&](const Vec3& X) { return (X - end).norm() < 1e-9; });
@@ -247,7 +247,7 @@ TEST(HybMssStatic, BoxesArePressedTogetherLikeCubes) {
                       {"L", {1.0, 1.0, 1.0}},
                       {"N", cells}}};
         const Mesh mesh = c.mesh();
-        Relaxation body(c, mesh);
+        PlateRelaxation body(c, mesh);
         body.run_to_equilibrium(1e-7);
         EXPECT_GT(body.model().min_volume_ratio(), 0.75);
         return body.model().totals().elastic_energy;

@@ -20,10 +20,10 @@ namespace {
 using Cell = HybmssKernel::Corners;
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double shear_modulus = 4000.0;
 
-HybridSprings springs(double poisson, double ratio) {
+HybridSprings hybrid_springs(double poisson, double ratio) {
     return {shear_modulus, shear_modulus * (4.0 * poisson - 1.0) / (1.0 - 2.0 * poisson), ratio};
 }
 
@@ -42,12 +42,6 @@ Cell box(const Vec3& edges, const Mat3& turn = Mat3::Identity(), const Vec3& at 
     return X;
 }
 
-Cell deformed(const Cell& X, const Mat3& F) {
-    Cell x;
-    for (std::size_t k = 0; k < X.size(); ++k) x[k] = F * X[k];
-    return x;
-}
-
 Cell shaken(Cell x, test::Random& random, double by) {
     for (Vec3& corner : x) corner += random.vector(by);
     return x;
@@ -64,13 +58,13 @@ std::vector<NamedCell> cells() {
     std::vector<NamedCell> all;
     test::Random random(3);
     for (const double poisson : {0.0, 0.25, 0.3, 0.499})
-        for (const double ratio : {0.0, 0.5, 1.0, 7.0, infinite})
+        for (const double ratio : {0.0, 0.5, 1.0, 7.0, infinity})
             for (const Vec3& edges : {Vec3(1, 1, 1), Vec3(0.5, 0.5, 0.5), Vec3(1, 1.2, 0.9),
                                       Vec3(1.4, 1, 1), Vec3(1.4, 1.4, 1)}) {
                 if (ratio == 0.0 && edges.maxCoeff() != edges.minCoeff()) continue;
                 std::ostringstream name;
                 name << "nu " << poisson << ", A " << ratio << ", edges " << edges.transpose();
-                all.push_back({name.str(), HybmssKernel{springs(poisson, ratio)},
+                all.push_back({name.str(), HybmssKernel{hybrid_springs(poisson, ratio)},
                                box(edges, random_rotation(random), random.vector(1.0))});
             }
     return all;
@@ -292,7 +286,7 @@ TEST(HybMss, SpringsOfACubeAreThoseOfThePaper) {
         EXPECT_NEAR(shares->stiffnesses[6], k_c, 1e-12 * k_e);
         EXPECT_NEAR(shares->lengths[6], 0.2 * std::sqrt(3.0), 1e-15);
     }
-    const auto outer = spring_shares(Vec3::Constant(0.2), shear_modulus, infinite);
+    const auto outer = spring_shares(Vec3::Constant(0.2), shear_modulus, infinity);
     ASSERT_TRUE(outer);
     EXPECT_EQ(outer->stiffnesses[6], 0.0);
     EXPECT_NEAR(outer->stiffnesses[0], shear_modulus * 0.2 / 4.0, 1e-10);
@@ -362,7 +356,7 @@ topology::MeshData one_cell(const Cell& X) {
 }
 
 TEST(HybMss, RefusesCellsThatAreNoBoxesByName) {
-    const HybridSprings usual = springs(0.3, 1.0);
+    const HybridSprings usual = hybrid_springs(0.3, 1.0);
     test::Random random(16);
     EXPECT_EQ(refusal(one_cell(box({1, 1, 1}, random_rotation(random))), usual), "accepted");
     // As single precision has it.
@@ -385,7 +379,7 @@ TEST(HybMss, RefusesCellsThatAreNoBoxesByName) {
               "element 0 is a box of 1 x 2 x 1 m; the method hybmss needs cubes, or boxes whose "
               "longest edge is at most 1.4 times the shortest; make cubes of an image by incise "
               "mesh --hex --size");
-    EXPECT_EQ(refusal(one_cell(box({1, 1.2, 1})), springs(0.3, 0.0)),
+    EXPECT_EQ(refusal(one_cell(box({1, 1.2, 1})), hybrid_springs(0.3, 0.0)),
               "element 0 is a box of 1 x 1.2 x 1 m; without face diagonals the method hybmss "
               "needs cubes");
 }
@@ -393,14 +387,14 @@ TEST(HybMss, RefusesCellsThatAreNoBoxesByName) {
 TEST(HybMss, AndHemlRefuseEachOthersCellsAndThoseWithoutForces) {
     const auto tetrahedra = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                Vec3::Constant(1.0), {1, 1, 1});
-    EXPECT_NE(refusal(tetrahedra, springs(0.3, 1.0))
+    EXPECT_NE(refusal(tetrahedra, hybrid_springs(0.3, 1.0))
                   .find(", of region 0, is a tetrahedron; the method hybmss needs hexahedra: give "
                         "the region a material with method = \"heml\""),
               std::string::npos);
     topology::MeshData wedge;
     wedge.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
     wedge.add_cell(topology::CellKind::wedge, std::array<std::int64_t, 6>{0, 2, 1, 3, 5, 4});
-    EXPECT_EQ(refusal(wedge, springs(0.3, 1.0)),
+    EXPECT_EQ(refusal(wedge, hybrid_springs(0.3, 1.0)),
               "element 0, of region 0, is a wedge, for which no method has forces; use tetrahedra "
               "or hexahedra");
     const auto mesh = topology::Mesh::build(one_cell(box({1, 1, 1}))).mesh;
@@ -423,7 +417,7 @@ TEST(HybMss, AndHemlBodiesMoveSideBySide) {
     }
     for (std::size_t c = 0; c < both.num_cells(); ++c)
         both.regions[c] = c < hexahedra.num_cells() ? 0 : 1;
-    MaterialTable table = table_of_one_material(springs(0.4, infinite));
+    MaterialTable table = table_of_one_material(hybrid_springs(0.4, infinity));
     table.of_region[1] = 1;
     table.materials.push_back({1100.0, HyperElasticLinks{NeoHookean{1e3, 4e3}}});
 

@@ -17,15 +17,6 @@ using topology::ElementId;
 using topology::Mesh;
 using topology::NodeId;
 
-const NeoHookean law{1.5e3, 4e3};
-
-Mesh bar(CellKind kind = CellKind::tetrahedron) {
-    return Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {0.2, 0.1, 0.1}, {4, 2, 2})).mesh;
-}
-NodeSet left_end(const Mesh& mesh) {
-    return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
-}
-
 struct NamedMaterial {
     std::string name;
     CellKind kind;
@@ -33,12 +24,12 @@ struct NamedMaterial {
 };
 std::vector<NamedMaterial> materials() {
     const auto tet = CellKind::tetrahedron;
-    return {{"neo-Hookean", tet, table_of_one_law(law)},
+    return {{"neo-Hookean", tet, table_of_one_law(soft_law)},
             {"viscous", tet,
-             table_of_one_material(HyperElasticLinks{law, 0.4, {{0.3, 0.02}, {0.2, 0.2}}})},
+             table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.3, 0.02}, {0.2, 0.2}}})},
             {"viscous by the nodal rule", tet,
              table_of_one_material(
-                 HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
+                 HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
             {"springs", tet, table_of_one_material(MassSprings{8e3})},
             {"hybrid springs", CellKind::hexahedron,
              table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
@@ -65,7 +56,7 @@ TEST(ImplicitEuler, LetsABodyFallAsTheRuleSays) {
     const Mesh mesh = bar();
     Surroundings s;
     s.gravity = {0.0, 0.0, -10.0};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     const double dt = 0.1;
     run(model, dt, 5);
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
@@ -163,8 +154,8 @@ TEST(ImplicitEuler, RelaxesViscousStress) {
         NodeSet(nodes_where(mesh, [](const Vec3& X) { return std::abs(X.x() - 0.2) < 1e-9; })));
     hand.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1e-6, {0.02, 0, 0}}});
     s.supports = {holding("clamp", left_end(mesh)), hand};
-    const auto table = table_of_one_material(HyperElasticLinks{law, 0.4, {{0.4, tau}}});
-    Model elastic(mesh, table_of_one_law(law), s), body(mesh, table, s);
+    const auto table = table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.4, tau}}});
+    Model elastic(mesh, table_of_one_law(soft_law), s), body(mesh, table, s);
     Statics().step(elastic, 0.0, 1.0);
     ImplicitEuler integrator;
     // So fast that little relaxes, then in large steps, two of which take the swing out.

@@ -10,12 +10,12 @@ namespace incise::physics {
 namespace {
 
 constexpr double young = 1e4;
-const MassSpringKernel springs{young};
+const MassSpringKernel mass_springs{young};
 
 TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
     test::Random random(1);
     const Tetrahedron X = random_tetrahedron(random);
-    const auto element = springs.precompute(X);
+    const auto element = mass_springs.precompute(X);
     const Tetrahedron x = deformed(X, random_deformation(random, {0.7, 1.2, 1.5}));
     std::array<Vec3, 4> expected{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     double energy = 0.0;
@@ -27,27 +27,27 @@ TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
             expected[i] += stiffness * (length - rest) * (x[j] - x[i]) / length;
             energy += 0.25 * stiffness * (length - rest) * (length - rest);  // each edge twice
         }
-    const Tetrahedron f = springs.forces(element, x);
+    const Tetrahedron f = mass_springs.forces(element, x);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_LE((f[i] - expected[i]).norm(), 1e-14 * young);
-    EXPECT_NEAR(springs.energy(element, x), energy, 1e-14 * young);
+    EXPECT_NEAR(mass_springs.energy(element, x), energy, 1e-14 * young);
 }
 
 TEST(MassSprings, DoNotTellAnElementFromItsMirrorImage) {
     test::Random random(2);
     const Tetrahedron X = random_tetrahedron(random);
-    const auto element = springs.precompute(X);
+    const auto element = mass_springs.precompute(X);
     const Mat3 mirror = Vec3(1, 1, -1).asDiagonal();
-    EXPECT_LE(springs.energy(element, deformed(X, mirror)), 1e-28 * young);
-    EXPECT_NEAR(springs.volume_ratio(element, deformed(X, mirror)), -1.0, 1e-14);
+    EXPECT_LE(mass_springs.energy(element, deformed(X, mirror)), 1e-28 * young);
+    EXPECT_NEAR(mass_springs.volume_ratio(element, deformed(X, mirror)), -1.0, 1e-14);
 }
 
 TEST(MassSprings, OfNoLengthPushNowhere) {
     test::Random random(3);
     const Tetrahedron X = random_tetrahedron(random);
-    const auto element = springs.precompute(X);
+    const auto element = mass_springs.precompute(X);
     Tetrahedron x = X;
     x[1] = x[0];
-    for (const Vec3& f : springs.forces(element, x)) EXPECT_TRUE(f.allFinite());
+    for (const Vec3& f : mass_springs.forces(element, x)) EXPECT_TRUE(f.allFinite());
 }
 
 // The shares of the elements round an edge add up: an edge of a body of two materials has a

@@ -18,14 +18,8 @@ namespace {
 
 using topology::Mesh;
 
-using Series = std::vector<PronyTerm>;
-using Memory = std::vector<double>;
-
-const Series two_terms{{0.3, 0.2}, {0.4, 5.0}};
-const NeoHookean law{1923.0, 5769.0};
-
 HyperElasticLinks links(const Series& series, PronyRule rule = PronyRule::nodal) {
-    return {law, 0.4, series, rule};
+    return {soft_law, 0.4, series, rule};
 }
 
 /// Calls visit(name, kernel) for HEML with each law and two terms.
@@ -42,7 +36,7 @@ Memory no_memory() { return Memory(NodalViscousKernel::history_size(two_terms.si
 TEST(NodalViscosity, IsTheRecursionOfThePaper) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     Model model(mesh, table_of_one_material(links(two_terms)));
-    Model elastic(mesh, table_of_one_law(law));
+    Model elastic(mesh, table_of_one_law(soft_law));
     test::Random random(41);
     set_state(model, random_state(mesh, random, 0.03, 0.5));
     std::vector<std::vector<Vec3>> gamma(two_terms.size(),
@@ -76,7 +70,7 @@ TEST(NodalViscosity, RelaxesToFirstOrder) {
     const BodyState state = random_state(mesh, random, 0.05, 0.0);
     const auto error = [&](int steps) {
         Model model(mesh, table_of_one_material(links(two_terms), 1e30));  // too heavy to move
-        Model elastic(mesh, table_of_one_law(law, 1e30));
+        Model elastic(mesh, table_of_one_law(soft_law, 1e30));
         set_state(elastic, state);
         set_state(model, state);
         EXPECT_TRUE(std::ranges::equal(model.elastic_forces(), elastic.elastic_forces()));
@@ -183,7 +177,7 @@ TEST(NodalViscosity, DoesNotTurnWithTheBody) {
         return Measure{std::sqrt(square / square_of_sudden),
                        moment.norm() / std::sqrt(square_of_sudden)};
     };
-    const HemlKernel elastic{law, 0.4};
+    const HemlKernel elastic{soft_law, 0.4};
     const Measure stress = measure(ViscousKernel(elastic, half));
     EXPECT_NEAR(stress.size, 0.5 + 0.5 * std::exp(-5.0), 1e-12);
     EXPECT_LE(stress.moment, 1e-13);

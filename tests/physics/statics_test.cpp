@@ -20,13 +20,6 @@ using topology::FaceId;
 using topology::Mesh;
 using topology::NodeId;
 
-const NeoHookean law{1.5e3, 4e3};
-
-/// 0.2 x 0.1 x 0.1 m of 4 x 2 x 2 bricks.
-Mesh bar(CellKind kind = CellKind::tetrahedron) {
-    return Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {0.2, 0.1, 0.1}, {4, 2, 2})).mesh;
-}
-
 NodeSet nodes_at(const Mesh& mesh, double x) {
     return NodeSet(nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.x() - x) < 1e-9; }));
 }
@@ -88,13 +81,13 @@ struct NamedMaterial {
 
 std::vector<NamedMaterial> materials() {
     const auto tet = CellKind::tetrahedron;
-    return {{"neo-Hookean", tet, table_of_one_law(law)},
+    return {{"neo-Hookean", tet, table_of_one_law(soft_law)},
             {"Ogden", tet, table_of_one_law(Ogden{{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0})},
             {"viscous", tet,
-             table_of_one_material(HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}})},
+             table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}})},
             {"viscous by the nodal rule", tet,
              table_of_one_material(
-                 HyperElasticLinks{law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
+                 HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
             {"springs", tet, table_of_one_material(MassSprings{8e3})},
             {"hybrid springs", CellKind::hexahedron,
              table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
@@ -157,7 +150,7 @@ TEST(Statics, BookTheWorkThatTheBodyKeeps) {
     for (const int num_steps : {4, 8}) {
         Surroundings s = loaded(mesh);
         s.gravity = Vec3::Zero();
-        Model model(mesh, table_of_one_law(law), s);
+        Model model(mesh, table_of_one_law(soft_law), s);
         Statics statics;
         for (int i = 0; i < num_steps; ++i)
             statics.step(model, i / double(num_steps), 1.0 / num_steps);
@@ -174,7 +167,7 @@ TEST(Statics, BookWhatACutLetsGoAsDissipated) {
     Surroundings s = loaded(mesh);
     s.gravity = Vec3::Zero();
     s.loads.clear();
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
     const double before = model.elastic_energy(), work = model.external_work(),
@@ -193,7 +186,7 @@ TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
     Surroundings s;
     s.supports = {holding("clamp", nodes_at(mesh, 0.0))};
     {
-        Model model(mesh, table_of_one_law(law), s);
+        Model model(mesh, table_of_one_law(soft_law), s);
         BodyState state = rest_state(mesh);
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
             if (mesh.rest_position(NodeId(n)).x() > 0.1001) state.positions[n].y() += 0.3;
@@ -206,7 +199,7 @@ TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
         EXPECT_LE(model.reaction(0).norm(), 1e-6);
     }
     s.gravity = {0.0, 0.0, -1.0};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     try {
         statics.step(model, 0.0, 1.0);
@@ -228,7 +221,7 @@ TEST(Statics, LeadAPieceThatIsHeldInPart) {
         NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0 && X.y() == 0.0; })));
     tongs.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.5, -0.3, 0.4)}});
     s.supports = {tongs};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 2; ++i) statics.step(model, 0.5 * i, 0.5);
     EXPECT_LE(model.totals().elastic_energy, 1e-12);
@@ -243,13 +236,13 @@ TEST(Statics, FindTheEquilibriumOfABodyThatCouldSlide) {
     s.supports = {holding("ice",
                           NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 0.0; })),
                           {false, false, true})};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
     EXPECT_NEAR(model.reaction(0).z(), 10.0, 1e-8);
     EXPECT_GT(model.max_displacement(), 1e-4);
     s.gravity.x() = 0.1;
-    Model sliding(mesh, table_of_one_law(law), s);
+    Model sliding(mesh, table_of_one_law(soft_law), s);
     EXPECT_THROW(Statics().step(sliding, 0.0, 1.0), PhysicsError);
 }
 
@@ -262,7 +255,7 @@ TEST(Statics, FindAStableStateOfAColumnThatBuckles) {
     Support press = holding("press", nodes_at(mesh, 0.4));
     press.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(-0.12, 0, 0)}});
     s.supports = {holding("base", nodes_at(mesh, 0.0)), press};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 5; ++i) statics.step(model, 0.2 * i, 0.2);
     EXPECT_GT(model.min_volume_ratio(), 0.5);
@@ -278,7 +271,7 @@ TEST(Statics, LeadABodyThatIsHeldAllOver) {
     Support all = holding("all", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })));
     all.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0, 0)}});
     s.supports = {all};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics().step(model, 0.0, 1.0);
     EXPECT_NEAR(model.max_displacement(), 0.1, 1e-15);
 }
@@ -288,7 +281,7 @@ TEST(Statics, SayWhereNoEquilibriumIs) {
     Surroundings s;
     s.supports = {holding("clamp", nodes_at(mesh, 0.0))};
     s.gravity = {std::numeric_limits<double>::infinity(), 0.0, 0.0};
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     try {
         statics.step(model, 0.5, 1.0);
@@ -305,7 +298,7 @@ TEST(LoadTangents, AreTheSymmetricPartOfTheDerivativeOfPressure) {
         const Mesh mesh =
             Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {1, 1, 1}, {1, 1, 1})).mesh;
         const auto table = kind == CellKind::tetrahedron
-                               ? table_of_one_law(law)
+                               ? table_of_one_law(soft_law)
                                : table_of_one_material(HybridSprings{3e3, 1e4, 1.0});
         Surroundings s;
         s.loads = {{"", PressureLoad{FaceSet({topology::boundary_faces(mesh)[1]}), 100.0}, {}}};

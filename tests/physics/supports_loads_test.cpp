@@ -20,20 +20,9 @@ using topology::FaceId;
 using topology::Mesh;
 using topology::NodeId;
 
-const NeoHookean law{1.5e3, 4e3};
 constexpr double density = 1000.0;
 
-/// A box 0.2 x 0.1 x 0.1 m of 4 x 2 x 2 bricks.
-Mesh bar() {
-    return Mesh::build(
-               topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(), {0.2, 0.1, 0.1}, {4, 2, 2}))
-        .mesh;
-}
 constexpr double bar_volume = 0.2 * 0.1 * 0.1;
-
-NodeSet left_end(const Mesh& mesh) {
-    return NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.x() == 0.0; }));
-}
 
 // Opens all inner faces in the plane across the bar at `x`; half of it, up to y = 0.05, if partly.
 topology::ChangeSet open_across(Mesh& mesh, double x, bool is_partial) {
@@ -56,7 +45,7 @@ TEST(Supports, BearTheWeightInEquilibrium) {
     s.gravity = {0.0, 0.0, -0.5};
     s.damping = 10.0;
     s.supports.push_back(holding("clamp", left_end(mesh)));
-    Model model(mesh, table_of_one_law(law, density), s);
+    Model model(mesh, table_of_one_law(soft_law, density), s);
     const double dt = 0.8 * model.stable_step(), weight = density * bar_volume * 0.5;
     const double height_energy = model.totals().gravity_energy;
     double time = 0.0;
@@ -77,7 +66,7 @@ TEST(Supports, PrescribeDisplacementAndRotation) {
     support.point = {0.0, 0.05, 0.05};
     support.axis = Vec3::UnitX();
     s.supports.push_back(support);
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     double time = 0.0;
     const double dt = 1.0 / 4096.0;  // exact in binary
     ASSERT_LT(dt, model.stable_step());
@@ -105,7 +94,7 @@ TEST(Supports, LeaveOtherComponentsFree) {
     s.supports.push_back(holding("plane",
                                  NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
                                  {false, true, false}));
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     double time = 0.0;
     for (int i = 0; i < 10; ++i) step(model, time, 1e-3);
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
@@ -127,7 +116,7 @@ TEST(Supports, TakeInNodesBornBetweenTheirs) {
     s.supports.push_back(support);
     s.gravity = {0.0, 0.0, -9.81};
     s.damping = 5.0;
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     const auto changes = open_across(mesh, 0.1, false);
     ASSERT_EQ(changes.nodes_added.size(), 9u);
     model.apply(changes);
@@ -161,7 +150,7 @@ TEST(Supports, DoNotSpreadToANodeThatComesBack) {
     Surroundings s;
     s.gravity = {0.0, 0.0, -9.81};
     s.supports.push_back(holding("one side", NodeSet(held)));
-    Model model(mesh, table_of_one_law(law), s);
+    Model model(mesh, table_of_one_law(soft_law), s);
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
     const auto closed = edit.commit();
@@ -178,7 +167,7 @@ TEST(Supports, DoNotSpreadToANodeThatComesBack) {
 
 TEST(Supports, RefuseToHoldANodeTwice) {
     const Mesh mesh = bar();
-    const auto table = table_of_one_law(law);
+    const auto table = table_of_one_law(soft_law);
     Surroundings s;
     s.supports.push_back(holding("clamp", left_end(mesh)));
     s.supports.push_back(
@@ -202,7 +191,7 @@ TEST(Supports, RefuseToHoldANodeTwice) {
 Vec3 resultant(const Mesh& mesh, const Load& load, const BodyState& state, double time = 0.0) {
     Surroundings s;
     s.loads.push_back(load);
-    Model model(mesh, table_of_one_law(law, density), s);
+    Model model(mesh, table_of_one_law(soft_law, density), s);
     set_state(model, state, time);
     const double dt = 1e-4;
     model.integrate(time, dt);
@@ -218,7 +207,7 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
         ASSERT_EQ(loaded.size(), 3u);
         Surroundings s;
         s.loads.push_back({"hook", NodalLoad{NodeSet(loaded), force, {}}, {}});
-        Model model(mesh, table_of_one_law(law, density), s);
+        Model model(mesh, table_of_one_law(soft_law, density), s);
         const std::vector<double> masses_before(model.masses().begin(), model.masses().end());
         const auto changes = open_across(mesh, 0.1, is_partial);
         model.apply(changes);
@@ -278,7 +267,7 @@ TEST(Loads, OfPressureOnAClosedSurfaceHasNoResultantAndNoMoment) {
         const Mesh mesh = Mesh::build(family->data).mesh;
         Surroundings s;
         s.loads.push_back({"gas", PressureLoad{topology::boundary_faces(mesh), 700.0}, {}});
-        Model model(mesh, table_of_one_law(law), s);
+        Model model(mesh, table_of_one_law(soft_law), s);
         test::Random random(2);
         BodyState state = random_state(mesh, random, 0.01, 0.0);
         set_state(model, state);

@@ -10,6 +10,7 @@
 
 #include "physics/model.h"
 #include "physics/test_materials.h"
+#include "topology/box_mesh.h"
 #include "topology/mesh_data.h"
 
 namespace incise::physics {
@@ -57,6 +58,15 @@ MaterialTable table_of_one_material(const Method& method, double density = 1000.
 }
 inline MaterialTable table_of_one_law(const Law& law, double density = 1000.0) {
     return table_of_one_material(HyperElasticLinks{law}, density);
+}
+
+/// Of bodies whose law does not matter.
+inline const NeoHookean soft_law{1.5e3, 4e3};
+
+/// 0.2 x 0.1 x 0.1 m of 4 x 2 x 2 bricks.
+inline topology::Mesh bar(topology::CellKind kind = topology::CellKind::tetrahedron) {
+    return topology::Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {0.2, 0.1, 0.1}, {4, 2, 2}))
+        .mesh;
 }
 
 /// Gives the cells the regions 0 to num_regions - 1 in turn, so that every node sees several.
@@ -123,6 +133,9 @@ std::vector<topology::NodeId> nodes_where(const topology::Mesh& mesh, Predicate 
         if (const topology::NodeId n(i); mesh.is_alive(n) && is_inside(mesh.rest_position(n)))
             nodes.push_back(n);
     return nodes;
+}
+inline NodeSet left_end(const topology::Mesh& mesh) {
+    return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
 }
 
 inline std::vector<topology::ElementId> living_elements(const topology::Mesh& mesh) {

@@ -119,8 +119,10 @@ inline std::vector<Vec3> random_fibres(std::size_t num_elements) {
     return fibres;
 }
 
-inline Tetrahedron deformed(const Tetrahedron& X, const Mat3& F) {
-    return {F * X[0], F * X[1], F * X[2], F * X[3]};
+template <std::size_t n>
+std::array<Vec3, n> deformed(std::array<Vec3, n> corners, const Mat3& F) {
+    for (Vec3& x : corners) x = F * x;
+    return corners;
 }
 
 }  // namespace incise::physics

@@ -17,12 +17,6 @@ namespace {
 
 using topology::Mesh;
 
-using Series = std::vector<PronyTerm>;
-using Memory = std::vector<double>;
-
-const Series two_terms{{0.3, 0.2}, {0.4, 5.0}};
-const NeoHookean law{1923.0, 5769.0};
-
 /// 1 less the sum of the alphas.
 double long_time_share(const Series& series) {
     double share = 1.0;
@@ -64,7 +58,7 @@ struct StrainedElement {
     double strain = 0.0;
 
     explicit StrainedElement(const Series& series)
-        : kernel({law, 0.4}, series), element(kernel.precompute(X)), memory(no_memory(series)) {}
+        : kernel({soft_law, 0.4}, series), element(kernel.precompute(X)), memory(no_memory(series)) {}
 
     Tetrahedron at(double strain_along_x) const {
         return deformed(X, Vec3(1.0 + strain_along_x, 1.0, 1.0).asDiagonal());
@@ -124,8 +118,9 @@ TEST(Viscosity, RelaxesAfterASuddenStrain) {
          {Series{{0.6, 0.3}}, two_terms, Series{{0.1, 0.02}, {0.2, 1.0}, {0.5, 8.0}}})
         for (const double dt : {0.01, 0.07, 1.0}) {
             // Nodes so heavy that they do not move.
-            Model model(mesh, table_of_one_material(HyperElasticLinks{law, 0.4, series}, 1e30));
-            Model elastic(mesh, table_of_one_law(law, 1e30));
+            Model model(mesh,
+                        table_of_one_material(HyperElasticLinks{soft_law, 0.4, series}, 1e30));
+            Model elastic(mesh, table_of_one_law(soft_law, 1e30));
             test::Random random(32);
             const BodyState state = random_state(mesh, random, 0.05, 0.0);
             set_state(elastic, state);
@@ -177,7 +172,7 @@ TEST(Viscosity, FollowsARampOfStrainExactly) {
 
 TEST(Viscosity, StoresAndLosesWhatTheSeriesSays) {
     const double amplitude = 1e-6;
-    const double modulus = law.rest_lambda() + 2.0 * law.rest_mu();
+    const double modulus = soft_law.rest_lambda() + 2.0 * soft_law.rest_mu();
     for (const double omega : {0.1, 1.0, 4.0, 30.0}) {
         SCOPED_TRACE(omega);
         double storage = long_time_share(two_terms), loss = 0.0;
@@ -314,7 +309,7 @@ TEST(Viscosity, KeepsTheEnergyLedgerOfFreeVibration) {
     for (std::size_t n = 0; n < start.positions.size(); ++n)
         start.velocities[n] = G * (start.positions[n] - Vec3::Constant(0.5));
     const auto ledger_error = [&](int num_steps) {
-        Model model(mesh, table_of_one_material(HyperElasticLinks{law, 0.4, two_terms}));
+        Model model(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, two_terms}));
         set_state(model, start);
         const Totals initial = model.totals();
         double time = 0.0, largest = 0.0;
@@ -346,9 +341,9 @@ TEST(Viscosity, KeepsTheEnergyLedgerOfFreeVibration) {
 
 TEST(Viscosity, OfNoShareChangesNoBit) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    Model elastic(mesh, table_of_one_law(law));
-    Model none(mesh, table_of_one_material(HyperElasticLinks{law, 0.4, {}}));
-    Model zero(mesh, table_of_one_material(HyperElasticLinks{law, 0.4, {{0.0, 0.1}}}));
+    Model elastic(mesh, table_of_one_law(soft_law));
+    Model none(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, {}}));
+    Model zero(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.0, 0.1}}}));
     EXPECT_TRUE(none.history().is_empty());
     EXPECT_TRUE(none.history().values().empty());
     EXPECT_FALSE(zero.history().is_empty());
@@ -368,7 +363,7 @@ TEST(Viscosity, OfNoShareChangesNoBit) {
 
 TEST(Viscosity, ForcesAreAFunctionOfPositionsAndHistory) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    const auto table = table_of_one_material(HyperElasticLinks{law, 0.4, two_terms});
+    const auto table = table_of_one_material(HyperElasticLinks{soft_law, 0.4, two_terms});
     Model model(mesh, table);
     test::Random random(36);
     set_state(model, random_state(mesh, random, 0.03, 0.5));

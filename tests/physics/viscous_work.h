@@ -10,11 +10,16 @@
 
 namespace incise::physics {
 
+using Series = std::vector<PronyTerm>;
+using Memory = std::vector<double>;
+
+inline const Series two_terms{{0.3, 0.2}, {0.4, 5.0}};
+
 /// On a way through flat states and back, in so many steps: the growth of the energy, and what
 /// advance() says that viscosity took, less the work done, over the sum of its absolute values.
 /// @param memory  of an element without a past
 template <class Kernel>
-double missing_work(Kernel kernel, std::vector<double> memory, int num_steps) {
+double missing_work(Kernel kernel, Memory memory, int num_steps) {
     test::Random random(34);
     const Tetrahedron X = random_tetrahedron(random);
     const auto e = kernel.precompute(X);

@@ -35,8 +35,8 @@ end_time = 0.15
 damping = 20
 )";
 
-const std::string box = "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\n";
-const std::string file = "[mesh]\nfile = \"body.vtu\"\n";
+const std::string box_of_tissue = "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\n";
+const std::string body_file = "[mesh]\nfile = \"body.vtu\"\n";
 
 /// The box with vectors of the cells in an array of the name.
 io::Frame frame_with_vectors(const std::string& name) {
@@ -58,8 +58,8 @@ std::vector<double>& vectors_of(io::Frame& frame) {
 TEST(FibredBody, IsStifferAlongItsFibresThanAcross) {
     const RunFolder folder;
     const auto reaction = [&](const std::string& direction) {
-        Simulation simulation(
-            folder.scenario(box + fibred_material + "fibre = " + direction + "\n" + pulled));
+        Simulation simulation(folder.scenario(box_of_tissue + fibred_material +
+                                              "fibre = " + direction + "\n" + pulled));
         run(simulation);
         return simulation.model().reaction(1).z();
     };
@@ -77,8 +77,8 @@ kind = "cut"
 time = 0.05
 plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
 )";
-    const Scenario scenario =
-        folder.scenario(file + fibred_material + "fibre_array = \"collagen\"\n" + pulled + cut);
+    const Scenario scenario = folder.scenario(body_file + fibred_material +
+                                              "fibre_array = \"collagen\"\n" + pulled + cut);
     Simulation simulation(scenario);
     const topology::Mesh& mesh = simulation.mesh();
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
@@ -93,7 +93,7 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     // A frame is a mesh with the same fibres.
     io::write_vtu(folder / "body.vtu", build_frame(simulation.model(), 0.0, {}));
     Simulation again(
-        folder.scenario(file + fibred_material + "fibre_array = \"fibre\"\n" + pulled));
+        folder.scenario(body_file + fibred_material + "fibre_array = \"fibre\"\n" + pulled));
     std::map<std::vector<double>, Vec3> expected;  // by place
     const auto place = [](const topology::Mesh& m, topology::ElementId e) {
         std::vector<double> corners;
@@ -122,7 +122,7 @@ TEST(FibredBody, RefusesVectorsWithoutDirectionWhereItsMaterialHasFibres) {
     const auto refusal = [&](const io::Frame& frame, const std::string& materials) {
         io::write_vtu(folder / "body.vtu", frame);
         try {
-            Simulation simulation(folder.scenario(file + materials + pulled));
+            Simulation simulation(folder.scenario(body_file + materials + pulled));
         } catch (const InputError& error) {
             std::string text = error.what();
             return text.replace(0, text.find("body.vtu"), "");

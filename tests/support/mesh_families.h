@@ -44,6 +44,12 @@ class Random {
         const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
         return {x, y, z};
     }
+    /// A point with coordinates 0 to size - 1, among which anything touches anything.
+    Vec3 grid_point(std::size_t size) {
+        const auto coordinate = [&] { return static_cast<double>(below(size)); };
+        const double x = coordinate(), y = coordinate(), z = coordinate();
+        return {x, y, z};
+    }
 
   private:
     std::mt19937_64 engine_;
