@@ -5,6 +5,7 @@
 
 #include "app/messages.h"
 #include "app/number_list.h"
+#include "cutting/surface_check.h"
 #include "io/surface_reader.h"
 #include "sim/diagnostics.h"
 #include "topology/error.h"
@@ -123,6 +124,8 @@ ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
             break;
         case Kind::surface: {
             auto file = io::read_surface(argument.text);
+            for (const auto& defect : cutting::defects_of_sheet(file.surface))
+                file.warnings.push_back(defect);
             for (const auto& warning : file.warnings)
                 parsed.warnings.push_back(prefixed(argument.text + ": ", warning));
             parsed.tool.kind = sim::SurfaceCut{std::move(file.surface)};

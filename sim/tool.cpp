@@ -8,6 +8,7 @@
 #include "cutting/cut_plan.h"
 #include "cutting/plane.h"
 #include "cutting/separator.h"
+#include "cutting/surface_check.h"
 #include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
 #include "io/surface_reader.h"
@@ -34,6 +35,8 @@ std::shared_ptr<const cutting::CutSurface> load_surface(const Cut& cut,
         return std::make_shared<cutting::Plane>(plane->point, plane->normal);
     const auto& path = std::get<std::filesystem::path>(cut.along);
     io::SurfaceFile file = io::read_surface(path);
+    for (const auto& defect : cutting::defects_of_sheet(file.surface))
+        file.warnings.push_back(defect);
     for (const auto& warning : file.warnings) warnings.push_back(path.string() + ": " + warning);
     for (Vec3& x : file.surface.points) x *= cut.scale;
     return std::make_shared<cutting::TriangleSurface>(file.surface);

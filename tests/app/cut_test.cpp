@@ -191,6 +191,15 @@ TEST_F(Cut, FreesTheInsideOfAClosedSurface) {
     EXPECT_LT(report["surface_distance"]["relative"].get<double>(), 1e-6);
 }
 
+TEST_F(Cut, WarnsOfSurfacesThatMeetThemselves) {
+    write("fold.obj", "v 0 0 .5\nv 1 0 .5\nv 0 1 .5\nv 1 1 .5\nf 1 2 3\nf 1 2 4\n");
+    const auto outcome = run("cut box.vtu --surface fold.obj --out out.vtu");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("warning: fold.obj: triangles lie upon each other, one near"),
+              std::string::npos)
+        << outcome.err;
+}
+
 TEST_F(Cut, FollowsABladeThroughItsPoses) {
     const auto through =
         cut("--snap 0 --sweep ' 0.3,-1,2; 0.3,0.5,2; 0.3,2,2 | 0.3,-1,0.6;0.3,0.5,0.7;0.3,2,0.6 |"

@@ -184,6 +184,7 @@ surface = "octahedron.obj"
 scale = 0.0371
 snap = 0
 )"));
+    EXPECT_TRUE(simulation.warnings().empty());
     run(simulation);
     ASSERT_EQ(simulation.ledger().edits().size(), 1u);
     EXPECT_EQ(simulation.ledger().edits()[0].after.components, 2);
