@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "physics/inheritance.h"
 #include "physics/kernel_block.h"
@@ -178,11 +179,12 @@ std::size_t ElementStore::history_size() const {
 }
 
 double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3> positions,
-                             double dt, ViscousHistory& history) {
-    double energy = 0.0;
-    for (const auto& block : blocks_)
-        if (block) energy += block->advance(before, positions, dt, history);
-    return energy;
+                             double dt, Workers& workers, ViscousHistory& history) {
+    energies_taken_.assign(blocks_.size(), 0.0);
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (blocks_[b]) energies_taken_[b] = blocks_[b]->advance(before, positions, dt, history);
+    });
+    return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }
 
 void ElementStore::erase(ElementId e, int region) {

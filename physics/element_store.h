@@ -59,9 +59,10 @@ class ElementStore {
     std::size_t history_size() const;
 
     /// Brings the history of all elements from the positions `before` to `positions`, dt later;
-    /// see ElementBlock. Returns the energy that viscosity took, J.
+    /// see ElementBlock. Returns the energy that viscosity took, J: the same bits for any number
+    /// of workers.
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
-                   ViscousHistory& history);
+                   Workers& workers, ViscousHistory& history);
 
     /// Sets `forces` (N, by node id) to those of all elements at `positions` (m), with those of
     /// viscosity as far as the history goes. A node's force is the sum of those of the blocks, in
@@ -101,6 +102,7 @@ class ElementStore {
     std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
     std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
+    std::vector<double> energies_taken_;           // scratch, by block
 };
 
 }  // namespace incise::physics

@@ -71,7 +71,7 @@ void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> vel
                       double time) {
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
-    if (!history_.is_empty()) elements_.advance(positions_, positions_, 0.0, history_);
+    if (!history_.is_empty()) elements_.advance(positions_, positions_, 0.0, workers_, history_);
     compute_forces(time);
 }
 
@@ -106,7 +106,8 @@ void Model::integrate(double time, double dt) {
     largest_move_ = std::sqrt(sums.largest_square) * dt;
     if (!sums.is_finite || largest_move_ > body_size_) explain_failure(time, dt);
     if (!history_.is_empty())
-        dissipated_energy_ += elements_.advance(previous_positions_, positions_, dt, history_);
+        dissipated_energy_ +=
+            elements_.advance(previous_positions_, positions_, dt, workers_, history_);
 }
 
 void Model::move_node(std::size_t n, double time, double dt, StepSums& sums) {
@@ -168,7 +169,8 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
     }
     largest_move_ = largest_move + std::sqrt(largest_square);
     double taken = 0.0;
-    if (!history_.is_empty()) taken = elements_.advance(positions_, positions, dt, history_);
+    if (!history_.is_empty())
+        taken = elements_.advance(positions_, positions, dt, workers_, history_);
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
     return taken;
