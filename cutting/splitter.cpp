@@ -121,12 +121,12 @@ class Splitter {
 
     /// Where the cut is finished, or the sweep has gone far away, a later passage is another cut.
     void leave_behind(const topology::ChangeSet& changes) {
-        std::optional<CutBorder> border;  // where it was, if nothing has been crossed
-        if (!touched_.empty()) border.emplace(mesh_, front_, options_.snap > 0.0);
+        std::vector<std::uint8_t> beside;  // all as they were, if nothing has been crossed
+        if (!touched_.empty()) beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
         const auto done = front_.nodes_unless([&](NodeId n, double reach) {
             return mesh_.is_alive(n) &&
                    surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&
-                   (!border || border->is_beside(n));
+                   (beside.empty() || beside[n.index()]);
         });
         forget(mesh_, done, front_);
     }
