@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 namespace incise::cutting {
 
@@ -88,8 +89,10 @@ inline double permanent(const Square<double, 4>& m) {
     return sum;
 }
 
+/// Nothing if rounding might decide.
 template <std::size_t n>
-ShiftedSign sign_of_determinant(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
+std::optional<ShiftedSign> rounded_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points,
+                                        int axis) {
     const auto m = reduced<double, n>(points, axis);
     const double value = determinant(m);
     // Each of the at most 24 products has four rounded differences and under a dozen roundings
@@ -97,19 +100,35 @@ ShiftedSign sign_of_determinant(const std::array<const ShiftedPoint<n>*, n + 1>&
     constexpr double bound = 64.0 * 0x1.0p-53;
     const double uncertainty = bound * permanent(m);
     if (std::abs(value) > uncertainty && uncertainty > 0x1.0p-900)
-        return {value > 0.0 ? 1 : -1, value};
+        return ShiftedSign{value > 0.0 ? 1 : -1, value};
+    return std::nullopt;
+}
+
+template <std::size_t n>
+ShiftedSign exact_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
     const CGAL::MP_Float exact = determinant(reduced<CGAL::MP_Float, n>(points, axis));
     return {static_cast<int>(CGAL::sign(exact)), CGAL::to_double(exact)};
 }
 
 }  // namespace detail
 
-/// Orientation of n + 1 points in n dimensions (3, or 4 with time as the last).
+/// Orientation of n + 1 points in n dimensions (3, or 4 with time as the last), if it takes no
+/// exact arithmetic, which costs a hundred times as much; else nothing.
+template <std::size_t n>
+std::optional<ShiftedSign> clear_orientation(
+    const std::array<const ShiftedPoint<n>*, n + 1>& points) {
+    return detail::rounded_sign<n>(points, -1);
+}
+
+/// Orientation of n + 1 points in any case.
 template <std::size_t n>
 ShiftedSign orientation(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
-    ShiftedSign result = detail::sign_of_determinant<n>(points, -1);
-    for (int axis = 0; axis < 3 && result.sign == 0; ++axis)
-        result.sign = detail::sign_of_determinant<n>(points, axis).sign;
+    const auto sign = [&](int axis) {
+        const auto rounded = detail::rounded_sign<n>(points, axis);
+        return rounded ? *rounded : detail::exact_sign<n>(points, axis);
+    };
+    ShiftedSign result = sign(-1);
+    for (int axis = 0; axis < 3 && result.sign == 0; ++axis) result.sign = sign(axis).sign;
     return result;
 }
 

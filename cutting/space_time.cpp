@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "cutting/space_time.h"
 
+#include <optional>
+
 #include "cutting/shifted_sign.h"
 
 namespace incise::cutting {
@@ -18,22 +20,24 @@ using EventTriangle = std::array<const Event*, 3>;
 bool triangles_meet(const EventTriangle& s, const EventTriangle& t,
                     std::array<double, 3>& weights) {
     const std::array<const Event*, 6> events = {s[0], s[1], s[2], t[0], t[1], t[2]};
-    int first = 0;
-    for (std::size_t k = 0; k < 6; ++k) {
-        std::array<const Event*, 5> others{};
-        for (std::size_t i = 0, n = 0; i < 6; ++i)
-            if (i != k) others[n++] = events[i];
-        const ShiftedSign minor = orientation<4>(others);
-        int sign = minor.sign;
-        if (k % 2 == 1) sign = -sign;
-        if (k >= 3) sign = -sign;
-        if (sign == 0) return false;
-        if (k == 0)
-            first = sign;
-        else if (sign != first)
-            return false;
-        if (k < 3) weights[k] = std::abs(minor.value);
-    }
+    int common_sign = 0;
+    std::array<bool, 6> is_known{};
+    // Exactly only if need be: mostly one of those that are clear rules it out.
+    for (const bool is_exact : {false, true})
+        for (std::size_t k = 0; k < 6; ++k) {
+            if (is_known[k]) continue;
+            std::array<const Event*, 5> others{};
+            for (std::size_t i = 0, n = 0; i < 6; ++i)
+                if (i != k) others[n++] = events[i];
+            const std::optional<ShiftedSign> minor =
+                is_exact ? orientation<4>(others) : clear_orientation<4>(others);
+            if (!minor) continue;
+            const int sign = (k % 2 == 1) != (k >= 3) ? -minor->sign : minor->sign;
+            if (sign == 0 || sign == -common_sign) return false;
+            common_sign = sign;
+            is_known[k] = true;
+            if (k < 3) weights[k] = std::abs(minor->value);
+        }
     return true;
 }
 

@@ -6,6 +6,15 @@
 
 namespace incise::cutting {
 
+namespace {
+
+/// More than what rounding could hide of the height of a point in the box along the normal.
+double rounding_of_heights(const Vec3& normal, const Box& box) {
+    return 1e-12 * normal.cwiseAbs().dot(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()));
+}
+
+}  // namespace
+
 SweptEdge::SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after) {
     for (std::size_t s = 0; s + 1 < before.size(); ++s) {
         segments_.push_back({{before[s], after[s]}, {before[s + 1], after[s + 1]}});
@@ -17,6 +26,9 @@ SweptEdge::SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after) {
             bounds.low = std::min(bounds.low, bounds.normal.dot(x));
             bounds.high = std::max(bounds.high, bounds.normal.dot(x));
         }
+        const double rounding = rounding_of_heights(bounds.normal, bounds.box);
+        bounds.low -= rounding;
+        bounds.high += rounding;
         bounds_.push_back(bounds);
     }
 }
@@ -25,10 +37,9 @@ bool SweptEdge::may_meet(const Box& box) const {
     const Vec3 centre = box.center(), half = 0.5 * box.sizes();
     for (const Bounds& bounds : bounds_) {
         if (!bounds.box.intersects(box)) continue;
-        const Vec3 size = bounds.normal.cwiseAbs();
         const double middle = bounds.normal.dot(centre);
-        // With more than what rounding could hide.
-        const double reach = size.dot(half) + 1e-12 * size.dot(centre.cwiseAbs() + half);
+        const double reach =
+            bounds.normal.cwiseAbs().dot(half) + rounding_of_heights(bounds.normal, box);
         if (middle + reach >= bounds.low && middle - reach <= bounds.high) return true;
     }
     return false;
@@ -38,9 +49,16 @@ void SweptEdge::append_crossings(const MovingPoint& a, const MovingPoint& b,
                                  std::vector<Crossing>& crossings) const {
     Box path(a[0]);
     path.extend(a[1]).extend(b[0]).extend(b[1]);
-    for (std::size_t s = 0; s < segments_.size(); ++s)
-        if (bounds_[s].box.intersects(path))
-            cutting::append_crossings({a, b}, segments_[s], crossings);
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+        const Bounds& bounds = bounds_[s];
+        if (!bounds.box.intersects(path)) continue;
+        const auto height = [&](const Vec3& x) { return bounds.normal.dot(x); };
+        const auto [low, high] =
+            std::minmax({height(a[0]), height(a[1]), height(b[0]), height(b[1])});
+        const double rounding = rounding_of_heights(bounds.normal, path);
+        if (low - rounding > bounds.high || high + rounding < bounds.low) continue;
+        cutting::append_crossings({a, b}, segments_[s], crossings);
+    }
 }
 
 std::optional<bool> SweptEdge::ends_inside(const std::array<MovingPoint, 3>& triangle) const {
