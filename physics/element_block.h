@@ -92,7 +92,7 @@ class ElementBlock {
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
-    virtual ElementShares shares(ElementId e) const = 0;
+    virtual const ElementShares& shares(ElementId e) const = 0;
     virtual double rest_volume(ElementId e) const = 0;
 
     /// Takes the element in and precomputes it from the rest positions (by node id).

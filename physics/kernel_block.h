@@ -144,7 +144,7 @@ class KernelBlock final : public ElementBlock {
         return result;
     }
 
-    ElementShares shares(ElementId e) const override { return row(slot_of(e)).shares; }
+    const ElementShares& shares(ElementId e) const override { return row(slot_of(e)).shares; }
     double rest_volume(ElementId e) const override { return row(slot_of(e)).rest.volume; }
 
     void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,

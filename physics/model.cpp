@@ -59,7 +59,7 @@ void Model::gather(NodeId n) {
     double mass = 0.0, stiffness = 0.0;
     mesh_.star(n, star_);
     for (const ElementId e : star_) {
-        const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
+        const ElementShares& shares = elements_.block_of(mesh_, e).shares(e);
         mass += shares.mass;
         stiffness += shares.stiffness[static_cast<std::size_t>(mesh_.corner_of(e, n))];
     }
@@ -378,7 +378,7 @@ void Model::restore(topology::ArchiveReader& ar, double time) {
 }
 
 double Model::own_step(ElementId e) const {
-    const ElementShares shares = elements_.block_of(mesh_, e).shares(e);
+    const ElementShares& shares = elements_.block_of(mesh_, e).shares(e);
     const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());
     return 2.0 / std::sqrt(stiffness / shares.mass);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 
 namespace incise::topology {
@@ -29,10 +30,9 @@ template <class Visit>
 void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
     const int corner = mesh.corner_of(e, n);
     if (corner < 0) return;
-    const unsigned faces =
+    unsigned faces =
         faces_of_corner[static_cast<std::size_t>(mesh.kind(e))][static_cast<std::size_t>(corner)];
-    for (int f = 0; f < max_faces; ++f)
-        if ((faces >> f) & 1u) visit(FaceId{e, f});
+    for (; faces != 0; faces &= faces - 1) visit(FaceId{e, std::countr_zero(faces)});
 }
 
 }  // namespace

@@ -54,9 +54,11 @@ void MeshEdit::save(ElementId e) {
     if (e.index() >= element_capacity_before_ || is_saved_[e.index()]) return;
     is_saved_[e.index()] = 1;
     const auto corners = mesh_.corners(e);
-    SavedRow row{e, mesh_.is_alive(e), {corners.begin(), corners.end()}, {}};
-    for (int f = 0; f < mesh_.num_faces(e); ++f) row.neighbors.push_back(mesh_.neighbor({e, f}));
-    saved_.push_back(std::move(row));
+    SavedRow row{e, mesh_.is_alive(e), {}, {}};
+    std::copy(corners.begin(), corners.end(), row.corners.begin());
+    for (int f = 0; f < mesh_.num_faces(e); ++f)
+        row.neighbors[static_cast<std::size_t>(f)] = mesh_.neighbor({e, f});
+    saved_.push_back(row);
 }
 
 void MeshEdit::touch_face(FaceId f) {
@@ -77,8 +79,13 @@ void MeshEdit::remove(ElementId e) {
     require_alive(e);
     require_older(e, "removed");
     save(e);
-    for (int f = 0; f < mesh_.num_faces(e); ++f)
-        if (mesh_.neighbor({e, f}).is_valid()) part({e, f});
+    for (int f = 0; f < mesh_.num_faces(e); ++f) {
+        const FaceId other = mesh_.neighbor({e, f});
+        if (!other.is_valid()) continue;
+        save(other.element);
+        touch_face(other);
+        mesh_.unglue(other);
+    }
     for (const NodeId n : mesh_.corners(e)) touched_.push_back({n, ElementId()});
     mesh_.map_.remove_element(e);
     mesh_.alive_[e.index()] = 0;
@@ -184,9 +191,9 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     if (!is_tetrahedron(e) || !add_arc(e)) return false;
     if (mesh_.neighbor({ring_.back().element, ring_.back().next_face}).is_valid()) return true;
     // An edge of the boundary: there may be further arcs, joined with this one at its ends only.
-    std::vector<ElementId> star;
-    collect_star(mesh_, a, e, star);
-    for (const ElementId other : star) {
+    star_.clear();
+    collect_star(mesh_, a, e, star_);
+    for (const ElementId other : star_) {
         const bool is_known = std::any_of(
             ring_.begin(), ring_.end(), [&](const RingElement& at) { return at.element == other; });
         if (is_known || mesh_.corner_of(other, b) < 0) continue;
@@ -305,8 +312,9 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates,
             return std::binary_search(part.begin(), part.end(), e);
         });
         if (is_known) continue;
-        parts.emplace_back();
-        collect_star(mesh_, n, e, parts.back());
+        star_.clear();
+        collect_star(mesh_, n, e, star_);
+        parts.push_back(star_);
     }
     std::sort(parts.begin(), parts.end());
 
@@ -367,14 +375,15 @@ ChangeSet MeshEdit::differences() const {
     for (const SavedRow* row : rows) {
         const ElementId e = row->element;
         const bool is_alive = mesh_.is_alive(e);
+        const auto corners = mesh_.corners(e);
+        const std::span old_corners(row->corners.data(), corners.size());
         if (row->was_alive && !is_alive)
             changes.elements_removed.push_back(
-                {e, mesh_.kind(e), mesh_.region(e), {}, row->corners});
+                {e, mesh_.kind(e), mesh_.region(e), {}, {old_corners.begin(), old_corners.end()}});
         if (row->was_alive && is_alive)
-            for (std::size_t k = 0; k < row->corners.size(); ++k)
-                if (row->corners[k] != mesh_.corners(e)[k])
-                    changes.rewired.push_back(
-                        {e, static_cast<int>(k), row->corners[k], mesh_.corners(e)[k]});
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                if (old_corners[k] != corners[k])
+                    changes.rewired.push_back({e, static_cast<int>(k), old_corners[k], corners[k]});
         for (int f = 0; f < mesh_.num_faces(e); ++f) {
             const FaceId face{e, f};
             const FaceId before = row->neighbors[static_cast<std::size_t>(f)];

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -66,8 +67,8 @@ class MeshEdit {
     struct SavedRow {
         ElementId element;
         bool was_alive;
-        std::vector<NodeId> corners;
-        std::vector<FaceId> neighbors;
+        std::array<NodeId, max_corners> corners;  // as many as the element has; so below
+        std::array<FaceId, max_faces> neighbors;
     };
     struct TouchedCorner {
         NodeId node;
@@ -101,6 +102,7 @@ class MeshEdit {
     std::vector<NodeRecord> nodes_added_;
     std::vector<ElementId> parents_;  // of the elements added, in their order
     std::vector<RingElement> ring_;   // scratch
+    std::vector<ElementId> star_;     // scratch
     Bisection bisection_;
 };
 
