@@ -341,7 +341,11 @@ void Model::apply(const ChangeSet& changes) {
         touched.push_back(rewiring.from);
         touched.push_back(rewiring.to);
     }
-    for (const NodeRecord& record : changes.nodes_removed) touched.push_back(record.id);
+    for (const NodeRecord& record : changes.nodes_removed) {
+        touched.push_back(record.id);
+        // What it was merged into has its mass, even if the elements have parted from it since.
+        if (record.num_sources == 1) touched.push_back(record.sources[0].node);
+    }
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     touched.erase(

@@ -37,6 +37,13 @@ MeshEdit::~MeshEdit() {
     ChangeSet changes = differences();
     changes.epoch_before = changes.epoch_after = mesh_.epoch();
     replay(mesh_, inverse(changes));
+    // Of nodes that took in others for a while the map may know a dart that is no longer theirs.
+    for (const TouchedCorner& touched : touched_) {
+        const NodeId n = touched.node;
+        if (n.index() >= node_capacity_before_ || !mesh_.is_alive(n)) continue;
+        const ElementId anchor = mesh_.anchor(n);
+        mesh_.map_.set_anchor(n, anchor, mesh_.corner_of(anchor, n));
+    }
 }
 
 void MeshEdit::require_alive(ElementId e) const {

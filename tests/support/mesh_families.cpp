@@ -87,14 +87,6 @@ std::vector<ElementId> living_elements(const Mesh& mesh) {
     return alive;
 }
 
-std::vector<FaceId> inner_faces(const Mesh& mesh) {
-    std::vector<FaceId> faces;
-    for (const ElementId e : living_elements(mesh))
-        for (int f = 0; f < mesh.num_faces(e); ++f)
-            if (FaceId{e, f} < mesh.neighbor({e, f})) faces.push_back({e, f});
-    return faces;
-}
-
 std::pair<NodeId, NodeId> longest_edge(const Mesh& mesh, ElementId e) {
     std::pair<NodeId, NodeId> longest;
     double length = 0.01;  // of tiny elements rounding would make flat ones
@@ -116,25 +108,6 @@ bool is_among_tetrahedra(const Mesh& mesh, NodeId n) {
     mesh.star(n, star);
     return std::all_of(star.begin(), star.end(),
                        [&](ElementId e) { return mesh.kind(e) == CellKind::tetrahedron; });
-}
-
-// Pairs of boundary faces at the same rest positions: what an opened face left.
-std::vector<FacePair> open_pairs(const Mesh& mesh) {
-    std::map<std::vector<double>, FaceId> seen;
-    std::vector<FacePair> pairs;
-    for (const FaceId f : boundary_faces(mesh)) {
-        std::vector<std::array<double, 3>> corners;
-        for (int p = 0; p < mesh.face_size(f); ++p) {
-            const Vec3& x = mesh.rest_position(mesh.face_corner(f, p));
-            corners.push_back({x.x(), x.y(), x.z()});
-        }
-        std::sort(corners.begin(), corners.end());
-        std::vector<double> key;
-        for (const auto& c : corners) key.insert(key.end(), c.begin(), c.end());
-        const auto [place, is_new] = seen.try_emplace(key, f);
-        if (!is_new) pairs.push_back({place->second, f});
-    }
-    return pairs;
 }
 
 }  // namespace
@@ -213,6 +186,32 @@ std::vector<const MeshFamily*> families_of(CellKind kind) {
 }
 
 std::vector<const MeshFamily*> tetrahedral_families() { return families_of(CellKind::tetrahedron); }
+
+std::vector<FaceId> inner_faces(const Mesh& mesh) {
+    std::vector<FaceId> faces;
+    for (const ElementId e : living_elements(mesh))
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (FaceId{e, f} < mesh.neighbor({e, f})) faces.push_back({e, f});
+    return faces;
+}
+
+std::vector<FacePair> open_pairs(const Mesh& mesh) {
+    std::map<std::vector<double>, FaceId> seen;
+    std::vector<FacePair> pairs;
+    for (const FaceId f : boundary_faces(mesh)) {
+        std::vector<std::array<double, 3>> corners;
+        for (int p = 0; p < mesh.face_size(f); ++p) {
+            const Vec3& x = mesh.rest_position(mesh.face_corner(f, p));
+            corners.push_back({x.x(), x.y(), x.z()});
+        }
+        std::sort(corners.begin(), corners.end());
+        std::vector<double> key;
+        for (const auto& c : corners) key.insert(key.end(), c.begin(), c.end());
+        const auto [place, is_new] = seen.try_emplace(key, f);
+        if (!is_new) pairs.push_back({place->second, f});
+    }
+    return pairs;
+}
 
 ChangeSet random_edit(Mesh& mesh, Random& random) {
     MeshEdit edit(mesh);

@@ -55,6 +55,11 @@ class Random {
     std::mt19937_64 engine_;
 };
 
+/// Faces between two elements; of its two sides the lower one.
+std::vector<topology::FaceId> inner_faces(const topology::Mesh& mesh);
+/// Pairs of boundary faces at the same rest positions: what an opened face left.
+std::vector<topology::FacePair> open_pairs(const topology::Mesh& mesh);
+
 /// One random transaction: removals, openings, closings, edges divided or a mixture of them, near
 /// each other or scattered, small or large. Empty when the mesh has nothing left to edit.
 topology::ChangeSet random_edit(topology::Mesh& mesh, Random& random);

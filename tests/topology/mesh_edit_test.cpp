@@ -53,6 +53,26 @@ TEST(MeshEdit, WithoutCommitLeavesNoTrace) {
     }
 }
 
+TEST(MeshEdit, WithoutCommitGivesNodesBackThatWereMergedInPassing) {
+    Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;
+    {
+        MeshEdit edit(mesh);
+        edit.open(test::inner_faces(mesh).front());
+        edit.commit();
+    }
+    const MeshSnapshot before(mesh);
+    for (const std::size_t removed : {0u, 1u}) {
+        {
+            const FacePair pair = test::open_pairs(mesh).front();
+            MeshEdit edit(mesh);
+            edit.close(pair.a, pair.b);
+            edit.remove(ElementId(removed));
+        }
+        EXPECT_EQ(MeshSnapshot(mesh), before);
+        EXPECT_EQ(validate(mesh), no_violations);
+    }
+}
+
 TEST(MeshEdit, OpeningAPlaneCopiesItsNodesOnce) {
     constexpr int n = 6;
     for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron})
