@@ -11,11 +11,9 @@
 #include <iterator>
 #include <numeric>
 #include <string_view>
-#include <variant>
 
+#include "cut_balance.h"
 #include "io/mesh_reader.h"
-#include "physics/model.h"
-#include "physics/test_materials.h"
 #include "topology/validate.h"
 
 namespace incise::cutting {
@@ -28,83 +26,6 @@ using topology::ElementId;
 using topology::Mesh;
 using topology::MeshData;
 using topology::NodeId;
-
-/// Each law of the tests, in a region of its own.
-physics::MaterialTable all_materials(std::size_t num_elements) {
-    physics::MaterialTable table;
-    table.fibres = physics::random_fibres(num_elements);
-    for (const auto& named : physics::test_laws()) {
-        const std::size_t i = table.materials.size();
-        table.of_region[static_cast<int>(i)] = i;
-        table.materials.push_back(
-            {900.0 + 37.0 * static_cast<double>(i), physics::HyperElasticLinks{named.law}});
-    }
-    return table;
-}
-
-/// Elastic energy of an element by its deformation gradient, J. The kernels see the squares of
-/// edges, by which they lose digits with the fourth power of an element's slenderness, and at snap
-/// 0 elements are as slender as chance will have it.
-double energy(const Model& model, const physics::MaterialTable& table, ElementId e) {
-    const Mesh& mesh = model.mesh();
-    const auto corners = mesh.corners(e);
-    Eigen::Matrix3d rest, current;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto c = static_cast<Eigen::Index>(k);
-        rest.col(c) = mesh.rest_position(corners[k + 1]) - mesh.rest_position(corners[0]);
-        current.col(c) =
-            model.positions()[corners[k + 1].index()] - model.positions()[corners[0].index()];
-    }
-    const Eigen::Matrix3d F = current * rest.inverse();
-    const Eigen::Matrix3d twice_E = F.transpose() * F - Eigen::Matrix3d::Identity();
-    const Vec3& fibre = model.fibres()[e.index()];
-    const physics::LinkStrain strain{twice_E.trace(), twice_E.squaredNorm(), F.determinant(),
-                                     fibre.dot(twice_E * fibre)};
-    const auto& material = table.materials[table.of_region.at(mesh.region(e))];
-    const auto& links = std::get<physics::HyperElasticLinks>(material.method);
-    const auto density = [&](const auto& law) {
-        return law.response(strain, links.inversion_threshold).w;
-    };
-    return std::visit(density, links.law) * element_volume(mesh, e, mesh.rest_positions());
-}
-
-/// Sums over the body, and the sums of absolute values that tell their rounding.
-struct Balance {
-    physics::Totals totals;
-    Vec3 moment = Vec3::Zero();  // of mass
-    double elastic_energy = 0.0;
-    double momentum_scale = 0.0, moment_scale = 0.0, elastic_scale = 0.0;
-
-    Balance(const Model& model, const physics::MaterialTable& table) : totals(model.totals()) {
-        for (std::size_t n = 0; n < model.masses().size(); ++n) {
-            const double m = model.masses()[n];
-            moment += m * model.positions()[n];
-            moment_scale += m * model.positions()[n].norm();
-            momentum_scale += m * model.velocities()[n].norm();
-        }
-        for (std::size_t i = 0; i < model.mesh().element_capacity(); ++i) {
-            const double w = energy(model, table, ElementId(i));
-            elastic_energy += w;
-            elastic_scale += std::abs(w);
-        }
-    }
-};
-
-/// What a model is that must not depend on how it came about.
-struct Figures {
-    std::vector<double> masses, energies;
-    std::vector<Vec3> forces;
-    double stable_step;
-    bool operator==(const Figures&) const = default;
-
-    explicit Figures(Model& model) : stable_step(model.stable_step()) {
-        model.compute_forces(0.0);
-        masses.assign(model.masses().begin(), model.masses().end());
-        forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
-        for (std::size_t e = 0; e < model.mesh().element_capacity(); ++e)
-            energies.push_back(model.element_result(ElementId(e)).energy);
-    }
-};
 
 /// Curved cuts that were made twice, and how often there was something left to do.
 struct Repeats {
@@ -147,7 +68,10 @@ class Patient {
             const RandomCut cut = random_cut(living_positions(), random_);
             SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
             carry_out(cut);
-            if (cut.kind == CutKind::plane) expect_parted(cut);
+            if (cut.kind == CutKind::plane)
+                expect_parted(
+                    mesh_, model_.positions(), {cut.point, cut.normal},
+                    how_far_off() * longest_edge(mesh_, model_.positions()) + 1e-6 * size_, scars_);
             if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
                 expect_halves(cut);
             if (cut.kind != CutKind::blade) repeat(cut);
@@ -155,13 +79,6 @@ class Patient {
     }
 
   private:
-    static MeshData with_all_materials(MeshData data) {
-        const auto num_materials = static_cast<int>(physics::test_laws().size());
-        for (std::size_t c = 0; c < data.num_cells(); ++c)
-            data.regions[c] = static_cast<int>(c) % num_materials;
-        return data;
-    }
-
     std::vector<Vec3> living_positions() const {
         std::vector<Vec3> positions;
         for (std::size_t n = 0; n < mesh_.node_capacity(); ++n)
@@ -203,26 +120,8 @@ class Patient {
     void check(const Balance& before) {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
-
-        const Balance after(model_, table_);
-        const physics::Totals &a = before.totals, &b = after.totals;
-        EXPECT_NEAR(b.mass, a.mass, 1e-12 * a.mass);
-        EXPECT_NEAR(b.rest_volume, a.rest_volume, 1e-12 * a.rest_volume);
-        EXPECT_LE((after.moment - before.moment).norm(), 1e-12 * before.moment_scale);
-        EXPECT_LE((b.momentum - a.momentum).norm(), 1e-12 * before.momentum_scale);
-        // At rest there is nothing but rounding.
-        const double scale = before.elastic_scale + 1e-6 * model_.stiffness_energy();
-        EXPECT_NEAR(after.elastic_energy, before.elastic_energy, 1e-10 * scale);
-        if (options_.snap > 0.0) {
-            EXPECT_NEAR(b.elastic_energy, a.elastic_energy, 1e-10 * scale);
-        }
-        EXPECT_LE(b.kinetic_energy, a.kinetic_energy * (1.0 + 1e-12));
-
-        physics::MaterialTable table = table_;
-        table.fibres.assign(model_.fibres().begin(), model_.fibres().end());
-        Model fresh(mesh_, table);
-        fresh.set_state(model_.positions(), model_.velocities(), 0.0);
-        EXPECT_EQ(Figures(model_), Figures(fresh));
+        expect_kept(before, model_, table_, options_.snap > 0.0);
+        expect_equal_to_a_fresh_one(model_, table_);
     }
 
     /// A node may be off the surface by this share of an edge: at rest; where the body is strained,
@@ -230,25 +129,6 @@ class Patient {
     double how_far_off() const {
         if (is_at_rest_) return options_.snap;
         return options_.snap > 0.0 ? 0.6 : 0.0;
-    }
-
-    /// No piece is on both sides of a plane, whatever the body was: but for what is snapped.
-    void expect_parted(const RandomCut& cut) const {
-        const double off = how_far_off() * longest_edge(mesh_, model_.positions());
-        const auto pieces = topology::components(mesh_);
-        const auto num_pieces = static_cast<std::size_t>(pieces.count);
-        std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
-        for (std::size_t e = 0; e < mesh_.element_capacity(); ++e) {
-            const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
-            for (const NodeId n : mesh_.corners(ElementId(e))) {
-                const Vec3 from = model_.positions()[n.index()] - cut.point;
-                const double height = from.dot(cut.normal.normalized());
-                highest[piece] = std::max(highest[piece], height);
-                lowest[piece] = std::min(lowest[piece], height);
-            }
-        }
-        for (std::size_t piece = 0; piece < num_pieces; ++piece)
-            EXPECT_LE(std::min(highest[piece], -lowest[piece]), off + 1e-6 * size_);
     }
 
     /// A convex body at rest is in two; each is as large as the plane leaves it, but for what is

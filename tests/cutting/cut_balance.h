@@ -1,0 +1,44 @@
+// What a cut of a body has to keep, and what it has to leave.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "cutting/scars.h"
+#include "physics/model.h"
+#include "topology/mesh_data.h"
+
+namespace incise::cutting {
+
+/// Each law of the tests, in a region of its own.
+physics::MaterialTable all_materials(std::size_t num_elements);
+/// Gives the cells their regions in turn.
+topology::MeshData with_all_materials(topology::MeshData data);
+
+/// Sums over the body, and the sums of absolute values that tell their rounding.
+struct Balance {
+    Balance(const physics::Model& model, const physics::MaterialTable& table);
+
+    physics::Totals totals;
+    Vec3 moment = Vec3::Zero();  ///< of mass
+    double elastic_energy = 0.0;
+    double momentum_scale = 0.0, moment_scale = 0.0, elastic_scale = 0.0;
+};
+
+/// Expects that a cut that took nothing away kept mass, volume, momentum and energy.
+/// @param before  of the model, which has followed the cut since
+/// @param has_no_slivers  so that the energies of the kernels are exact enough to compare
+void expect_kept(const Balance& before, const physics::Model& model,
+                 const physics::MaterialTable& table, bool has_no_slivers);
+
+/// Expects that the model is, to the bit, one built afresh on its mesh.
+void expect_equal_to_a_fresh_one(physics::Model& model, const physics::MaterialTable& table);
+
+struct PlaneOfCut {
+    Vec3 point, normal;
+};
+/// Expects that no piece is on both sides of a plane, but for so much (m), and crumbs.
+void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
+                   const PlaneOfCut& plane, double off, const Scars& scars);
+
+}  // namespace incise::cutting

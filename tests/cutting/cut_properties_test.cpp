@@ -1,0 +1,250 @@
+// Generated programs of cuts on generated bodies: what must hold whatever they are. Cuts pass
+// through points of a coarse grid, in few directions, so that they meet nodes, edges, faces and
+// each other exactly, which cuts at random never do; and a program that fails can be shrunk to a
+// few small numbers.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <ostream>
+
+#include "cut_balance.h"
+#include "cutting/plane.h"
+#include "cutting/swept_edge.h"
+#include "cutting/triangle_surface.h"
+#include "split_body.h"
+#include "support/generated_body.h"
+#include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
+#include "topology/mesh_edit.h"
+#include "topology/validate.h"
+
+namespace incise::cutting {
+namespace {
+
+using physics::Model;
+using test::GeneratedBody;
+using test::MeshSnapshot;
+using topology::ChangeSet;
+using topology::Mesh;
+using topology::NodeId;
+
+using Grid = std::array<int, 3>;
+
+enum class Kind { plane, blade, sphere };
+
+/// Places are in eighths of the body's box.
+struct Cut {
+    Kind kind;
+    std::vector<Grid> places;  ///< a point of a plane, a centre, or the corners of a blade's edge
+    Grid direction;            ///< normal of a plane; way of a blade, in quarters of the box
+    int size;                  ///< steps of a blade; radius of a sphere in quarters of the box
+};
+
+/// x_i += s_i x_i + b x_j x_k, in eighths.
+struct Deformation {
+    Grid stretch;
+    Grid bend;
+    bool is_none() const { return stretch == Grid{} && bend == Grid{}; }
+};
+
+struct Program {
+    GeneratedBody body;
+    Deformation deformation;
+    int snap;  ///< in tenths
+    bool is_guarded;
+    std::vector<Cut> cuts;
+};
+
+std::ostream& operator<<(std::ostream& out, const Grid& g) {
+    return out << '(' << g[0] << ' ' << g[1] << ' ' << g[2] << ')';
+}
+
+std::ostream& operator<<(std::ostream& out, const Cut& cut) {
+    switch (cut.kind) {
+        case Kind::plane:
+            return out << "plane through " << cut.places[0] << ", normal " << cut.direction;
+        case Kind::sphere:
+            return out << "sphere about " << cut.places[0] << ", radius " << cut.size;
+        case Kind::blade:
+            break;
+    }
+    out << "blade with its edge along";
+    for (const Grid& place : cut.places) out << ' ' << place;
+    return out << ", in " << cut.size << " steps by " << cut.direction;
+}
+
+std::ostream& operator<<(std::ostream& out, const Program& program) {
+    out << program.body << "\n  ";
+    if (program.deformation.is_none())
+        out << "at rest";
+    else
+        out << "stretched by " << program.deformation.stretch << ", bent by "
+            << program.deformation.bend;
+    out << ", snap 0." << program.snap << (program.is_guarded ? ", guarded" : "");
+    for (std::size_t i = 0; i < program.cuts.size(); ++i)
+        out << "\n  " << i + 1 << ". " << program.cuts[i];
+    return out;
+}
+
+Vec3 vector(const Grid& g) { return {double(g[0]), double(g[1]), double(g[2])}; }
+
+rc::Gen<Grid> grid(int low, int high) {
+    const auto number = rc::gen::inRange(low, high + 1);
+    return rc::gen::apply(
+        [](int x, int y, int z) {
+            return Grid{x, y, z};
+        },
+        number, number, number);
+}
+
+rc::Gen<Program> programs() {
+    using rc::gen::inRange;
+    const auto cuts = rc::gen::apply(
+        [](int kind, Grid place, std::vector<Grid> further, Grid direction, int size) {
+            if (direction == Grid{}) direction = {1, 0, 0};
+            // A blade's edge has two corners or more, none twice in a row.
+            if (further.empty()) further.push_back({place[0] + 8, place[1], place[2]});
+            further.insert(further.begin(), place);
+            further.erase(std::unique(further.begin(), further.end()), further.end());
+            return Cut{static_cast<Kind>(kind), std::move(further), direction, size};
+        },
+        inRange(0, 3), grid(-1, 9), test::up_to(3, grid(-4, 12)), grid(-2, 2), inRange(1, 4));
+    return rc::gen::apply(
+        [](GeneratedBody body, Grid stretch, Grid bend, int snap, bool is_guarded,
+           std::vector<Cut> all) {
+            return Program{std::move(body), {stretch, bend}, snap, is_guarded, std::move(all)};
+        },
+        test::generated_bodies(test::tetrahedral_families(), 48), grid(0, 2), grid(0, 1),
+        inRange(0, 8), rc::gen::arbitrary<bool>(), test::up_to(4, cuts));
+}
+
+/// A body in motion that is cut while its tissue is still.
+class Patient {
+  public:
+    explicit Patient(const Program& program)
+        : table_(all_materials(program.body.family->data.num_cells())),
+          mesh_(Mesh::build(with_all_materials(program.body.mesh())).mesh),
+          model_(mesh_, table_),
+          first_mesh_(mesh_),
+          snap_(program.snap / 10.0),
+          is_at_rest_(program.deformation.is_none()) {
+        options_ = program.is_guarded ? guarded(mesh_, snap_) : SplitOptions{snap_, {}};
+        deform(program.deformation);
+        for (const Vec3& x : model_.positions()) box_.extend(x);
+        longest_edge_ = longest_edge(mesh_, model_.positions());
+        first_forces_.assign(model_.elastic_forces().begin(), model_.elastic_forces().end());
+        first_masses_.assign(model_.masses().begin(), model_.masses().end());
+    }
+
+    void carry_out(const Cut& cut) {
+        CutFront front;
+        const Stroke stroke = stroke_of(cut);
+        for (const auto& surface : stroke) cut_and_check(*surface, front);
+        if (cut.kind != Kind::plane) return;
+        expect_parted(mesh_, model_.positions(), plane_of(cut),
+                      how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm(), scars_);
+        const std::size_t num_cuts = done_.size();
+        CutFront of_second;
+        cut_and_check(*stroke.front(), of_second);
+        EXPECT_EQ(done_.size(), num_cuts) << "the same plane cuts a second time";
+    }
+
+    void expect_undone_to_the_first_bits() {
+        for (; !done_.empty(); done_.pop_back()) {
+            const ChangeSet back = inverse(done_.back());
+            replay(mesh_, back);
+            model_.apply(back);
+        }
+        EXPECT_EQ(test::MeshSnapshot(mesh_), first_mesh_);
+        model_.compute_forces(0.0);
+        EXPECT_TRUE(std::ranges::equal(model_.elastic_forces(), first_forces_));
+        EXPECT_TRUE(std::ranges::equal(model_.masses(), first_masses_));
+    }
+
+  private:
+    Vec3 at(const Grid& g) const { return box_.min() + vector(g).cwiseProduct(box_.sizes()) / 8.0; }
+
+    PlaneOfCut plane_of(const Cut& cut) const { return {at(cut.places[0]), vector(cut.direction)}; }
+
+    Stroke stroke_of(const Cut& cut) const {
+        Stroke stroke;
+        if (cut.kind == Kind::plane) {
+            const auto [point, normal] = plane_of(cut);
+            stroke.push_back(std::make_unique<Plane>(point, normal));
+        } else if (cut.kind == Kind::sphere) {
+            const double radius = cut.size / 4.0 * box_.sizes().maxCoeff();
+            stroke.push_back(
+                std::make_unique<TriangleSurface>(icosphere(at(cut.places[0]), radius, 1)));
+        } else {
+            Polyline from, to;
+            for (const Grid& place : cut.places) {
+                from.push_back(at(place));
+                to.push_back(from.back() + vector(cut.direction).cwiseProduct(box_.sizes()) / 4.0);
+            }
+            stroke = sweep(from, to, cut.size);
+        }
+        return stroke;
+    }
+
+    void deform(const Deformation& deformation) {
+        test::Random random(5);
+        std::vector<Vec3> x, v;
+        for (const Vec3& X : mesh_.rest_positions()) {
+            const Vec3 bent(X.y() * X.z(), X.z() * X.x(), X.x() * X.y());
+            x.push_back(X + vector(deformation.stretch).cwiseProduct(X) / 8.0 +
+                        vector(deformation.bend).cwiseProduct(bent) / 8.0);
+            v.push_back(random.vector(1.0));
+        }
+        model_.set_state(x, v, 0.0);
+        model_.compute_forces(0.0);
+    }
+
+    void cut_and_check(const CutSurface& surface, CutFront& front) {
+        const Balance before(model_, table_);
+        const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
+        const ChangeSet changes =
+            split(mesh_, {mesh_, still, still}, surface, front, options_, &scars_).changes;
+        model_.apply(changes);
+        if (changes.is_empty()) return;
+        done_.push_back(changes);
+        ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
+        expect_kept(before, model_, table_, snap_ > 0.2);
+        expect_equal_to_a_fresh_one(model_, table_);
+    }
+
+    /// A node may be off the surface by this share of an edge: at rest; where the body is strained,
+    /// what is near at rest may be farther.
+    double how_far_off() const {
+        if (is_at_rest_ || snap_ == 0.0) return snap_;
+        return std::max(snap_, 0.6);
+    }
+
+    physics::MaterialTable table_;
+    Mesh mesh_;
+    Model model_;
+    test::MeshSnapshot first_mesh_;
+    std::vector<Vec3> first_forces_;
+    std::vector<double> first_masses_;
+    double snap_;
+    bool is_at_rest_;
+    SplitOptions options_;
+    Box box_;              // at first
+    double longest_edge_;  // at first, m
+    Scars scars_;
+    std::vector<ChangeSet> done_;
+};
+
+TEST(CutProperties, HoldForCutsThroughPointsOfAGrid) {
+    test::expect_for_all(test::num_cases(2500), programs(), [](const Program& program) {
+        Patient patient(program);
+        for (const Cut& cut : program.cuts) patient.carry_out(cut);
+        patient.expect_undone_to_the_first_bits();
+    });
+}
+
+}  // namespace
+}  // namespace incise::cutting

@@ -1,0 +1,335 @@
+// Generated programs of edits on generated bodies: what must hold whatever they are. Bodies are
+// small and edits simple, so that a program that fails can be shrunk to a few words; edges are
+// divided anywhere, edits given up half-way, undone and made again in any order.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <ostream>
+
+#include "physics/balance.h"
+#include "physics/model_snapshot.h"
+#include "support/generated_body.h"
+#include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
+#include "topology/error.h"
+#include "topology/mesh_edit.h"
+#include "topology/validate.h"
+
+namespace incise::physics {
+namespace {
+
+using test::GeneratedBody;
+using test::MeshSnapshot;
+using topology::ChangeSet;
+using topology::ElementId;
+using topology::FaceId;
+using topology::FacePair;
+using topology::Mesh;
+using topology::MeshEdit;
+using topology::NodeId;
+
+enum class Act { remove, open, close, divide };
+
+/// Numbers that choose among what is there at the time, counted on past the last.
+struct Operation {
+    Act act;
+    std::size_t which;
+    std::size_t edge;  ///< to be divided
+    int eighths;       ///< along it
+};
+
+enum class Fate { commit, abandon, undo, redo };
+
+struct Step {
+    Fate fate;
+    std::vector<Operation> operations;  ///< of an edit; undone and made again is one as a whole
+};
+
+struct Program {
+    GeneratedBody body;
+    std::vector<Step> steps;
+};
+
+std::ostream& operator<<(std::ostream& out, const Operation& operation) {
+    switch (operation.act) {
+        case Act::remove:
+            return out << "remove element " << operation.which;
+        case Act::open:
+            return out << "open inner face " << operation.which;
+        case Act::close:
+            return out << "close open pair " << operation.which;
+        case Act::divide:
+            return out << "divide element " << operation.which << " at " << operation.eighths
+                       << "/8 of edge " << operation.edge;
+    }
+    return out;
+}
+
+std::ostream& operator<<(std::ostream& out, const Step& step) {
+    if (step.fate == Fate::undo) return out << "undo the last edit";
+    if (step.fate == Fate::redo) return out << "make the last edit undone again";
+    out << (step.fate == Fate::commit ? "edit:" : "edit that is given up:");
+    for (const Operation& operation : step.operations) out << ' ' << operation << ';';
+    return out;
+}
+
+std::ostream& operator<<(std::ostream& out, const Program& program) {
+    out << program.body;
+    for (std::size_t i = 0; i < program.steps.size(); ++i)
+        out << "\n  " << i + 1 << ". " << program.steps[i];
+    return out;
+}
+
+rc::Gen<Program> programs(const std::vector<const test::MeshFamily*>& families) {
+    using rc::gen::inRange;
+    const auto operations = rc::gen::apply(
+        [](int act, std::size_t which, std::size_t edge, int eighths) {
+            return Operation{static_cast<Act>(act), which, edge, eighths};
+        },
+        inRange(0, 4), inRange<std::size_t>(0, 100), inRange<std::size_t>(0, 6), inRange(2, 7));
+    const auto steps = rc::gen::apply(
+        [](int fate, std::vector<Operation> of_edit) {
+            // Most are carried out.
+            return Step{static_cast<Fate>(std::max(fate - 5, 0)), std::move(of_edit)};
+        },
+        inRange(0, 9), test::up_to(6, operations));
+    return rc::gen::apply(
+        [](GeneratedBody body, std::vector<Step> all) {
+            return Program{std::move(body), std::move(all)};
+        },
+        test::generated_bodies(families, 24), test::up_to(12, steps));
+}
+
+template <class T>
+const T* chosen(const std::vector<T>& from, std::size_t which) {
+    return from.empty() ? nullptr : &from[which % from.size()];
+}
+
+/// Whether all elements are tetrahedra at the corners of this one.
+bool is_among_tetrahedra(const Mesh& mesh, ElementId e) {
+    const auto corners = mesh.corners(e);
+    return std::all_of(corners.begin(), corners.end(), [&](NodeId n) {
+        std::vector<ElementId> star;
+        mesh.star(n, star);
+        return std::all_of(star.begin(), star.end(), [&](ElementId other) {
+            return mesh.kind(other) == topology::CellKind::tetrahedron;
+        });
+    });
+}
+
+/// What there is nothing of is left out.
+void carry_out(const Operation& operation, const Mesh& mesh, MeshEdit& edit,
+               std::size_t num_old_elements) {
+    const auto is_old = [&](ElementId e) { return e.index() < num_old_elements; };
+    std::vector<ElementId> elements = living_elements(mesh);
+    switch (operation.act) {
+        case Act::remove: {
+            std::erase_if(elements, [&](ElementId e) { return !is_old(e); });
+            if (const auto* e = chosen(elements, operation.which)) edit.remove(*e);
+            return;
+        }
+        case Act::open: {
+            const auto faces = test::inner_faces(mesh);
+            if (const auto* f = chosen(faces, operation.which)) edit.open(*f);
+            return;
+        }
+        case Act::close: {
+            auto pairs = test::open_pairs(mesh);
+            std::erase_if(pairs, [&](const FacePair& pair) {
+                return !is_old(pair.a.element) || !is_old(pair.b.element) ||
+                       pair.a.element == pair.b.element;
+            });
+            if (const auto* pair = chosen(pairs, operation.which)) edit.close(pair->a, pair->b);
+            return;
+        }
+        case Act::divide: {
+            std::erase_if(elements, [&](ElementId e) { return !is_among_tetrahedra(mesh, e); });
+            const auto* e = chosen(elements, operation.which);
+            if (!e) return;
+            const auto [a, b] = topology::traits(mesh.kind(*e)).edges[operation.edge];
+            const auto corner = [&](int k) {
+                return mesh.corners(*e)[static_cast<std::size_t>(k)];
+            };
+            const NodeId from = corner(a), to = corner(b);
+            edit.bisect(*e, from, to, operation.eighths / 8.0);
+            return;
+        }
+    }
+}
+
+/// A mesh, and what it was before each of its edits.
+class EditedMesh {
+  public:
+    explicit EditedMesh(const topology::MeshData& data) : mesh_(Mesh::build(data).mesh) {}
+
+    const Mesh& mesh() const { return mesh_; }
+
+    /// What the step did; nothing if the mesh is as it was.
+    std::optional<ChangeSet> carry_out(const Step& step) {
+        std::optional<ChangeSet> done;
+        const MeshSnapshot before(mesh_);
+        if (step.fate == Fate::undo) {
+            if (done_.empty()) return {};
+            done = inverse(done_.back());
+            replay(mesh_, *done);
+            EXPECT_EQ(MeshSnapshot(mesh_), before_.back());
+            undone_.push_back(done_.back());
+            done_.pop_back();
+            before_.pop_back();
+        } else if (step.fate == Fate::redo) {
+            if (undone_.empty()) return {};
+            done = undone_.back();
+            replay(mesh_, *done);
+            note(*done, before);
+            undone_.pop_back();
+        } else {
+            done = edit(step);
+            if (!done) {
+                EXPECT_EQ(MeshSnapshot(mesh_), before);
+                return {};
+            }
+            note(*done, before);
+            undone_.clear();
+        }
+        EXPECT_EQ(topology::validate(mesh_), std::vector<std::string>{});
+        return done;
+    }
+
+    bool has_edits() const { return !done_.empty(); }
+
+  private:
+    std::optional<ChangeSet> edit(const Step& step) {
+        MeshEdit edit(mesh_);
+        const std::size_t num_old_elements = mesh_.element_capacity();
+        for (const Operation& operation : step.operations)
+            physics::carry_out(operation, mesh_, edit, num_old_elements);
+        if (step.fate == Fate::abandon) return {};
+        ChangeSet changes = edit.commit();
+        if (changes.is_empty()) return {};
+        return changes;
+    }
+
+    void note(const ChangeSet& changes, const MeshSnapshot& before) {
+        done_.push_back(changes);
+        before_.push_back(before);
+    }
+
+    Mesh mesh_;
+    std::vector<ChangeSet> done_, undone_;
+    std::vector<MeshSnapshot> before_;  // each of those done
+};
+
+TEST(EditPrograms, LeaveValidMeshesAndAreUndoneToTheFirstBits) {
+    std::vector<const test::MeshFamily*> families;
+    for (const auto& family : test::mesh_families()) families.push_back(&family);
+    test::expect_for_all(test::num_cases(5000), programs(families), [](const Program& program) {
+        EditedMesh body(program.body.mesh());
+        const MeshSnapshot first(body.mesh());
+        for (const Step& step : program.steps) body.carry_out(step);
+        while (body.has_edits()) body.carry_out({Fate::undo, {}});
+        EXPECT_EQ(MeshSnapshot(body.mesh()), first);
+    });
+}
+
+/// The body that an edit leaves has what that of before had, less what went.
+void expect_kept(const Balance& before, const Balance& after, const Carried& gone,
+                 bool are_nodes_merged) {
+    constexpr double round_off = 1e-12;
+    const Totals &a = before.totals, &b = after.totals;
+    EXPECT_NEAR(b.mass + gone.mass, a.mass, round_off * a.mass);
+    EXPECT_NEAR(b.rest_volume + gone.volume, a.rest_volume, round_off * a.rest_volume);
+    // Nodes that come together take the mean of their velocities, which is that of the elements
+    // that went only as long as none came together with theirs.
+    if (are_nodes_merged && gone.mass > 0.0) return;
+    EXPECT_LE((b.momentum + gone.momentum - a.momentum).norm(), round_off * before.momentum_scale);
+    EXPECT_LE(b.kinetic_energy, a.kinetic_energy * (1.0 + round_off));
+}
+
+/// Whether an edit divides an element and removes one of the parts: of what went there is no record
+/// then.
+bool removes_parts(const ChangeSet& changes) {
+    return std::any_of(
+        changes.elements_added.begin(), changes.elements_added.end(), [&](const auto& part) {
+            return std::any_of(changes.elements_removed.begin(), changes.elements_removed.end(),
+                               [&](const auto& gone) { return gone.id == part.parent; });
+        });
+}
+
+/// A body in motion that follows the edits of its mesh.
+class FollowingBody {
+  public:
+    explicit FollowingBody(const GeneratedBody& body)
+        : table_(table_for(body.mesh())),
+          mesh_(with_regions(body.mesh(), table_.materials.size(), body.first_cell)),
+          model_(mesh_.mesh(), table_) {
+        test::Random random(3);
+        set_state(model_, random_state(mesh_.mesh(), random, 0.01, 1.0));
+    }
+
+    ModelSnapshot now() { return {model_, 0.0}; }
+    bool has_edits() const { return mesh_.has_edits(); }
+
+    void carry_out(const Step& step) {
+        const Balance before(model_);
+        const ModelSnapshot snapshot = now();
+        std::vector<Carried> carried(mesh_.mesh().element_capacity());
+        for (const ElementId e : living_elements(mesh_.mesh()))
+            carried[e.index()] = carried_by(model_, table_, e);
+
+        const auto changes = mesh_.carry_out(step);
+        if (!changes) return;
+        model_.apply(*changes);
+        if (step.fate == Fate::undo) {
+            expect_equal(now(), before_.back());
+            before_.pop_back();
+        } else {
+            before_.push_back(snapshot);
+            Carried gone{0.0, 0.0, 0.0, Vec3::Zero()};
+            for (const auto& record : changes->elements_removed) {
+                const Carried& of_element = carried[record.id.index()];
+                gone.mass += of_element.mass;
+                gone.volume += of_element.volume;
+                gone.momentum += of_element.momentum;
+            }
+            const bool are_nodes_merged =
+                std::any_of(changes->nodes_removed.begin(), changes->nodes_removed.end(),
+                            [](const auto& record) { return record.num_sources > 0; });
+            if (!removes_parts(*changes))
+                expect_kept(before, Balance(model_), gone, are_nodes_merged);
+        }
+        expect_equal_to_a_fresh_model();
+    }
+
+  private:
+    void expect_equal_to_a_fresh_model() {
+        const ModelSnapshot followed = now();
+        MaterialTable table = table_;
+        table.fibres = followed.fibres;
+        Model fresh(mesh_.mesh(), table);
+        set_state(fresh, followed.state);
+        fresh.set_history(followed.history);
+        expect_equal(ModelSnapshot(fresh, 0.0), followed);
+    }
+
+    MaterialTable table_;
+    EditedMesh mesh_;
+    Model model_;
+    std::vector<ModelSnapshot> before_;  // each edit that is done
+};
+
+TEST(EditPrograms, KeepBodiesInBalanceAndEqualToFreshOnes) {
+    auto families = test::tetrahedral_families();
+    for (const auto* family : test::families_of(topology::CellKind::hexahedron))
+        families.push_back(family);
+    test::expect_for_all(test::num_cases(1500), programs(families), [](const Program& program) {
+        FollowingBody body(program.body);
+        const ModelSnapshot first = body.now();
+        for (const Step& step : program.steps) body.carry_out(step);
+        while (body.has_edits()) body.carry_out({Fate::undo, {}});
+        expect_equal(body.now(), first);
+    });
+}
+
+}  // namespace
+}  // namespace incise::physics

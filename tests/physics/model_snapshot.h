@@ -1,0 +1,58 @@
+// Bodies of many materials that are edited, and all that a model of them is, to compare.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "physics/test_bodies.h"
+
+namespace incise::physics {
+
+/// What a model is, as one comparable value.
+struct ModelSnapshot {
+    BodyState state;
+    std::vector<Vec3> forces;
+    std::vector<double> masses, energies;
+    std::vector<double> history;
+    std::vector<Vec3> fibres;
+    double stable_step;
+    bool operator==(const ModelSnapshot&) const = default;
+
+    ModelSnapshot(Model& model, double time) : state(state_of(model)) {
+        model.compute_forces(time);
+        forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
+        masses.assign(model.masses().begin(), model.masses().end());
+        for (const ElementId e : living_elements(model.mesh()))
+            energies.push_back(model.element_result(e).energy);
+        history.assign(model.history().values().begin(), model.history().values().end());
+        fibres.assign(model.fibres().begin(), model.fibres().end());
+        stable_step = model.stable_step();
+    }
+};
+
+inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
+    EXPECT_EQ(a.state.positions, b.state.positions);
+    EXPECT_EQ(a.state.velocities, b.state.velocities);
+    EXPECT_EQ(a.masses, b.masses);
+    EXPECT_EQ(a.forces, b.forces);
+    EXPECT_EQ(a.energies, b.energies);
+    EXPECT_EQ(a.history, b.history);
+    EXPECT_EQ(a.fibres, b.fibres);
+    EXPECT_EQ(a.stable_step, b.stable_step);
+}
+
+/// All materials for the cells of the mesh; every other law with viscosity, by the two rules.
+inline MaterialTable table_for(const topology::MeshData& data) {
+    if (data.kinds.front() == topology::CellKind::hexahedron) return table_of_hybrid_springs();
+    MaterialTable table = table_of_all_materials(data.num_cells());
+    for (std::size_t i = 0; i < table.materials.size(); i += 2)
+        if (auto* links = std::get_if<HyperElasticLinks>(&table.materials[i].method)) {
+            links->prony = {{0.3, 0.01}, {0.2, 1.0}};
+            links->prony_rule = i % 4 == 0 ? PronyRule::stress : PronyRule::nodal;
+        }
+    return table;
+}
+
+}  // namespace incise::physics
