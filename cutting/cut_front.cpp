@@ -33,6 +33,13 @@ void CutFront::toggle(NodeId a, NodeId b) {
     toggle_from(b, a);
 }
 
+bool CutFront::is_on(const topology::Mesh& mesh) const {
+    return std::all_of(nodes_.begin(), nodes_.end(), [&](const auto& node) {
+        const NodeId n(static_cast<std::size_t>(node.first));
+        return n.is_valid() && n.index() < mesh.node_capacity();
+    });
+}
+
 // Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
 // edges and nobody will ask for them.
 void CutFront::follow(const topology::ChangeSet& changes) {

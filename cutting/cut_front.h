@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "topology/change_set.h"
+#include "topology/mesh.h"
 #include "topology/types.h"
 
 namespace incise::cutting {
@@ -41,6 +42,9 @@ class CutFront {
 
     bool is_crossed(topology::NodeId a, topology::NodeId b) const;
     void toggle(topology::NodeId a, topology::NodeId b);
+
+    /// Whether the mesh has had all nodes on the cut.
+    bool is_on(const topology::Mesh& mesh) const;
 
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }

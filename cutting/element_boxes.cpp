@@ -12,8 +12,8 @@ ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) {
 
 void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
     margin_ = 0.0;
-    groups_.assign((mesh.element_capacity() + group_size - 1) / group_size, Box());
-    supergroups_.assign((groups_.size() + group_size - 1) / group_size, Box());
+    groups_.assign(num_groups(mesh.element_capacity()), Box());
+    supergroups_.assign(num_groups(groups_.size()), Box());
     double sum = 0.0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         update_group(mesh, positions, g);
@@ -43,8 +43,8 @@ void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, doubl
 
 void ElementBoxes::follow(const Mesh& mesh, std::span<const Vec3> positions,
                           const topology::ChangeSet& changes) {
-    groups_.resize((mesh.element_capacity() + group_size - 1) / group_size);
-    supergroups_.resize((groups_.size() + group_size - 1) / group_size);
+    groups_.resize(num_groups(mesh.element_capacity()));
+    supergroups_.resize(num_groups(groups_.size()));
     std::vector<std::size_t> touched;
     for (const auto& record : changes.elements_added)
         touched.push_back(record.id.index() / group_size);

@@ -30,6 +30,12 @@ class ElementBoxes {
     void follow(const topology::Mesh& mesh, std::span<const Vec3> positions,
                 const topology::ChangeSet& changes);
 
+    /// Whether there are as many boxes as the mesh needs.
+    bool cover(const topology::Mesh& mesh) const {
+        return groups_.size() == num_groups(mesh.element_capacity()) &&
+               supergroups_.size() == num_groups(groups_.size());
+    }
+
     /// Calls visit(element) for the living elements, in ascending order, of all groups for which
     /// may_meet(box) holds. The boxes hold the elements throughout the last motion.
     template <class MayMeet, class Visit>
@@ -41,6 +47,7 @@ class ElementBoxes {
 
   private:
     static constexpr std::size_t group_size = 64;
+    static std::size_t num_groups(std::size_t n) { return (n + group_size - 1) / group_size; }
 
     void build(const topology::Mesh& mesh, std::span<const Vec3> positions);
     void update_group(const topology::Mesh& mesh, std::span<const Vec3> positions, std::size_t g);

@@ -18,8 +18,8 @@ constexpr std::size_t checksum_size = sizeof(std::uint64_t);
 
 }  // namespace
 
-std::uint64_t checksum(std::string_view bytes) {
-    return lzma_crc64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), 0);
+std::uint64_t checksum(std::string_view bytes, std::uint64_t before) {
+    return lzma_crc64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), before);
 }
 
 void write_checked_file(const std::filesystem::path& path, std::string_view bytes) {

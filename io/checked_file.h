@@ -9,8 +9,9 @@
 
 namespace incise::io {
 
-/// CRC-64 (ECMA-182, as xz has it). Cost: about a nanosecond a byte.
-std::uint64_t checksum(std::string_view bytes);
+/// CRC-64 (ECMA-182, as xz has it) of all bytes so far: of `before`, if that is not 0, and these.
+/// Cost: about a nanosecond a byte.
+std::uint64_t checksum(std::string_view bytes, std::uint64_t before = 0);
 
 /// Writes the bytes between a line that names the format and a checksum; all of it or nothing, see
 /// write_file. Throws OutputError.

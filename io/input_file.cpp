@@ -50,12 +50,18 @@ InputFile load_input_file(const std::filesystem::path& path) {
     return file;
 }
 
+std::string printable(std::string_view text) {
+    std::string result;
+    for (const char c : text) result += (c >= ' ' && c <= '~') ? c : '?';
+    return result;
+}
+
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 40;
     std::string result = "'";
-    for (const char c : text.substr(0, longest)) result += (c >= ' ' && c <= '~') ? c : '?';
+    result += printable(text.substr(0, longest));
     if (text.size() > longest) result += "...";
-    return result + "'";
+    return result += '\'';
 }
 
 }  // namespace incise::io

@@ -22,7 +22,9 @@ struct InputFile {
 /// Throws InputError if the path is not a readable regular file with something in it.
 InputFile load_input_file(const std::filesystem::path& path);
 
-/// Text of a file made fit for a message: quoted, shortened, without control characters.
+/// Text of a file made fit for a message: without control characters.
+std::string printable(std::string_view text);
+/// Besides quoted, and shortened.
 std::string in_quotes(std::string_view text);
 
 }  // namespace incise::io

@@ -373,6 +373,11 @@ void Model::restore(topology::ArchiveReader& ar, double time) {
         history.size() != history_.values().size() || reactions.size() != reactions_.size() ||
         moments.size() != reaction_moments_.size())
         throw InputError("the state is that of another body");
+    const auto is_finite = [](const Vec3& v) { return v.allFinite(); };
+    if (!std::all_of(positions.begin(), positions.end(), is_finite) ||
+        !std::all_of(velocities.begin(), velocities.end(), is_finite) ||
+        !std::all_of(history.begin(), history.end(), [](double x) { return std::isfinite(x); }))
+        throw InputError("the state is not finite");
     positions_ = std::move(positions);
     velocities_ = std::move(velocities);
     history_.set_values(history);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/sum.h"
+#include "topology/error.h"
 
 namespace incise::physics {
 
@@ -71,6 +72,16 @@ void NewtonSolver::save(topology::ArchiveWriter& ar) const {
 void NewtonSolver::restore(topology::ArchiveReader& ar, const Model& model) {
     const auto num_edits = ar.read<std::uint64_t>();
     ar(free_pieces_);
+    const auto is_there = [&](topology::NodeId n) {
+        return n.is_valid() && n.index() < model.mesh().node_capacity();
+    };
+    for (const FreePiece& piece : free_pieces_) {
+        const bool fits = std::all_of(piece.nodes.begin(), piece.nodes.end(), is_there) &&
+                          std::all_of(piece.pins.begin(), piece.pins.end(), [&](const auto& pin) {
+                              return is_there(pin.first) && pin.second >= 0 && pin.second < 3;
+                          });
+        if (!fits) throw InputError("it pins nodes that are not there");
+    }
     if (num_edits == model.num_edits()) prepare(model);
 }
 

@@ -7,6 +7,7 @@
 
 #include "io/atomic_file.h"
 #include "io/checked_file.h"
+#include "io/input_file.h"
 #include "topology/archive.h"
 #include "topology/error.h"
 
@@ -61,8 +62,8 @@ std::string differences(const std::vector<std::pair<std::string, std::string>>& 
     };
     std::string text;
     for (std::size_t i = 0; i < std::min(keys.size(), most_named); ++i)
-        text += (i == 0 ? "" : ", ") + keys[i] + " was " + value_of(before, keys[i]) + " and is " +
-                value_of(now, keys[i]);
+        text += (i == 0 ? "" : ", ") + io::printable(keys[i]) + " was " +
+                io::printable(value_of(before, keys[i])) + " and is " + value_of(now, keys[i]);
     if (keys.size() > most_named)
         text += ", and " + std::to_string(keys.size() - most_named) + " more";
     return text;
@@ -91,12 +92,16 @@ void remove_checkpoints(const fs::path& folder) {
 
 Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
     topology::ArchiveReader ar(bytes);
-    ar(version_);
-    if (version_ != INCISE_VERSION)
-        throw InputError(path_.string() + ": was written by version " + version_ +
+    std::string version;
+    name_place([&] { ar(version); });
+    if (version != INCISE_VERSION)
+        throw InputError(path_.string() + ": was written by version " + io::in_quotes(version) +
                          " of incise, and this is " + INCISE_VERSION +
                          "; resume with that one, or begin anew without --resume");
-    ar(contents_, fingerprint_, written_, state_);
+    name_place([&] {
+        ar(contents_, fingerprint_, written_, state_);
+        if (!ar.is_at_end()) throw InputError("there are data beyond its end");
+    });
 }
 
 Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& warnings) {
@@ -131,8 +136,30 @@ void Checkpoint::restore(Simulation& simulation) const {
                          ": the run was of another body: the file of the mesh, or of a surface "
                          "that cuts it, has changed since; put the former one back, or begin anew "
                          "without --resume");
-    topology::ArchiveReader ar(state_);
-    simulation.restore(ar);
+    name_place([&] {
+        topology::ArchiveReader ar(state_);
+        simulation.restore(ar);
+        const std::vector<double>& times = written_.frame_times;
+        const bool ascends = std::adjacent_find(times.begin(), times.end(), [](double a, double b) {
+                                 return !(a < b);
+                             }) == times.end();
+        if (times.size() != simulation.num_frames() || !ascends ||
+            !(times.empty() || (times.front() >= 0.0 && times.back() <= simulation.time())))
+            throw InputError("its frames are not those of the run up to then");
+        if (path_of({}, simulation.num_steps()).filename() != path_.filename())
+            throw InputError("it is of step " + std::to_string(simulation.num_steps()));
+    });
+}
+
+// The checksum is right: so it was forged, or has been renamed.
+void Checkpoint::name_place(const std::function<void()>& read) const {
+    try {
+        read();
+    } catch (const InputError& error) {
+        throw InputError(path_.string() + ": is not what the run has written: " + error.what() +
+                         "; remove it to go on from the checkpoint before it, or begin anew "
+                         "without --resume");
+    }
 }
 
 }  // namespace incise::sim

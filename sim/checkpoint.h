@@ -4,21 +4,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "io/line_file.h"
 #include "sim/simulation.h"
 
 namespace incise::sim {
 
 /// What a run has written when a checkpoint is taken, and where it goes on writing.
 struct Written {
-    std::uint64_t history_size = 0, edits_size = 0;  ///< bytes of the files
-    std::vector<double> frame_times;                 ///< s
-    std::vector<double> last_row;                    ///< of the history
+    io::LinesWritten history, edits;
+    std::vector<double> frame_times;  ///< s
+    std::vector<double> last_row;     ///< of the history
     static void archive(auto& ar, auto& self) {
-        ar(self.history_size, self.edits_size, self.frame_times, self.last_row);
+        ar(self.history, self.edits, self.frame_times, self.last_row);
     }
 };
 
@@ -42,16 +44,17 @@ class Checkpoint {
     /// Throws InputError, naming what differs, if the scenario is not the one of the run.
     void require_same(const Scenario& scenario) const;
     /// Takes a simulation of that scenario, just built, to the moment of the checkpoint.
-    /// Throws InputError if its body began as another.
+    /// Throws InputError, naming file, fault and remedy, if its body began as another, or if what
+    /// is in it is not of this run; the simulation is of no use then.
     void restore(Simulation& simulation) const;
 
     const Written& written() const { return written_; }
 
   private:
     Checkpoint(std::filesystem::path path, std::string bytes);
+    void name_place(const std::function<void()>& read) const;
 
     std::filesystem::path path_;
-    std::string version_;
     std::vector<std::pair<std::string, std::string>> contents_;  // of the scenario
     std::uint64_t fingerprint_ = 0;
     Written written_;

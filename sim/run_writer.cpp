@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
-#include <system_error>
 
 #include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/number_format.h"
 #include "sim/frame_builder.h"
 #include "sim/quantities.h"
@@ -25,17 +24,9 @@ namespace {
 
 /// The folder, prepared for a new run or to go on with one.
 io::OutputFolder prepared(io::OutputFolder folder, const Written* written) {
-    const auto require = [&](const char* name, std::uint64_t size) {
-        const auto path = folder.path() / name;
-        std::error_code error;
-        const auto there = std::filesystem::file_size(path, error);
-        if (error || there < size)
-            throw InputError(path.string() + ": has " + (error ? "gone" : "become shorter") +
-                             " since the run was stopped; begin anew without --resume");
-    };
     if (written) {
-        require("history.csv", written->history_size);
-        require("edits.jsonl", written->edits_size);
+        io::require_lines(folder.path() / "history.csv", written->history);
+        io::require_lines(folder.path() / "edits.jsonl", written->edits);
     } else {
         remove_checkpoints(folder.path());
     }
@@ -170,17 +161,43 @@ std::vector<std::string> failed_expectations(const Scenario& scenario,
 
 std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
                                               const Scenario& scenario) {
-    std::ifstream file(folder / "summary.json");
-    const Json summary = Json::parse(file, nullptr, false);
-    if (!summary.is_object() || summary.value("status", "") != "finished" ||
-        summary.value("scenario_hash", "") != scenario.hash)
-        return std::nullopt;
+    const auto path = folder / "summary.json";
+    if (!std::filesystem::exists(path)) return std::nullopt;
+    const std::string remedy =
+        "; remove the file to go on from the last checkpoint, or begin anew without --resume";
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(path.string() + ": " + why + remedy);
+    };
+    const std::string bytes = [&] {
+        try {
+            return io::load_input_file(path).bytes;
+        } catch (const InputError& error) {
+            throw InputError(error.what() + remedy);
+        }
+    }();
+    const Json summary = Json::parse(bytes, nullptr, false);
+    if (!summary.is_object()) refuse("is not the summary of a run, which is a JSON object");
+    const auto entry = [&](const std::string& name) -> const Json& {
+        if (!summary.contains(name)) refuse("has no entry '" + name + "'");
+        return summary[name];
+    };
+    const auto text = [&](const std::string& name) -> const std::string& {
+        const Json& value = entry(name);
+        if (!value.is_string())
+            refuse("'" + name + "' is " + io::in_quotes(value.dump()) + ", and should be a text");
+        return value.get_ref<const std::string&>();
+    };
+    if (text("status") != "finished" || text("scenario_hash") != scenario.hash) return std::nullopt;
     Quantities quantities;
-    // What is not finite is null in JSON.
     for (const auto& [name, value] : summary.items())
+        // What is not finite is null in JSON.
         if (value.is_number() || value.is_null())
             quantities.emplace_back(name, value.is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                           : value.get<double>());
+    for (const Expectation& expected : scenario.expect)
+        if (const Json& value = entry(expected.quantity); !value.is_number() && !value.is_null())
+            refuse("'" + expected.quantity + "' is " + io::in_quotes(value.dump()) +
+                   ", and should be a number");
     return quantities;
 }
 
@@ -188,8 +205,8 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
     : folder_(prepared(std::move(folder), written)),
       series_(this->folder(), simulation.scenario().name, simulation.scenario().output.compression,
               written ? std::span<const double>(written->frame_times) : std::span<const double>()),
-      history_(this->folder() / "history.csv", written ? written->history_size : 0),
-      edits_(this->folder() / "edits.jsonl", written ? written->edits_size : 0),
+      history_(this->folder() / "history.csv", written ? written->history : io::LinesWritten{}),
+      edits_(this->folder() / "edits.jsonl", written ? written->edits : io::LinesWritten{}),
       last_row_(history_row(simulation)),
       first_time_(simulation.time()),
       first_step_(simulation.num_steps()),
@@ -252,7 +269,7 @@ void RunWriter::take_checkpoint(const Simulation& simulation) {
     wait_for_frame();
     history_.sync();
     edits_.sync();
-    Written written{history_.size(), edits_.size(), {}, {}};
+    Written written{history_.written(), edits_.written(), {}, {}};
     written.frame_times.assign(series_.times().begin(), series_.times().end());
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
     write_checkpoint(folder(), simulation, written);

@@ -41,6 +41,7 @@ std::vector<std::string> failed_expectations(const Scenario& scenario,
                                              const Quantities& quantities);
 
 /// The quantities of summary.json, if the run of this scenario in `folder` is finished.
+/// Throws InputError, naming file, entry and remedy, if there is a summary that no run has written.
 std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
                                               const Scenario& scenario);
 

@@ -10,10 +10,13 @@
 #include "cutting/step_length.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
+#include "io/number_format.h"
 #include "physics/winding.h"
 #include "sim/body.h"
+#include "topology/change_check.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
+#include "topology/validate.h"
 
 namespace incise::sim {
 
@@ -147,16 +150,27 @@ void Simulation::restore(topology::ArchiveReader& ar) {
     const auto edits = ar.read<std::string>();
     for (topology::ArchiveReader edit(edits); !edit.is_at_end();) {
         const auto changes = edit.read<topology::ChangeSet>();
+        topology::require_fit(changes, mesh_);
         topology::replay(mesh_, changes);
         model_.apply(changes);
         edits_(changes);
     }
+    if (const auto faults = topology::validate(mesh_); !faults.empty())
+        throw InputError("its edits leave no sound mesh: " + faults.front());
     ar(time_);
+    if (!(time_ >= 0.0 && time_ < scenario_.dynamics.end_time))
+        throw InputError("its time, " + io::format_number(time_) + " s, is not within the run");
     model_.restore(ar, time_);
     integrator_->restore(ar, model_);
     ledger_.restore(ar);
     for (Tool& tool : tools_) ar(tool);
     ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
+    const auto is_here = [&](const Tool& tool) { return tool.is_on(mesh_); };
+    if (!std::all_of(tools_.begin(), tools_.end(), is_here) || !boxes_.cover(mesh_))
+        throw InputError("what its tools remember is of another body");
+    if (!(last_step_ >= 0.0 && last_step_ <= time_))
+        throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
+    if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
 }
 
 void Simulation::warn_of_lost_elements() {

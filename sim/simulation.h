@@ -59,7 +59,8 @@ class Simulation {
     /// edits have touched.
     void save(topology::ArchiveWriter& ar) const;
     /// Goes on from what another simulation of this scenario saved; on one that has not moved yet.
-    /// Cost: that of the edits so far, made anew. Throws InputError for the data of another body.
+    /// Cost: that of the edits so far, made anew. Throws InputError, saying what is wrong, for data
+    /// that are not of this body or are damaged; the simulation is of no use then.
     void restore(topology::ArchiveReader& ar);
     /// Equal for simulations that begin with the same body: mesh, fibres, surfaces that cut.
     std::uint64_t fingerprint() const { return fingerprint_; }
@@ -71,6 +72,7 @@ class Simulation {
     double time() const { return time_; }  ///< s
     double time_step() const;              ///< s, of the last step, or of the first
     std::uint64_t num_steps() const { return num_steps_; }
+    std::uint64_t num_frames() const { return num_frames_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:

@@ -41,6 +41,9 @@ class Tool {
     /// Its front keeps up with what another tool did.
     void follow(const topology::ChangeSet& changes) { front_.follow(changes); }
 
+    /// Whether the mesh has all nodes that it remembers.
+    bool is_on(const topology::Mesh& mesh) const { return front_.is_on(mesh); }
+
     /// What it remembers of its cut so far.
     static void archive(auto& ar, auto& self) { ar(self.front_); }
 

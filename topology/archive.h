@@ -106,7 +106,8 @@ class ArchiveWriter {
 };
 
 /// Reads what an ArchiveWriter wrote, as the same types in the same order. Throws InputError where
-/// the bytes end too early; other faults are for a checksum to find.
+/// the bytes end too early; what else may be wrong, and a checksum has not found, whoever takes the
+/// values has to. Memory stays in proportion to the bytes that are there.
 class ArchiveReader {
   public:
     /// @param bytes must outlive the reader
@@ -132,13 +133,6 @@ class ArchiveReader {
         rest_.remove_prefix(size);
         return taken;
     }
-    /// Of elements, each of which takes a byte or more.
-    std::size_t count() {
-        const auto count = read<std::uint64_t>();
-        if (count > rest_.size()) throw InputError("the data end too early");
-        return count;
-    }
-
     template <Number T>
     void get(T& value) {
         std::array<char, sizeof(T)> bytes;
@@ -163,13 +157,14 @@ class ArchiveReader {
     }
     template <class T>
     void get(std::vector<T>& values) {
-        values.resize(count());
-        for (T& value : values) get(value);
+        values.clear();
+        // A count that is not true is found out before there is memory for so many.
+        for (auto i = read<std::uint64_t>(); i > 0; --i) get(values.emplace_back());
     }
     template <class Key, class T>
     void get(std::unordered_map<Key, T>& map) {
         map.clear();
-        for (std::size_t i = count(); i > 0; --i) {
+        for (auto i = read<std::uint64_t>(); i > 0; --i) {
             const Key key = read<Key>();
             get(map[key]);
         }

@@ -18,6 +18,7 @@ using support::read_text;
 
 TEST(Checksum, IsThatOfXz) {
     EXPECT_EQ(checksum("123456789"), 0x995DC9BBDF1939FAu);  // the catalogue's check value
+    EXPECT_EQ(checksum("56789", checksum("1234")), checksum("123456789"));
 }
 
 TEST(CheckedFile, GivesTheBytesBack) {

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "io/atomic_file.h"
+#include "io/checked_file.h"
 #include "io/line_file.h"
 #include "tests/support/temporary_folder.h"
 #include "topology/error.h"
@@ -145,26 +146,32 @@ TEST(LineFile, HoldsEveryLineAsSoonAsItIsAppended) {
         file.append(line);
         expected += std::string(line) + "\n";
         EXPECT_EQ(read_text(folder / "history.csv"), expected);
-        EXPECT_EQ(file.size(), expected.size());
+        EXPECT_EQ(file.written().size, expected.size());
+        EXPECT_EQ(file.written().checksum, checksum(expected));
     }
     file.sync();
 }
 
-TEST(LineFile, BeginsAnewOrGoesOnFromAFormerSize) {
+TEST(LineFile, BeginsAnewOrGoesOnFromFormerLines) {
     const TemporaryFolder folder;
-    std::uint64_t size = 0;
+    LinesWritten lines;
     {
         LineFile file(folder / "lines");
         file.append("kept");
-        size = file.size();
+        lines = file.written();
         file.append("written after the checkpoint");
     }
     {
-        LineFile file(folder / "lines", size);
+        require_lines(folder / "lines", lines);
+        LineFile file(folder / "lines", lines);
         file.append("resumed");
+        EXPECT_EQ(file.written().checksum, checksum("kept\nresumed\n"));
     }
     EXPECT_EQ(read_text(folder / "lines"), "kept\nresumed\n");
-    EXPECT_THAT(output_error([&] { LineFile(folder / "lines", 1000); }), HasSubstr("has 13 bytes"));
+    EXPECT_THAT(output_error([&] {
+                    LineFile(folder / "lines", {1000, 0});
+                }),
+                HasSubstr("has 13 bytes"));
     EXPECT_EQ(read_text(folder / "lines"), "kept\nresumed\n");
     LineFile(folder / "lines");
     EXPECT_EQ(read_text(folder / "lines"), "");
