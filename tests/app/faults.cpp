@@ -1,13 +1,16 @@
 // Preloaded into the program: makes the n-th of its calls that change files fail, or the last one
 // it makes. INCISE_FAULT_AT is n, from 1; INCISE_FAULT is the number of the error to report, or
-// "kill", or "half": half of what is to be written is, and then the disk is full. The number of
-// calls goes to the file INCISE_FAULT_COUNT when the program ends by itself.
+// "kill", or "half": half of what is to be written is, and then the disk is full. Files that are
+// opened to be written count only if INCISE_FAULT_OPEN is there, and then nothing else does. The
+// number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -22,7 +25,8 @@ Function* original(const char* name) {
 }
 
 /// Whether this call is to fail, with errno set. Does not return if it is to be the last one.
-bool fails() {
+bool fails(bool opens = false) {
+    if (opens != (std::getenv("INCISE_FAULT_OPEN") != nullptr)) return false;
     const char* at = std::getenv("INCISE_FAULT_AT");
     if (++num_calls != (at ? std::atol(at) : 0)) return false;
     const char* fault = std::getenv("INCISE_FAULT");
@@ -42,10 +46,28 @@ struct Counter {
     }
 } counter;
 
+bool is_to_be_written(int flags) { return (flags & O_ACCMODE) != O_RDONLY; }
+
 }  // namespace
 
 extern "C" {
 
+int open(const char* path, int flags, ...) {
+    va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = (flags & O_CREAT) ? va_arg(arguments, mode_t) : 0;
+    va_end(arguments);
+    if (is_to_be_written(flags) && fails(true)) return -1;
+    return original<int(const char*, int, ...)>("open")(path, flags, mode);
+}
+int openat(int folder, const char* path, int flags, ...) {
+    va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = (flags & O_CREAT) ? va_arg(arguments, mode_t) : 0;
+    va_end(arguments);
+    if (is_to_be_written(flags) && fails(true)) return -1;
+    return original<int(int, const char*, int, ...)>("openat")(folder, path, flags, mode);
+}
 ssize_t write(int file, const void* bytes, size_t size) {
     const auto next = original<ssize_t(int, const void*, size_t)>("write");
     if (file <= STDERR_FILENO) return next(file, bytes, size);

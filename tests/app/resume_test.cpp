@@ -68,6 +68,11 @@ class ResumedProcess : public Run {
         if (!count.empty()) environment.emplace_back("INCISE_FAULT_COUNT", count);
         return environment;
     }
+    Environment with_fault_of_opening(int error, std::size_t at, const std::string& count = "") {
+        auto environment = with_fault(std::to_string(error), at, count);
+        environment.emplace_back("INCISE_FAULT_OPEN", "");
+        return environment;
+    }
 };
 
 TEST_F(ResumedProcess, EndsAsIfNoSignalHadStoppedIt) {
@@ -169,6 +174,31 @@ TEST_F(ResumedProcess, ReportsEachCallThatFailsAndGoesOnAfterwards) {
     }
 }
 
+TEST_F(ResumedProcess, ReportsEachFileThatCannotBeOpenedAndGoesOnAfterwards) {
+    const auto files = whole(cut_scene);
+    ASSERT_EQ(run({"scene.toml", "--quiet", "--out", "counted"},
+                  with_fault_of_opening(EMFILE, 0, (folder_ / "count").string()))
+                  .status,
+              0);
+    const std::size_t count = std::stoul(read_text(folder_ / "count"));
+    ASSERT_GT(count, 20u);
+    for (std::size_t at = 1; at <= count; at += 2) {
+        SCOPED_TRACE(at);
+        const auto [fault, remedy] = at % 4 == 1
+                                         ? std::pair(EMFILE, "raise the limit on open files")
+                                         : std::pair(EACCES, "choose a folder that you may write");
+        fs::remove_all(folder_ / "scene.out");
+        const auto outcome = run({"scene.toml", "--quiet"}, with_fault_of_opening(fault, at));
+        EXPECT_EQ(outcome.status, 4) << outcome.err;
+        EXPECT_EQ(outcome.err.find("incise: scene.out"), 0u) << outcome.err;
+        EXPECT_NE(outcome.err.find(": cannot be written: "), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find(remedy), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+        expect_readable(folder_ / "scene.out");
+        expect_to_end_as(files);
+    }
+}
+
 TEST_F(ResumedProcess, TakesAnEarlierCheckpointWithAWarning) {
     const auto files = whole(cut_scene);
     run({"scene.toml", "--quiet"}, with_fault("kill", num_calls("kill") - 8));
@@ -201,6 +231,18 @@ TEST_F(ResumedProcess, TellsMissedExpectationsOfAFinishedRunAgain) {
     const auto again = run({"scene.toml", "--quiet", "--resume"});
     EXPECT_EQ(again.status, 1);
     EXPECT_EQ(again.err, first.err);
+}
+
+TEST_F(ResumedProcess, RefusesASummaryThatNoRunHasWritten) {
+    write("scene.toml", scene);
+    ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
+    write("scene.out/summary.json", "{\"status\": 7}");
+    const auto outcome = run({"scene.toml", "--resume"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err,
+              "incise: scene.out/summary.json: 'status' is '7', and should be a text; remove the "
+              "file to go on from the last checkpoint, or begin anew without --resume\n");
 }
 
 TEST_F(ResumedProcess, NeedsARunToResume) {
