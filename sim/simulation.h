@@ -59,8 +59,9 @@ class Simulation {
     /// edits have touched.
     void save(topology::ArchiveWriter& ar) const;
     /// Goes on from what another simulation of this scenario saved; on one that has not moved yet.
-    /// Cost: that of the edits so far, made anew. Throws InputError, saying what is wrong, for data
-    /// that are not of this body or are damaged; the simulation is of no use then.
+    /// Throws InputError, saying what is wrong, for data that are not of this body or are damaged;
+    /// the simulation is of no use then. Cost: that of the edits so far, made anew, and of
+    /// validate().
     void restore(topology::ArchiveReader& ar);
     /// Equal for simulations that begin with the same body: mesh, fibres, surfaces that cut.
     std::uint64_t fingerprint() const { return fingerprint_; }
