@@ -45,9 +45,9 @@ std::vector<std::string> failed_expectations(const Scenario& scenario,
 std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
                                               const Scenario& scenario);
 
-/// Frames are written by a thread of their own while the simulation goes on, one at a time: the next
-/// waits for it, as does a checkpoint and the end. Everything else is on disk, readable, when a
-/// function returns; a kill at any moment leaves whole files and whole lines, and a checkpoint to
+/// Frames are written by a thread of their own while the simulation goes on, one at a time: the
+/// next waits for it, as does a checkpoint and the end. Everything else is on disk, readable, when
+/// a function returns; a kill at any moment leaves whole files and whole lines, and a checkpoint to
 /// resume from. All functions throw OutputError, that of a frame the first that waits for it.
 class RunWriter : public Observer {
   public:

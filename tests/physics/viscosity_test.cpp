@@ -58,7 +58,9 @@ struct StrainedElement {
     double strain = 0.0;
 
     explicit StrainedElement(const Series& series)
-        : kernel({soft_law, 0.4}, series), element(kernel.precompute(X)), memory(no_memory(series)) {}
+        : kernel({soft_law, 0.4}, series),
+          element(kernel.precompute(X)),
+          memory(no_memory(series)) {}
 
     Tetrahedron at(double strain_along_x) const {
         return deformed(X, Vec3(1.0 + strain_along_x, 1.0, 1.0).asDiagonal());
