@@ -18,6 +18,7 @@
 #include "io/memory.h"
 #include "tests/io/image_samples.h"
 #include "tests/io/reader_samples.h"
+#include "tests/support/mutation.h"
 
 namespace incise::io {
 namespace {
@@ -498,30 +499,6 @@ TEST(LabelImage, RefusesMoreThanTheMemoryOfTheMachine) {
     }
 }
 
-/// One to three bytes changed, removed or cut off.
-std::string mutated(std::string bytes, std::mt19937& random) {
-    const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
-    if (below(8) == 0) bytes.resize(below(bytes.size()));
-    for (auto n = 1 + below(3); n > 0 && !bytes.empty(); --n) {
-        const auto at = below(bytes.size());
-        switch (below(4)) {
-            case 0:
-                bytes[at] = static_cast<char>(below(256));
-                break;
-            case 1:
-                bytes[at] = "0123456789-.e \n(,"[below(17)];
-                break;
-            case 2:
-                bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-                break;
-            case 3:
-                bytes.erase(at, 1 + below(4));
-                break;
-        }
-    }
-    return bytes;
-}
-
 TEST(LabelImage, ReadsOrRefusesDamagedFiles) {
     Nifti nifti;
     nifti.sform_code = nifti.qform_code = 1;
@@ -541,7 +518,7 @@ TEST(LabelImage, ReadsOrRefusesDamagedFiles) {
         std::mt19937 random(12345);
         int num_refused = 0;
         for (int i = 0; i < 500; ++i) {
-            write_bytes(folder / name, mutated(bytes, random));
+            write_bytes(folder / name, support::mutated(bytes, random));
             try {
                 const auto image = read_label_image(folder / name);
                 const auto [x, y, z] = image.dimensions;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "io/vtu_reader.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mesh_consistency.h"
+#include "tests/support/mutation.h"
 #include "topology/error.h"
 
 namespace incise::io {
@@ -21,41 +21,12 @@ namespace {
 using Reader = MeshFile (*)(const InputFile&, const ReadOptions&);
 constexpr int mutations_of_a_sample = 1500;  // of each sample
 
-/// One to four bytes changed, inserted, removed or copied; one in eight files is cut short.
-std::string mutated(std::string bytes, std::mt19937& random) {
-    const auto below = [&](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };
-    if (below(8) == 0) bytes.resize(below(bytes.size()));
-    const auto num_changes = 1 + below(4);
-    for (std::size_t i = 0; i < num_changes && !bytes.empty(); ++i) {
-        const auto position = below(bytes.size());
-        const auto digits = std::string("0123456789-.e \n<\"");
-        switch (below(5)) {
-            case 0:
-                bytes[position] = static_cast<char>(below(256));
-                break;
-            case 1:
-                bytes[position] = digits[below(digits.size())];
-                break;
-            case 2:
-                bytes[position] = static_cast<char>(bytes[position] ^ (1 << below(8)));
-                break;
-            case 3:
-                bytes.erase(position, 1 + below(6));
-                break;
-            case 4:
-                bytes.insert(position, bytes.substr(below(bytes.size()), 1 + below(6)));
-                break;
-        }
-    }
-    return bytes;
-}
-
 void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
     int num_refused = 0;
     for (const auto& sample : samples) {
         std::mt19937 random(12345);
         for (int i = 0; i < mutations_of_a_sample; ++i) {
-            const InputFile file{sample.name, mutated(sample.bytes, random)};
+            const InputFile file{sample.name, support::mutated(sample.bytes, random)};
             try {
                 ASSERT_EQ(support::inconsistency_of(reader(file, {}).mesh), "");
             } catch (const InputError& error) {

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "run_folder.h"
+#include "support/num_cases.h"
 #include "topology/validate.h"
 
 namespace incise::sim {
@@ -98,7 +101,8 @@ poisson = 0.4
     };
     const auto expected = run_on(1);
     EXPECT_GT(expected->ledger().edits().size(), 2u);
-    for (const int num_threads : {2, 5, 16}) {
+    constexpr std::array numbers_of_threads{5, 2, 16};
+    for (const int num_threads : std::span(numbers_of_threads).first(test::num_cases(3))) {
         SCOPED_TRACE(num_threads);
         const auto simulation = run_on(num_threads);
         const auto bits_of = [](const auto& values) {

@@ -5,6 +5,7 @@
 
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/validate.h"
@@ -21,7 +22,7 @@ TEST(MeshEdit, LeavesAValidMeshAndUndoesToTheSameBits) {
         SCOPED_TRACE(family.name);
         test::Random random(11);
         Mesh mesh = Mesh::build(family.data).mesh;
-        for (int i = 0; i < 150; ++i) {
+        for (int i = 0; i < test::num_cases(150); ++i) {
             SCOPED_TRACE(i);
             if (mesh.num_elements() == 0) mesh = Mesh::build(family.data).mesh;
             const MeshSnapshot before(mesh);
