@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double size = 0.1;  // of the cubes, m
+constexpr double cube_size = 0.1;  // of the cubes, m
 constexpr std::string_view tissue_name = "liver";
 
 /// Best time of one call, s, of as many as take so many seconds in all.
@@ -48,12 +48,13 @@ topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {
     const bool are_tetrahedra = kind == topology::CellKind::tetrahedron;
     const double num_bricks = static_cast<double>(num_elements) / (are_tetrahedra ? 6.0 : 1.0);
     const int n = std::max(1, static_cast<int>(std::lround(std::cbrt(num_bricks))));
-    auto data = topology::box_mesh(kind, Vec3::Zero(), Vec3::Constant(size), {n, n, n});
+    auto data = topology::box_mesh(kind, Vec3::Zero(), Vec3::Constant(cube_size), {n, n, n});
     std::mt19937_64 random(1);
     for (Vec3& x : data.points)
         for (int c = 0; c < 3; ++c) {
             const double jitter = static_cast<double>(random() >> 11) * 0x1.0p-53 - 0.5;
-            if (are_tetrahedra && x[c] > 0.0 && x[c] < size) x[c] += 0.3 * jitter * size / n;
+            if (are_tetrahedra && x[c] > 0.0 && x[c] < cube_size)
+                x[c] += 0.3 * jitter * cube_size / n;
         }
     return topology::Mesh::build(data).mesh;
 }
@@ -135,8 +136,8 @@ EditRate measure_split(topology::Mesh mesh, const physics::Material& material) {
     constexpr int num_steps = 20;
     const auto edge = [](int step) {
         const double x = -0.01 + 0.51 * step / num_steps;
-        return std::vector<Vec3>{size * Vec3(x, -0.1, 0.41 + 0.21 * x),
-                                 size * Vec3(x, 1.1, 0.52 + 0.21 * x)};
+        return std::vector<Vec3>{cube_size * Vec3(x, -0.1, 0.41 + 0.21 * x),
+                                 cube_size * Vec3(x, 1.1, 0.52 + 0.21 * x)};
     };
     EditRate rate{"split", mesh.num_elements(), 0, 0.0};
     cutting::CutFront front;

@@ -54,6 +54,20 @@ std::string remedy(CellKind kind) {
     }
 }
 
+/// Calls visit(range, begin, end) for each range of node ids of which there are some, with where
+/// they stand among `nodes`, which ascend.
+template <class Visit>
+void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
+    for (std::size_t begin = 0; begin < nodes.size();) {
+        const std::size_t range = nodes[begin] / nodes_per_range;
+        const auto end = std::lower_bound(nodes.begin() + static_cast<std::ptrdiff_t>(begin),
+                                          nodes.end(), (range + 1) * nodes_per_range);
+        const auto next = static_cast<std::size_t>(end - nodes.begin());
+        visit(range, begin, next);
+        begin = next;
+    }
+}
+
 }  // namespace
 
 ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
@@ -113,40 +127,50 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     if (!blocks_[index])
         blocks_[index] = make_block(table_.materials[table_.of_region.at(mesh.region(e))]);
     blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
-    is_numbered_ = false;
+    note_change(index);
 }
 
 void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
-    blocks_[block_index(e, mesh.region(e))]->replace(e, mesh.corners(e), mesh.rest_positions(),
-                                                     fibre_of(e));
-    is_numbered_ = false;
+    const std::size_t index = block_index(e, mesh.region(e));
+    blocks_[index]->replace(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    note_change(index);
+}
+
+void ElementStore::note_change(std::size_t block) {
+    if (changed_blocks_.empty() || changed_blocks_.back() != block)
+        changed_blocks_.push_back(block);
 }
 
 void ElementStore::number_nodes(std::size_t num_nodes) {
+    std::sort(changed_blocks_.begin(), changed_blocks_.end());
+    const auto last = std::unique(changed_blocks_.begin(), changed_blocks_.end());
+    changed_blocks_.erase(last, changed_blocks_.end());
+
     local_numbers_.resize(std::max(local_numbers_.size(), num_nodes), ElementBlock::unnumbered);
-    ranges_.resize(num_node_ranges(num_nodes));
-    for (auto& range : ranges_) range.clear();
+    ranges_.resize(std::max(ranges_.size(), num_node_ranges(num_nodes)));
     parts_.resize(blocks_.size());
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        if (!blocks_[b]) continue;
-        blocks_[b]->number_nodes(local_numbers_);
-        const auto nodes = blocks_[b]->nodes();
-        parts_[b].resize(nodes.size() + 1);
-        for (std::size_t begin = 0; begin < nodes.size();) {
-            const std::size_t range = nodes[begin] / nodes_per_range;
-            const auto end = std::lower_bound(nodes.begin() + static_cast<std::ptrdiff_t>(begin),
-                                              nodes.end(), (range + 1) * nodes_per_range);
-            const auto next = static_cast<std::size_t>(end - nodes.begin());
-            ranges_[range].push_back({b, begin, next});
-            begin = next;
-        }
+    const auto place_of = [](std::vector<Piece>& range, std::size_t block) {
+        return std::lower_bound(range.begin(), range.end(), block,
+                                [](const Piece& p, std::size_t b) { return p.block < b; });
+    };
+    for (const std::size_t b : changed_blocks_) {
+        ElementBlock& block = *blocks_[b];
+        for_each_range(block.nodes(), [&](std::size_t r, std::size_t, std::size_t) {
+            ranges_[r].erase(place_of(ranges_[r], b));
+        });
+        block.number_nodes(local_numbers_);
+        for_each_range(block.nodes(), [&](std::size_t r, std::size_t begin, std::size_t end) {
+            ranges_[r].insert(place_of(ranges_[r], b), {b, begin, end});
+        });
+        parts_[b].resize(block.nodes().size() + 1);
     }
-    is_numbered_ = true;
+    ranges_.resize(num_node_ranges(num_nodes));
+    changed_blocks_.clear();
 }
 
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   Workers& workers, std::span<Vec3> forces) {
-    if (!is_numbered_ || ranges_.size() != num_node_ranges(positions.size()))
+    if (!changed_blocks_.empty() || ranges_.size() != num_node_ranges(positions.size()))
         number_nodes(positions.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
@@ -188,8 +212,9 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
 }
 
 void ElementStore::erase(ElementId e, int region) {
-    blocks_[block_index(e, region)]->erase(e);
-    is_numbered_ = false;
+    const std::size_t index = block_index(e, region);
+    blocks_[index]->erase(e);
+    note_change(index);
 }
 
 }  // namespace incise::physics

@@ -90,7 +90,9 @@ class ElementStore {
         std::size_t block, begin, end;
     };
 
+    /// Brings the pieces of the blocks that have changed up to date.
     void number_nodes(std::size_t num_nodes);
+    void note_change(std::size_t block);
 
     std::size_t block_index(ElementId e, int region) const;
     void require_law(const topology::Mesh& mesh, ElementId e) const;
@@ -98,7 +100,7 @@ class ElementStore {
 
     MaterialTable table_;
     std::vector<std::unique_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
-    bool is_numbered_ = false;
+    std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
     std::vector<std::uint16_t> local_numbers_;     // scratch, by node id

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/element_tangent.h"
 
-#include <Eigen/Eigenvalues>
+#include "physics/spectrum.h"
 
 namespace incise::physics {
 
@@ -51,9 +51,15 @@ void add_spring(std::size_t i, std::size_t j, double stiffness, double rest_leng
 
 template <int n>
 Eigen::Matrix<double, n, n> without_negative_modes(const Eigen::Matrix<double, n, n>& K) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, n, n>> modes(K);
-    return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() *
-           modes.eigenvectors().transpose();
+    const Spectrum modes = spectrum(K);
+    Eigen::Matrix<double, n, n> positive = Eigen::Matrix<double, n, n>::Zero();
+    for (int k = 0; k < n; ++k) {
+        const double value = modes.values[k];
+        const auto mode = modes.vectors.col(k);
+        if (value > 0.0)
+            for (int j = 0; j < n; ++j) positive.col(j) += value * mode[j] * mode;
+    }
+    return positive;
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/free_pieces.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <sstream>
 
+#include "physics/spectrum.h"
 #include "topology/error.h"
 
 namespace incise::physics {
@@ -79,11 +79,10 @@ std::vector<FreePiece> find_free_pieces(const Mesh& mesh, std::span<const Vec3> 
                         const Vector6 row = row_of(piece, positions[n.index()], c);
                         held += row * row.transpose();
                     }
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(held);
-        const auto num_free =
-            (solver.eigenvalues().array() <= hold * std::max(1.0, held.trace())).count();
+        const Spectrum modes = spectrum(held);
+        const auto num_free = (modes.values.array() <= hold * std::max(1.0, held.trace())).count();
         if (num_free == 0) continue;
-        piece.modes = solver.eigenvectors().leftCols(num_free);
+        piece.modes = modes.vectors.leftCols(num_free);
 
         // The component that hinders most of what is left, again and again.
         Eigen::Matrix<double, 6, Eigen::Dynamic> left = piece.modes;

@@ -12,7 +12,7 @@ namespace {
 using Keys = std::string_view;
 
 constexpr Keys selection_keys[] = {"box", "sphere", "half_space", "nodes", "region", "surface"};
-constexpr Keys box_keys[] = {"min", "max"};
+constexpr Keys selection_box_keys[] = {"min", "max"};
 constexpr Keys sphere_keys[] = {"center", "radius"};
 constexpr Keys half_space_keys[] = {"point", "normal"};
 constexpr Keys constraint_keys[] = {"name", "where", "fix", "move", "rotate", "about"};
@@ -48,7 +48,7 @@ Selection read_selection(const TableReader& owner) {
     Selection selection;
     const auto where = owner.table("where", {selection_keys});
     if (!where) return selection;
-    if (const auto box = where->table("box", {box_keys})) selection.box = read_box(*box);
+    if (const auto box = where->table("box", {selection_box_keys})) selection.box = read_box(*box);
     if (const auto sphere = where->table("sphere", {sphere_keys}))
         selection.sphere = read_sphere(*sphere);
     if (const auto half_space = where->table("half_space", {half_space_keys}))

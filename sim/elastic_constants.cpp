@@ -26,7 +26,7 @@ void check_parameter_set(const MaterialModel& model, const ElasticParameters& gi
                          "; given: " + (listed.empty() ? "none of them" : listed));
 }
 
-double shear_modulus(const MaterialModel& model, const ElasticParameters& p) {
+double shear_modulus_of(const MaterialModel& model, const ElasticParameters& p) {
     using enum Parameter;
     if (p[young]) return *p[young] / (2.0 * (1.0 + *p[poisson]));
     if (p[shear_modulus]) return *p[shear_modulus];
@@ -78,7 +78,7 @@ ElasticConstants resolve(Method method, std::string_view law, const ElasticParam
         constants.lambda = constants.mu = 0.4 * *given[Parameter::young];
         return constants;
     }
-    constants.mu = shear_modulus(model, given);
+    constants.mu = shear_modulus_of(model, given);
     constants.lambda = rest_lambda(given, constants.mu);
     if (!(constants.mu > 0.0))
         refuse(model, "the shear modulus is " + format_number(constants.mu) +

@@ -20,7 +20,7 @@ using Keys = std::string_view;
 constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "constraint",
                               "load",  "tool", "output",   "expect"};
 constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array"};
-constexpr Keys box_keys[] = {"size", "cells", "element", "origin"};
+constexpr Keys mesh_box_keys[] = {"size", "cells", "element", "origin"};
 constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
                                                 topology::CellKind::hexahedron};
@@ -140,7 +140,7 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     const auto source = mesh->one_of({"file", "box"});
     if (source == "file") {
         spec.source = read_file_name(*mesh, "file", folder, "mesh file");
-    } else if (const auto box = mesh->table("box", {box_keys}); source == "box" && box) {
+    } else if (const auto box = mesh->table("box", {mesh_box_keys}); source == "box" && box) {
         spec.source = read_box_mesh(*box);
     }
     spec.scale = mesh->number("scale", spec.scale, limits::positive);

@@ -21,7 +21,7 @@ constexpr Keys rotation_keys[] = {"axis", "angle"};
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
 constexpr Keys sphere_keys[] = {"radius"};
 constexpr Keys capsule_keys[] = {"from", "to", "radius"};
-constexpr Keys box_keys[] = {"size"};
+constexpr Keys shape_box_keys[] = {"size"};
 
 Pose read_pose(const TableReader& row) {
     Pose pose;
@@ -54,7 +54,7 @@ Carver read_carver(const TableReader& tool) {
         carver.shape =
             CapsuleShape{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
     }
-    if (const auto box = shape->table("box", {box_keys}); box && kind) {
+    if (const auto box = shape->table("box", {shape_box_keys}); box && kind) {
         box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
         const Vec3 size = box->vector("size", Vec3::Ones());
         if (!(size.minCoeff() > 0.0))

@@ -25,11 +25,11 @@ using topology::SurfaceData;
 
 /// Bricks along each side of the cube. All numbers here are small fractions of two: nothing is
 /// rounded.
-constexpr int n = 4;
+constexpr int cells_a_side = 4;
 
 SplitBody kuhn_cube() {
-    return SplitBody(
-        topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n}));
+    return SplitBody(topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(),
+                                        {cells_a_side, cells_a_side, cells_a_side}));
 }
 
 Vec3 flat(double, double) { return Vec3::Zero(); }
@@ -67,10 +67,10 @@ TEST(SplitOnTheGrid, InFacesOfTheMeshOpensThemAndDividesNothing) {
         Vec3 point, normal;
         std::size_t num_nodes;  // on the plane
     };
-    constexpr std::size_t m = n + 1;
+    constexpr std::size_t m = cells_a_side + 1;
     std::vector<Case> cases;
     for (int c = 0; c < 3; ++c)
-        for (int i = 1; i <= test::num_cases(n - 1); ++i)
+        for (int i = 1; i <= test::num_cases(cells_a_side - 1); ++i)
             cases.push_back({0.25 * i * Vec3::Unit(c), Vec3::Unit(c), m * m});
     // Kuhn's tetrahedra lie between the planes in which two coordinates agree.
     for (int c = 0; c < 3; ++c)
@@ -151,7 +151,8 @@ TEST(SplitOnTheGrid, AHairBesideIsAsThroughTheNodes) {
                         const std::size_t num_nodes = body.mesh.num_nodes();
                         const auto report = sum(body.cut(stroke, {snap, {}}));
                         EXPECT_EQ(report.edges_divided, 0u);
-                        EXPECT_EQ(body.mesh.num_nodes(), num_nodes + (n + 1) * (n + 1));
+                        EXPECT_EQ(body.mesh.num_nodes(),
+                                  num_nodes + (cells_a_side + 1) * (cells_a_side + 1));
                         const auto volumes = piece_volumes(body.mesh);
                         ASSERT_EQ(volumes.size(), 2u);
                         EXPECT_NEAR(volumes[1], std::min(x, 1.0 - x), 1e-14);
@@ -256,8 +257,9 @@ TEST(SplitOnTheGrid, AHalfCutCopiesTheNodesBehindTheFront) {
                                        {{0.5, -1, at.depth}, {0.5, 2, at.depth}}, num_steps),
                                  {snap, {}}));
                 EXPECT_EQ(report.edges_divided, 0u);
-                EXPECT_EQ(body.mesh.num_nodes(), num_nodes + at.num_rows * (n + 1));
-                EXPECT_EQ(topology::components(body.mesh).count, at.num_rows > n ? 2 : 1);
+                EXPECT_EQ(body.mesh.num_nodes(), num_nodes + at.num_rows * (cells_a_side + 1));
+                EXPECT_EQ(topology::components(body.mesh).count,
+                          at.num_rows > cells_a_side ? 2 : 1);
                 for (const auto front : nodes_of_cut(body.mesh).front)
                     EXPECT_EQ(body.mesh.rest_position(front).z(),
                               0.25 * static_cast<double>(at.num_rows));

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string nodes = R"(*Heading
+const std::string abaqus_nodes = R"(*Heading
  two tetrahedra, *NODE and all
 ** nodes
 *Node, nset=Nall
@@ -27,13 +27,13 @@ const std::string nodes = R"(*Heading
  50, 0., 0., 1.
  40, 1., 1., 1.
 )";
-const std::string abaqus_tetrahedra = nodes + R"(*Element, type=C3D4, elset=Eall
+const std::string abaqus_tetrahedra = abaqus_nodes + R"(*Element, type=C3D4, elset=Eall
 7, 30, 10, 20, 50
 3, 10, 20, 50, 40
 )";
 /// 99 elements, numbered from 1.
 std::string many_tetrahedra() {
-    auto text = nodes + "*ELEMENT, TYPE=C3D4\n";
+    auto text = abaqus_nodes + "*ELEMENT, TYPE=C3D4\n";
     for (int i = 1; i < 100; ++i) text += std::to_string(i) + ",30,10,20,50\n";
     return text;
 }
@@ -212,7 +212,7 @@ TEST(AbaqusReader, RefusesSolidsThatAreNotLinearOrNotKnown) {
         EXPECT_THAT(abaqus_refusal_with("C3D4", type),
                     StartsWith(std::string("liver.inp:10: TYPE='") + type + "': is not known"));
     EXPECT_EQ(abaqus_refusal_with("type=C3D4, ", ""), "liver.inp:10: *ELEMENT has no TYPE");
-    EXPECT_THAT(refusal("liver.inp", nodes), HasSubstr("liver.inp: holds no cells at all"));
+    EXPECT_THAT(refusal("liver.inp", abaqus_nodes), HasSubstr("liver.inp: holds no cells at all"));
 }
 
 TEST(AbaqusReader, RefusesUnknownNodesAndNumbersGivenTwice) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "physics/hybmss_kernel.h"
+#include "physics/spectrum.h"
 #include "physics/test_bodies.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -247,22 +247,22 @@ Matrix24 stiffness_at_rest(const HybmssKernel& kernel, const HybmssKernel::Eleme
 TEST(HybMss, HasSixMotionsWithoutForceAndThreeMoreWithoutFaceDiagonals) {
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         if (kernel.material.volume_modulus < 0.0) return;  // lowers other frequencies too
-        const Eigen::SelfAdjointEigenSolver<Matrix24> modes(stiffness_at_rest(kernel, e, X));
-        const double highest = modes.eigenvalues()[23];
+        const Eigen::VectorXd modes = spectrum(stiffness_at_rest(kernel, e, X)).values;
+        const double highest = modes[23];
         int free = 0;
-        while (modes.eigenvalues()[free] < 1e-6 * highest) ++free;
+        while (modes[free] < 1e-6 * highest) ++free;
         EXPECT_EQ(free, kernel.material.stiffness_ratio == 0.0 ? 9 : 6);
-        EXPECT_GE(modes.eigenvalues()[0], -1e-6 * highest);
+        EXPECT_GE(modes[0], -1e-6 * highest);
     });
 }
 
 TEST(HybMss, StiffnessIsBelowItsBoundAndForCubesAtIt) {
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
-        const Eigen::SelfAdjointEigenSolver<Matrix24> modes(stiffness_at_rest(kernel, e, X));
+        const Eigen::VectorXd modes = spectrum(stiffness_at_rest(kernel, e, X)).values;
         const auto bounds = kernel.stiffness_bounds(e, X);
         const double bound = *std::min_element(bounds.begin(), bounds.end());
         EXPECT_EQ(bound, *std::max_element(bounds.begin(), bounds.end()));
-        const double highest = modes.eigenvalues()[23];
+        const double highest = modes[23];
         EXPECT_LE(highest, bound * (1.0 + 1e-8));
         const Vec3 edges(BoxFrame(X).a.norm(), BoxFrame(X).b.norm(), BoxFrame(X).c.norm());
         const bool is_cube = edges.maxCoeff() - edges.minCoeff() < 1e-9;

@@ -9,8 +9,8 @@
 namespace incise::physics {
 namespace {
 
-constexpr double young = 1e4;
-const MassSpringKernel mass_springs{young};
+constexpr double springs_young = 1e4;
+const MassSpringKernel mass_springs{springs_young};
 
 TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
     test::Random random(1);
@@ -23,13 +23,14 @@ TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
         for (std::size_t j = 0; j < 4; ++j) {
             if (i == j) continue;
             const double rest = (X[j] - X[i]).norm(), length = (x[j] - x[i]).norm();
-            const double stiffness = young * element.volume / (rest * rest);
+            const double stiffness = springs_young * element.volume / (rest * rest);
             expected[i] += stiffness * (length - rest) * (x[j] - x[i]) / length;
             energy += 0.25 * stiffness * (length - rest) * (length - rest);  // each edge twice
         }
     const Tetrahedron f = mass_springs.forces(element, x);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_LE((f[i] - expected[i]).norm(), 1e-14 * young);
-    EXPECT_NEAR(mass_springs.energy(element, x), energy, 1e-14 * young);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_LE((f[i] - expected[i]).norm(), 1e-14 * springs_young);
+    EXPECT_NEAR(mass_springs.energy(element, x), energy, 1e-14 * springs_young);
 }
 
 TEST(MassSprings, DoNotTellAnElementFromItsMirrorImage) {
@@ -37,7 +38,7 @@ TEST(MassSprings, DoNotTellAnElementFromItsMirrorImage) {
     const Tetrahedron X = random_tetrahedron(random);
     const auto element = mass_springs.precompute(X);
     const Mat3 mirror = Vec3(1, 1, -1).asDiagonal();
-    EXPECT_LE(mass_springs.energy(element, deformed(X, mirror)), 1e-28 * young);
+    EXPECT_LE(mass_springs.energy(element, deformed(X, mirror)), 1e-28 * springs_young);
     EXPECT_NEAR(mass_springs.volume_ratio(element, deformed(X, mirror)), -1.0, 1e-14);
 }
 

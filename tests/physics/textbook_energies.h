@@ -2,10 +2,10 @@
 // which see links, are tested against. SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "physics/spectrum.h"
 #include "physics/test_materials.h"
 
 namespace incise::physics {
@@ -50,8 +50,7 @@ inline double energy_density(const IsochoricFungDemiray& law, const Mat3& F) {
 }
 inline double energy_density(const Ogden& law, const Mat3& F) {
     const double J = F.determinant();
-    const Eigen::SelfAdjointEigenSolver<Mat3> modes(F.transpose() * F);
-    const Vec3 stretches = modes.eigenvalues().cwiseSqrt() / std::cbrt(J);
+    const Vec3 stretches = spectrum(F.transpose() * F).values.cwiseSqrt() / std::cbrt(J);
     double w = 0.5 * law.bulk_modulus * (J - 1) * (J - 1);
     for (std::size_t i = 0; i < law.num_terms; ++i) {
         const auto [mu, alpha] = law.terms[i];
