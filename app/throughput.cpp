@@ -71,57 +71,89 @@ std::vector<Measured> measured_materials() {
     const sim::Tissue& tissue = *sim::find_tissue(tissue_name);
     const auto [lambda, mu] = sim::resolve(sim::Method::heml, tissue.law, tissue.parameters);
     const auto heml = [&](std::string_view name, const physics::Law& law, double operations) {
-        return Measured{"heml",
-                        name,
-                        {tissue.density, physics::HyperElasticLinks{law}},
-                        operations,
-                        sizeof(physics::LinkGroup) / double{physics::LinkGroup::size}};
+        return Measured{
+            "heml",
+            name,
+            {tissue.density, physics::HyperElasticLinks{law}},
+            operations,
+            sizeof(physics::LinkGroup<double>) / double{physics::LinkGroup<double>::size}};
     };
     const physics::HybridSprings springs{mu, lambda - mu};
-    return {heml("saint-venant-kirchhoff", physics::SaintVenantKirchhoff{lambda, mu}, 260.0),
-            heml("neo-hookean", physics::NeoHookean{0.5 * mu, lambda}, 260.0),
-            heml("mooney-rivlin", physics::MooneyRivlin{0.35 * mu, 0.15 * mu, lambda - 0.6 * mu},
-                 350.0),
-            Measured{"hybmss",
-                     {},
-                     {tissue.density, springs},
-                     690.0,
-                     sizeof(physics::CellGroup) / double{physics::CellGroup::size}}};
+    return {
+        heml("saint-venant-kirchhoff", physics::SaintVenantKirchhoff{lambda, mu}, 260.0),
+        heml("neo-hookean", physics::NeoHookean{0.5 * mu, lambda}, 260.0),
+        heml("mooney-rivlin", physics::MooneyRivlin{0.35 * mu, 0.15 * mu, lambda - 0.6 * mu},
+             350.0),
+        Measured{"hybmss",
+                 {},
+                 {tissue.density, springs},
+                 690.0,
+                 sizeof(physics::CellGroup<double>) / double{physics::CellGroup<double>::size}}};
 }
 
-physics::MaterialTable table_of(const physics::Material& material) {
-    return {{material}, {{0, 0}}};
+physics::MaterialTable table_of(
+    const physics::Material& material,
+    physics::Precision precision = physics::Precision::double_precision) {
+    return {{material}, {{0, 0}}, {}, precision};
+}
+
+/// A body of one material in motion.
+struct MovingBody {
+    physics::Model model;
+    double dt;  ///< s
+
+    MovingBody(const topology::Mesh& mesh, const Measured& measured, physics::Precision precision,
+               int num_threads)
+        : model(mesh, table_of(measured.material, precision),
+                {.gravity = Vec3(0, 0, -9.81), .damping = 0.0, .supports = {}, .loads = {}}),
+          dt(0.9 * model.stable_step()) {
+        model.set_num_threads(num_threads);
+    }
+};
+
+/// Best times, s.
+struct StepTimes {
+    double forces, step;
+};
+
+StepTimes time_steps(MovingBody& body, double seconds) {
+    // Fused loops of a whole step, so that each finds in the caches what the other left there.
+    double forces = std::numeric_limits<double>::infinity();
+    const double step = best_time(seconds, [&] {
+        body.model.integrate(0.0, body.dt);
+        forces = std::min(forces, best_time(0.0, [&] { body.model.compute_forces(0.0); }));
+    });
+    return {forces, step};
 }
 
 StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int num_threads,
                        double seconds) {
-    physics::Model model(
-        mesh, table_of(measured.material),
-        {.gravity = Vec3(0, 0, -9.81), .damping = 0.0, .supports = {}, .loads = {}});
-    model.set_num_threads(num_threads);
-    const double dt = 0.9 * model.stable_step();
+    using enum physics::Precision;
+    MovingBody body(mesh, measured, double_precision, num_threads);
+    const auto [forces, step] = time_steps(body, seconds);
+    const auto single = [&] {
+        MovingBody in_single(mesh, measured, single_precision, num_threads);
+        return time_steps(in_single, seconds);
+    }();
     const auto elements = static_cast<double>(mesh.num_elements());
     const double per_element = 1e9 / elements;
-    // Fused loops of a whole step, so that each finds in the caches what the other left there.
-    double forces = std::numeric_limits<double>::infinity();
-    const double step = best_time(seconds, [&] {
-        model.integrate(0.0, dt);
-        forces = std::min(forces, best_time(0.0, [&] { model.compute_forces(0.0); }));
-    });
     StepRate rate{.method = measured.method,
                   .law = measured.law,
                   .elements = mesh.num_elements(),
                   .num_threads = num_threads,
                   .forces = forces * per_element,
                   .step = step * per_element,
+                  .single_forces = single.forces * per_element,
+                  .single_step = single.step * per_element,
                   .reference = std::nullopt,
                   .steps_per_second = 1.0 / step,
-                  .real_time_factor = dt / step,
+                  .real_time_factor = body.dt / step,
                   .gigaflops = measured.operations * elements / forces * 1e-9,
                   .gigabytes_per_second = measured.bytes * elements / forces * 1e-9};
     if (num_threads == 1) {
         std::vector<Vec3> sums(mesh.node_capacity(), Vec3::Zero());
-        const physics::EndOfStep state{model.positions(), model.history(), dt};
+        const physics::Model& model = body.model;
+        const physics::EndOfStep state{model.positions(), model.history(), body.dt};
         rate.reference =
             per_element * best_time(seconds, [&] { model.elements().add_forces(state, sums); });
     }

@@ -25,8 +25,10 @@ struct StepRate {
     std::string_view method, law;  ///< as in scenarios; no law for hybmss
     std::size_t elements = 0;
     int num_threads = 1;
-    double forces = 0.0;              ///< one evaluation of elastic forces
-    double step = 0.0;                ///< forces and integration
+    double forces = 0.0;         ///< one evaluation of elastic forces
+    double step = 0.0;           ///< forces and integration
+    double single_forces = 0.0;  ///< both in single precision
+    double single_step = 0.0;
     std::optional<double> reference;  ///< forces by the plain formulas, one thread
     double steps_per_second = 0.0;
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step

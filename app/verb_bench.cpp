@@ -33,6 +33,8 @@ ordered_json as_json(const Throughput& throughput) {
                             {"threads", rate.num_threads},
                             {"forces_ns_per_element", rate.forces},
                             {"step_ns_per_element", rate.step},
+                            {"single_forces_ns_per_element", rate.single_forces},
+                            {"single_step_ns_per_element", rate.single_step},
                             {"reference_ns_per_element", nullptr},
                             {"steps_per_second", rate.steps_per_second},
                             {"real_time_factor", rate.real_time_factor},
@@ -59,18 +61,19 @@ void print_text(const Throughput& throughput) {
         machine.gigaflops, machine.gigabytes_per_second);
     std::printf("bodies      cubes of 10 cm with the stiffness of %s\n\n",
                 std::string(throughput.tissue).c_str());
-    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s\n", "law", "elements", "threads",
-                "forces", "step", "reference", "steps/s", "real time", "GFLOP/s", "GB/s");
-    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s\n", "", "", "", "ns/elem.",
-                "ns/elem.", "forces, ns", "", "factor", "", "");
+    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s | %9s %9s\n", "law", "elements",
+                "threads", "forces", "step", "reference", "steps/s", "real time", "GFLOP/s", "GB/s",
+                "forces in", "step in");
+    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s | %9s %9s\n", "", "", "",
+                "ns/elem.", "ns/elem.", "forces, ns", "", "factor", "", "", "single", "single");
     for (const StepRate& rate : throughput.steps) {
         char reference[16] = "";
         if (rate.reference) std::snprintf(reference, sizeof reference, "%.1f", *rate.reference);
         const auto name = std::string(rate.law.empty() ? rate.method : rate.law);
-        std::printf("%-22s %8zu %7d | %9.2f %9.2f %11s | %8.0f %9.3g | %7.1f %6.1f\n", name.c_str(),
-                    rate.elements, rate.num_threads, rate.forces, rate.step, reference,
-                    rate.steps_per_second, rate.real_time_factor, rate.gigaflops,
-                    rate.gigabytes_per_second);
+        std::printf("%-22s %8zu %7d | %9.2f %9.2f %11s | %8.0f %9.3g | %7.1f %6.1f | %9.2f %9.2f\n",
+                    name.c_str(), rate.elements, rate.num_threads, rate.forces, rate.step,
+                    reference, rate.steps_per_second, rate.real_time_factor, rate.gigaflops,
+                    rate.gigabytes_per_second, rate.single_forces, rate.single_step);
     }
     std::printf("\n%-22s %8s %7s | %9s\n", "edit", "elements", "items", "us/item");
     for (const EditRate& rate : throughput.edits)

@@ -15,14 +15,15 @@ using topology::CellKind;
 
 namespace {
 
-std::unique_ptr<ElementBlock> make_block(const Material& material) {
+std::unique_ptr<ElementBlock> make_block(const Material& material, Precision precision) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
         return std::make_unique<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
                                                                material.density);
     if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
-        return std::make_unique<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid}, material.density);
+        return std::make_unique<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
+                                                           material.density);
     const auto& links = std::get<HyperElasticLinks>(material.method);
-    const HemlKernel elastic{links.law, links.inversion_threshold};
+    const HemlKernel elastic{links.law, links.inversion_threshold, precision};
     if (links.prony.empty())
         return std::make_unique<KernelBlock<HemlKernel>>(elastic, material.density);
     if (links.prony_rule == PronyRule::nodal)
@@ -71,6 +72,12 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
 }  // namespace
 
 ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
+    if (table.precision == Precision::single_precision)
+        for (const Material& material : table.materials)
+            if (std::holds_alternative<MassSprings>(material.method))
+                throw InputError(
+                    "mass springs have no forces in single precision; use double precision, or "
+                    "another method");
     if (!table_.fibres.empty()) table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
         if (const ElementId e(i); mesh.is_alive(e)) {
@@ -125,7 +132,8 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     const std::size_t index = block_index(e, mesh.region(e));
     if (index >= blocks_.size()) blocks_.resize(index + 1);
     if (!blocks_[index])
-        blocks_[index] = make_block(table_.materials[table_.of_region.at(mesh.region(e))]);
+        blocks_[index] =
+            make_block(table_.materials[table_.of_region.at(mesh.region(e))], table_.precision);
     blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
     note_change(index);
 }

@@ -9,6 +9,7 @@
 
 #include "physics/element_block.h"
 #include "physics/material.h"
+#include "physics/precision.h"
 #include "physics/workers.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
@@ -22,6 +23,9 @@ struct MaterialTable {
     /// By element id, the direction of the fibres at rest, of unit length; zero where the material
     /// has none, empty if no material has any.
     std::vector<Vec3> fibres = {};
+    /// Of the forces that explicit steps take (Model::compute_forces). Energies, stresses, viscous
+    /// parts, tangents and the forces of implicit steps and statics are in doubles throughout.
+    Precision precision = Precision::double_precision;
 };
 
 /// Elements whose ids share all but their lowest bits and that have the same material form a
@@ -30,7 +34,8 @@ struct MaterialTable {
 class ElementStore {
   public:
     /// Throws InputError for a region without material, for a kind of element for which the
-    /// material has no force law, and for an element without the fibres that its material has.
+    /// material has no force law, for an element without the fibres that its material has, and for
+    /// mass springs in single precision, which they have no forces in.
     ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
 
     /// What elements keep by their ids follows an edit: parts of a divided element inherit its

@@ -9,6 +9,7 @@
 
 #include "physics/heml_lanes.h"
 #include "physics/law.h"
+#include "physics/precision.h"
 #include "topology/types.h"
 
 namespace incise::physics {
@@ -48,6 +49,7 @@ struct HemlKernel {
 
     Law law;
     double inversion_threshold;
+    Precision precision = Precision::double_precision;  ///< of the lanes
 
     /// Pure in the rest positions and, for a law with fibres, their direction.
     /// @param fibre  of unit length; of no account without fibres

@@ -8,18 +8,22 @@
 namespace incise::physics {
 
 namespace plain {
-AddHemlForces add_heml_forces;
-}
+AddHemlForces<double> add_heml_forces;
+AddHemlForces<float> add_heml_forces;
+}  // namespace plain
 #ifdef INCISE_HAS_AVX
 namespace avx2 {
-AddHemlForces add_heml_forces;
-}
+AddHemlForces<double> add_heml_forces;
+AddHemlForces<float> add_heml_forces;
+}  // namespace avx2
 namespace avx512 {
-AddHemlForces add_heml_forces;
-}
+AddHemlForces<double> add_heml_forces;
+AddHemlForces<float> add_heml_forces;
+}  // namespace avx512
 #endif
 
-AddHemlForces* heml_forces_for([[maybe_unused]] Processor processor) {
+template <class Number>
+AddHemlForces<Number>* heml_forces_for([[maybe_unused]] Processor processor) {
 #ifdef INCISE_HAS_AVX
     if (processor == Processor::avx512) return avx512::add_heml_forces;
     if (processor == Processor::avx2) return avx2::add_heml_forces;
@@ -27,36 +31,70 @@ AddHemlForces* heml_forces_for([[maybe_unused]] Processor processor) {
     return plain::add_heml_forces;
 }
 
-void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel) {
-    constexpr std::size_t size = LinkGroup::size;
-    LinkGroup unused{};
+template AddHemlForces<double>* heml_forces_for(Processor processor);
+template AddHemlForces<float>* heml_forces_for(Processor processor);
+
+namespace {
+
+template <class Number>
+void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, std::uint16_t spare,
+                   bool has_fibres) {
+    constexpr std::size_t size = LinkGroup<Number>::size;
+    LinkGroup<Number> unused{};
     for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
-    std::fill(unused.volume, unused.volume + size, 1.0);
-    groups_.assign((num_elements + size - 1) / size, unused);
-    fibres_.assign(has_fibres(kernel.law) ? groups_.size() : 0, FibreGroup{});
+    std::fill(unused.volume, unused.volume + size, Number{1});
+    groups.links.assign((num_elements + size - 1) / size, unused);
+    groups.fibres.assign(has_fibres ? groups.links.size() : 0, FibreGroup<Number>{});
 }
 
-void HemlLanes::set(std::size_t i, const LinkElement& element,
-                    std::span<const std::uint16_t, 4> nodes) {
-    const std::size_t g = i % groups_.size(), lane = i / groups_.size();
-    LinkGroup& group = groups_[g];
-    for (int k = 0; k < 6; ++k) group.rest_links[k][lane] = element.rest_links[k];
+template <class Number>
+void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element,
+                 std::span<const std::uint16_t, 4> nodes) {
+    const std::size_t g = i % groups.links.size(), lane = i / groups.links.size();
+    LinkGroup<Number>& group = groups.links[g];
+    for (int k = 0; k < 6; ++k)
+        group.rest_links[k][lane] = static_cast<Number>(element.rest_links[k]);
     // vtr holds G: of links between corners i and j, neither of them 0, -G_ij; of link 0i the sum
     // of G's row i.
     const Vec6& t = element.vtr;
     const double G[] = {
         t[0] + t[3] + t[5], t[1] + t[3] + t[4], t[2] + t[4] + t[5], -t[3], -t[4], -t[5]};
-    for (int k = 0; k < 6; ++k) group.G[k][lane] = G[k];
-    group.volume[lane] = element.volume;
+    for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
+    group.volume[lane] = static_cast<Number>(element.volume);
     for (std::size_t k = 0; k < 4; ++k) group.nodes[k][lane] = nodes[k];
-    if (fibres_.empty()) return;
-    for (int k = 0; k < 3; ++k) fibres_[g].u[k][lane] = element.fibre_components[k];
+    if (groups.fibres.empty()) return;
+    for (int k = 0; k < 3; ++k)
+        groups.fibres[g].u[k][lane] = static_cast<Number>(element.fibre_components[k]);
+}
+
+}  // namespace
+
+void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel) {
+    const bool is_single = kernel.precision == Precision::single_precision;
+    if (is_single != std::holds_alternative<LinkGroups<float>>(groups_)) {
+        if (is_single)
+            groups_.emplace<LinkGroups<float>>();
+        else
+            groups_.emplace<LinkGroups<double>>();
+    }
+    std::visit(
+        [&](auto& groups) { assign_groups(groups, num_elements, spare, has_fibres(kernel.law)); },
+        groups_);
+}
+
+void HemlLanes::set(std::size_t i, const LinkElement& element,
+                    std::span<const std::uint16_t, 4> nodes) {
+    std::visit([&](auto& groups) { set_element(groups, i, element, nodes); }, groups_);
 }
 
 void HemlLanes::add_forces(const HemlKernel& kernel, const LocalVector* positions,
                            LocalVector* forces) const {
-    static AddHemlForces* const add = heml_forces_for(processor());
-    add(kernel.law, kernel.inversion_threshold, groups_, fibres_, positions, forces);
+    std::visit(
+        [&]<class Number>(const LinkGroups<Number>& groups) {
+            static AddHemlForces<Number>* const add = heml_forces_for<Number>(processor());
+            add(kernel.law, kernel.inversion_threshold, groups, positions, forces);
+        },
+        groups_);
 }
 
 }  // namespace incise::physics

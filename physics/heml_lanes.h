@@ -1,11 +1,12 @@
 // The fast forces of HEML: elements side by side, one a lane. Equal to HemlKernel::forces, the
-// reference, but for rounding.
+// reference, but for rounding: to doubles, or to floats where the kernel has single precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "physics/law.h"
@@ -17,26 +18,36 @@ namespace incise::physics {
 struct HemlKernel;
 struct LinkElement;
 
-/// Eight elements as the force loop reads them. Where vtr and Mtr have 27 numbers these have the
-/// six of G = (V^T V)^-1, V the rest edges, from which all of those follow: docs/theory.md, Lanes.
+/// Eight elements, or sixteen in floats, as the force loop reads them. Where vtr and Mtr have 27
+/// numbers these have the six of G = (V^T V)^-1, V the rest edges, from which all of those follow:
+/// docs/theory.md, Lanes.
+template <class Number>
 struct alignas(64) LinkGroup {
-    static constexpr std::size_t size = 8;
-    double rest_links[6][size];         ///< m2, in the order of squared_links
-    double G[6][size];                  ///< 11, 22, 33, 12, 23, 31: 1/m2
-    double volume[size];                ///< m3
+    static constexpr std::size_t size = 64 / sizeof(Number);
+    Number rest_links[6][size];         ///< m2, in the order of squared_links
+    Number G[6][size];                  ///< 11, 22, 33, 12, 23, 31: 1/m2
+    Number volume[size];                ///< m3
     std::uint16_t nodes[4][size] = {};  ///< by local number
 };
 
-/// u = V^-1 a0 of eight elements with fibres, 1/m.
+/// u = V^-1 a0 of as many elements with fibres, 1/m.
+template <class Number>
 struct alignas(64) FibreGroup {
-    double u[3][LinkGroup::size];
+    Number u[3][LinkGroup<Number>::size];
+};
+
+template <class Number>
+struct LinkGroups {
+    std::vector<LinkGroup<Number>> links;
+    std::vector<FibreGroup<Number>> fibres;  ///< empty without
 };
 
 /// The elements of a block. Neighbours in a block lie in different groups, as far as may be, so
 /// that the lanes of a group seldom add to the same node.
 class HemlLanes {
   public:
-    /// Makes room for so many elements, of the kernel given, in place of what there was.
+    /// Makes room for so many elements, of the kernel given and in its precision, in place of what
+    /// there was.
     /// @param spare  local number of a node that spare lanes work on
     void assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel);
     /// Sets the element of the given number, from 0.
@@ -48,18 +59,22 @@ class HemlLanes {
     void add_forces(const HemlKernel& kernel, const LocalVector* positions,
                     LocalVector* forces) const;
 
-    std::span<const LinkGroup> groups() const { return groups_; }
-    std::span<const FibreGroup> fibres() const { return fibres_; }
+    /// Those in the numbers that the kernel's precision asks for.
+    template <class Number>
+    const LinkGroups<Number>& groups() const {
+        return std::get<LinkGroups<Number>>(groups_);
+    }
 
   private:
-    std::vector<LinkGroup> groups_;
-    std::vector<FibreGroup> fibres_;  // empty without
+    std::variant<LinkGroups<double>, LinkGroups<float>> groups_;
 };
 
+template <class Number>
 using AddHemlForces = void(const Law& law, double inversion_threshold,
-                           std::span<const LinkGroup> groups, std::span<const FibreGroup> fibres,
-                           const LocalVector* positions, LocalVector* forces);
-/// What HemlLanes calls, by processor.
-AddHemlForces* heml_forces_for(Processor processor);
+                           const LinkGroups<Number>& groups, const LocalVector* positions,
+                           LocalVector* forces);
+/// What HemlLanes calls, by processor; for double and float.
+template <class Number>
+AddHemlForces<Number>* heml_forces_for(Processor processor);
 
 }  // namespace incise::physics

@@ -13,6 +13,7 @@
 
 #include "physics/hybmss_lanes.h"
 #include "physics/material.h"
+#include "physics/precision.h"
 #include "topology/types.h"
 
 namespace incise::physics {
@@ -91,6 +92,7 @@ struct HybmssKernel {
     }};
 
     HybridSprings material;
+    Precision precision = Precision::double_precision;  ///< of the lanes
 
     /// Of a hexahedron that can be a cell: why_no_cell.
     Element precompute(const Corners& X) const;

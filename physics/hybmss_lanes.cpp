@@ -8,18 +8,22 @@
 namespace incise::physics {
 
 namespace plain {
-AddHybmssForces add_hybmss_forces;
-}
+AddHybmssForces<double> add_hybmss_forces;
+AddHybmssForces<float> add_hybmss_forces;
+}  // namespace plain
 #ifdef INCISE_HAS_AVX
 namespace avx2 {
-AddHybmssForces add_hybmss_forces;
-}
+AddHybmssForces<double> add_hybmss_forces;
+AddHybmssForces<float> add_hybmss_forces;
+}  // namespace avx2
 namespace avx512 {
-AddHybmssForces add_hybmss_forces;
-}
+AddHybmssForces<double> add_hybmss_forces;
+AddHybmssForces<float> add_hybmss_forces;
+}  // namespace avx512
 #endif
 
-AddHybmssForces* hybmss_forces_for([[maybe_unused]] Processor processor) {
+template <class Number>
+AddHybmssForces<Number>* hybmss_forces_for([[maybe_unused]] Processor processor) {
 #ifdef INCISE_HAS_AVX
     if (processor == Processor::avx512) return avx512::add_hybmss_forces;
     if (processor == Processor::avx2) return avx2::add_hybmss_forces;
@@ -27,30 +31,54 @@ AddHybmssForces* hybmss_forces_for([[maybe_unused]] Processor processor) {
     return plain::add_hybmss_forces;
 }
 
-void HybmssLanes::assign(std::size_t num_elements, std::uint16_t spare, const HybmssKernel&) {
-    constexpr std::size_t size = CellGroup::size;
-    CellGroup unused{};
-    for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
-    std::fill(unused.volume, unused.volume + size, 1.0);
-    groups_.assign((num_elements + size - 1) / size, unused);
+template AddHybmssForces<double>* hybmss_forces_for(Processor processor);
+template AddHybmssForces<float>* hybmss_forces_for(Processor processor);
+
+void HybmssLanes::assign(std::size_t num_elements, std::uint16_t spare,
+                         const HybmssKernel& kernel) {
+    using Singles = std::vector<CellGroup<float>>;
+    const bool is_single = kernel.precision == Precision::single_precision;
+    if (is_single != std::holds_alternative<Singles>(groups_)) {
+        if (is_single)
+            groups_.emplace<Singles>();
+        else
+            groups_.emplace<std::vector<CellGroup<double>>>();
+    }
+    std::visit(
+        [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
+            constexpr std::size_t size = CellGroup<Number>::size;
+            CellGroup<Number> unused{};
+            for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
+            std::fill(unused.volume, unused.volume + size, Number{1});
+            groups.assign((num_elements + size - 1) / size, unused);
+        },
+        groups_);
 }
 
 void HybmssLanes::set(std::size_t i, const HybmssElement& element,
                       std::span<const std::uint16_t, 8> nodes) {
-    CellGroup& group = groups_[i % groups_.size()];
-    const std::size_t lane = i / groups_.size();
-    for (std::size_t g = 0; g < 7; ++g) {
-        group.stiffnesses[g][lane] = element.springs.stiffnesses[g];
-        group.lengths[g][lane] = element.springs.lengths[g];
-    }
-    group.volume[lane] = element.volume;
-    for (std::size_t k = 0; k < 8; ++k) group.nodes[k][lane] = nodes[k];
+    std::visit(
+        [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
+            CellGroup<Number>& group = groups[i % groups.size()];
+            const std::size_t lane = i / groups.size();
+            for (std::size_t g = 0; g < 7; ++g) {
+                group.stiffnesses[g][lane] = static_cast<Number>(element.springs.stiffnesses[g]);
+                group.lengths[g][lane] = static_cast<Number>(element.springs.lengths[g]);
+            }
+            group.volume[lane] = static_cast<Number>(element.volume);
+            for (std::size_t k = 0; k < 8; ++k) group.nodes[k][lane] = nodes[k];
+        },
+        groups_);
 }
 
 void HybmssLanes::add_forces(const HybmssKernel& kernel, const LocalVector* positions,
                              LocalVector* forces) const {
-    static AddHybmssForces* const add = hybmss_forces_for(processor());
-    add(kernel.material.volume_modulus, groups_, positions, forces);
+    std::visit(
+        [&]<class Number>(const std::vector<CellGroup<Number>>& groups) {
+            static AddHybmssForces<Number>* const add = hybmss_forces_for<Number>(processor());
+            add(kernel.material.volume_modulus, groups, positions, forces);
+        },
+        groups_);
 }
 
 }  // namespace incise::physics

@@ -1,11 +1,12 @@
 // The fast forces of HybMSS: cells side by side, one a lane. Equal to HybmssKernel::forces, the
-// reference, but for rounding.
+// reference, but for rounding: to doubles, or to floats where the kernel has single precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "physics/local_nodes.h"
@@ -16,19 +17,20 @@ namespace incise::physics {
 struct HybmssKernel;
 struct HybmssElement;
 
-/// Eight cells as the force loop reads them.
+/// Eight cells, or sixteen in floats, as the force loop reads them.
+template <class Number>
 struct alignas(64) CellGroup {
-    static constexpr std::size_t size = 8;
-    double stiffnesses[7][size];        ///< of springs by group, as in SpringShares: N/m
-    double lengths[7][size];            ///< m
-    double volume[size];                ///< m3
+    static constexpr std::size_t size = 64 / sizeof(Number);
+    Number stiffnesses[7][size];        ///< of springs by group, as in SpringShares: N/m
+    Number lengths[7][size];            ///< m
+    Number volume[size];                ///< m3
     std::uint16_t nodes[8][size] = {};  ///< by local number
 };
 
 /// The cells of a block; see HemlLanes.
 class HybmssLanes {
   public:
-    /// Makes room for so many cells in place of what there was.
+    /// Makes room for so many cells, in the kernel's precision, in place of what there was.
     /// @param spare  local number of a node that spare lanes work on
     void assign(std::size_t num_elements, std::uint16_t spare, const HybmssKernel& kernel);
     /// Sets the cell of the given number, from 0.
@@ -40,15 +42,21 @@ class HybmssLanes {
     void add_forces(const HybmssKernel& kernel, const LocalVector* positions,
                     LocalVector* forces) const;
 
-    std::span<const CellGroup> groups() const { return groups_; }
+    /// Those in the numbers that the kernel's precision asks for.
+    template <class Number>
+    std::span<const CellGroup<Number>> groups() const {
+        return std::get<std::vector<CellGroup<Number>>>(groups_);
+    }
 
   private:
-    std::vector<CellGroup> groups_;
+    std::variant<std::vector<CellGroup<double>>, std::vector<CellGroup<float>>> groups_;
 };
 
-using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup> groups,
+template <class Number>
+using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup<Number>> groups,
                              const LocalVector* positions, LocalVector* forces);
-/// What HybmssLanes calls, by processor.
-AddHybmssForces* hybmss_forces_for(Processor processor);
+/// What HybmssLanes calls, by processor; for double and float.
+template <class Number>
+AddHybmssForces<Number>* hybmss_forces_for(Processor processor);
 
 }  // namespace incise::physics

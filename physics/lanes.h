@@ -9,6 +9,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
+
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 #include "physics/law_response.h"
 #include "physics/local_nodes.h"
@@ -20,24 +25,73 @@
 namespace incise::physics::INCISE_PROCESSOR {
 
 #ifdef __AVX512F__
-inline constexpr int num_lanes = 8;
+inline constexpr int vector_bytes = 64;
 #else
-inline constexpr int num_lanes = 4;
+inline constexpr int vector_bytes = 32;
 #endif
+template <class Number>
+inline constexpr int num_lanes = vector_bytes / static_cast<int>(sizeof(Number));
 
-/// Arithmetic is that of doubles, lane by lane, to the bit, whatever the processor: nothing is
-/// fused, so results do not depend on how many lanes it has.
+/// Vectors of a kind of number and of its bits, how these lie, and how far the series of the
+/// functions below go.
+template <class Number>
+struct NumberFormat;
+
+template <>
+struct NumberFormat<double> {
+    using Vector = double __attribute__((vector_size(vector_bytes)));
+    using Aliasing = Vector __attribute__((may_alias));
+    using Bit = std::int64_t;
+    using Bits = std::int64_t __attribute__((vector_size(vector_bytes)));
+    static constexpr int mantissa_bits = 52;
+    static constexpr Bit bias = 1023;
+    static constexpr Bit root_guess = 0x5fe6eb50c7b537a9;
+    static constexpr int root_steps = 4;
+    static constexpr Bit root_of_half = 0x3fe6a09e667f3bcd;
+    static constexpr double ln2_high = 0.693147180369123816490,
+                            ln2_low = 1.90821492927058770002e-10, largest_exponent = 700.0;
+    static constexpr std::array log_terms{21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0};
+    static constexpr int exp_degree = 13;
+};
+
+template <>
+struct NumberFormat<float> {
+    using Vector = float __attribute__((vector_size(vector_bytes)));
+    using Aliasing = Vector __attribute__((may_alias));
+    using Bit = std::int32_t;
+    using Bits = std::int32_t __attribute__((vector_size(vector_bytes)));
+    static constexpr int mantissa_bits = 23;
+    static constexpr Bit bias = 127;
+    static constexpr Bit root_guess = 0x5f3759df;
+    static constexpr int root_steps = 3;
+    static constexpr Bit root_of_half = 0x3f3504f3;
+    // Of few bits, so that a whole number times it is exact.
+    static constexpr double ln2_high = 0.693359375, ln2_low = -2.1219444005469058e-4,
+                            largest_exponent = 87.0;
+    static constexpr std::array log_terms{9.0, 7.0, 5.0, 3.0};
+    static constexpr int exp_degree = 7;
+};
+
+/// Arithmetic is that of single numbers, lane by lane, to the bit, whatever the processor: nothing
+/// is fused, so results do not depend on how many lanes it has.
+template <class Number>
 struct Lanes {
-    using Vector = double __attribute__((vector_size(8 * num_lanes)));
-    using Bits = std::int64_t __attribute__((vector_size(8 * num_lanes)));
+    using Format = NumberFormat<Number>;
+    using Vector = typename Format::Vector;
+    using Bit = typename Format::Bit;
+    using Bits = typename Format::Bits;
+    static constexpr int size = num_lanes<Number>;
     Vector v;
 
     Lanes() = default;
     Lanes(Vector vector) : v(vector) {}
-    Lanes(double constant) : v(constant - Vector{}) {}  // implicit: formulas mix both kinds
+    // Implicit: formulas mix both kinds.
+    Lanes(double constant) : v(static_cast<Number>(constant) - Vector{}) {}
 
     /// From numbers that follow one another, aligned to their whole size.
-    static Lanes load(const double* from) { return *reinterpret_cast<const Aliasing*>(from); }
+    static Lanes load(const Number* from) {
+        return *reinterpret_cast<const typename Format::Aliasing*>(from);
+    }
 
     Lanes& operator+=(Lanes o) { return v += o.v, *this; }
     Lanes& operator-=(Lanes o) { return v -= o.v, *this; }
@@ -53,65 +107,61 @@ struct Lanes {
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
     friend Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }
 
-    /// 1/sqrt(a) of normal numbers above zero within 4e-16 of it; something finite for zero. By
-    /// Newton's method from a guess by halving the exponent: several times faster than to divide
-    /// by a root, and the same everywhere.
+    /// 1/sqrt(a) of normal numbers above zero within 4e-16 of it (floats 3e-7); something finite
+    /// for zero. By Newton's method from a guess by halving the exponent: several times faster than
+    /// to divide by a root, and the same everywhere.
     friend Lanes reciprocal_sqrt(Lanes a) {
-        const Bits guess = 0x5fe6eb50c7b537a9 - (std::bit_cast<Bits>(a.v) >> 1);
+        const Bits guess = Format::root_guess - (std::bit_cast<Bits>(a.v) >> 1);
         Lanes r = std::bit_cast<Vector>(guess);
         const Lanes half = 0.5 * a;
-        for (int i = 0; i < 4; ++i) r *= 1.5 - half * r * r;
+        for (int i = 0; i < Format::root_steps; ++i) r *= 1.5 - half * r * r;
         return r;
     }
     friend Lanes expm1(Lanes a) {
-        return a.each([](double x) { return std::expm1(x); });
+        return a.each([](Number x) { return std::expm1(x); });
     }
     friend Lanes log1p(Lanes a) {
-        return a.each([](double x) { return std::log1p(x); });
+        return a.each([](Number x) { return std::log1p(x); });
     }
     friend Lanes abs(Lanes a) {
-        return a.each([](double x) { return std::abs(x); });
+        return a.each([](Number x) { return std::abs(x); });
     }
 
-    /// For normal numbers above zero within 1e-15 of the value or of one, whichever is more; else
-    /// not a number. Argument reduction to [sqrt(1/2), sqrt(2)) and the series of
+    /// For normal numbers above zero within 1e-15 (floats 3e-7) of the value or of one, whichever
+    /// is more; else not a number. Argument reduction to [sqrt(1/2), sqrt(2)) and the series of
     /// ln((1 + s)/(1 - s)) in s.
     friend Lanes log(Lanes a) {
-        constexpr std::int64_t unit = std::int64_t{1} << 52, mantissa = unit - 1;
-        // Bits of sqrt(1/2): what lies above has the exponent of the power of two that is nearest.
-        constexpr std::int64_t low = 0x3fe6a09e667f3bcd;
+        constexpr Bit unit = Bit{1} << Format::mantissa_bits, mantissa = unit - 1;
+        // What lies above has the exponent of the power of two that is nearest.
+        constexpr Bit low = Format::root_of_half;
         const Bits bits = std::bit_cast<Bits>(a.v);
         const Bits from_low = bits - low;
-        const Bits exponent = from_low >> 52;
+        const Bits exponent = from_low >> Format::mantissa_bits;
         const Bits scaled = (from_low & mantissa) + low;
         const Lanes m = std::bit_cast<Vector>(scaled);
-        // An integer as a double without an instruction for it: in the low bits of 1.5 * 2^52.
-        constexpr double shift = 6755399441055744.0;
-        const Bits shifted = exponent + std::bit_cast<std::int64_t>(shift);
-        const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - shift;
+        const Bits shifted = exponent + std::bit_cast<Bit>(whole_number_shift);
+        const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - whole_number_shift;
         const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
-        Lanes tail = 1.0 / 21.0;
-        for (const double odd : {19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0})
-            tail = tail * z + 1.0 / odd;
-        constexpr double ln2_high = 0.693147180369123816490, ln2_low = 1.90821492927058770002e-10;
-        const Lanes result = k * ln2_high + (2.0 * s + (2.0 * s * z * tail + k * ln2_low));
-        const Bits is_normal = (bits >= unit) & (bits < 2047 * unit);
+        Lanes tail = 1.0 / Format::log_terms[0];
+        for (std::size_t i = 1; i < Format::log_terms.size(); ++i)
+            tail = tail * z + 1.0 / Format::log_terms[i];
+        const Lanes result =
+            k * Format::ln2_high + (2.0 * s + (2.0 * s * z * tail + k * Format::ln2_low));
+        const Bits is_normal = (bits >= unit) & (bits < (2 * Format::bias + 1) * unit);
         return is_normal ? result.v : Lanes(std::nan("")).v;
     }
 
-    /// Within 1e-15 of the value, between -700 and 700; what is not a number stays so. By the
-    /// series of e^r, |r| < ln(2)/2.
+    /// Within 1e-15 of the value, between -700 and 700 (floats: 3e-7, -87 and 87); what is not a
+    /// number stays so. By the series of e^r, |r| < ln(2)/2.
     friend Lanes exp(Lanes a) {
-        constexpr double shift = 6755399441055744.0, ln2_high = 0.693147180369123816490,
-                         ln2_low = 1.90821492927058770002e-10, per_ln2 = 1.4426950408889634;
-        const Lanes bounded = max(min(a, 700.0), -700.0);
-        const Lanes shifted = bounded * per_ln2 + shift, k = shifted - shift;
-        const Lanes r = (bounded - k * ln2_high) - k * ln2_low;
-        Lanes sum = 1.0 / 6227020800.0;  // 13!
-        for (const double factorial : {479001600.0, 39916800.0, 3628800.0, 362880.0, 40320.0,
-                                       5040.0, 720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0})
-            sum = sum * r + 1.0 / factorial;
-        const Bits power = (std::bit_cast<Bits>(shifted.v) + 1023) << 52;
+        constexpr double per_ln2 = 1.4426950408889634;
+        const Lanes bounded = max(min(a, Format::largest_exponent), -Format::largest_exponent);
+        const Lanes shifted = bounded * per_ln2 + whole_number_shift,
+                    k = shifted - whole_number_shift;
+        const Lanes r = (bounded - k * Format::ln2_high) - k * Format::ln2_low;
+        Lanes sum = inverse_factorials[Format::exp_degree];
+        for (std::size_t i = Format::exp_degree; i-- > 0;) sum = sum * r + inverse_factorials[i];
+        const Bits power = (std::bit_cast<Bits>(shifted.v) + Format::bias) << Format::mantissa_bits;
         return sum * Lanes(std::bit_cast<Vector>(power));
     }
 
@@ -120,37 +170,52 @@ struct Lanes {
     template <class Function>
     Lanes each(Function f) const {
         Vector result;
-        for (int l = 0; l < num_lanes; ++l) result[l] = f(v[l]);
+        for (int l = 0; l < size; ++l) result[l] = f(v[l]);
         return result;
     }
 
   private:
-    using Aliasing = Vector __attribute__((may_alias));
+    /// A whole number added to it stands in its low bits: so it turns into one of the other kind
+    /// without an instruction for that.
+    static constexpr Number whole_number_shift =
+        static_cast<Number>(std::int64_t{3} << (Format::mantissa_bits - 1));
+    static constexpr std::array<double, Format::exp_degree + 1> inverse_factorials = [] {
+        std::array<double, Format::exp_degree + 1> all{1.0};
+        double factorial = 1.0;
+        for (std::size_t i = 1; i < all.size(); ++i) {
+            factorial *= static_cast<double>(i);
+            all[i] = 1.0 / factorial;
+        }
+        return all;
+    }();
 };
 
-/// The law's response: by its formulas if these are templates, else lane by lane.
-template <class Law>
-LawResponse<Lanes> response_of_lanes(const Law& law, const LinkStrain<Lanes>& s, double J0) {
+/// The law's response: by its formulas if these are templates, else lane by lane, in doubles.
+template <class Law, class Number>
+LawResponse<Lanes<Number>> response_of_lanes(const Law& law, const LinkStrain<Lanes<Number>>& s,
+                                             double J0) {
     if constexpr (requires { law.response(s, J0); }) {
         return law.response(s, J0);
     } else {
-        LawResponse<Lanes> r;
-        for (int l = 0; l < num_lanes; ++l) {
+        LawResponse<Lanes<Number>> r;
+        for (int l = 0; l < num_lanes<Number>; ++l) {
             const LawResponse<double> one =
                 law.response(LinkStrain<double>{s.a.v[l], s.b.v[l], s.J.v[l], s.f.v[l]}, J0);
-            r.w.v[l] = one.w;
-            r.w_a.v[l] = one.w_a;
-            r.w_b.v[l] = one.w_b;
-            r.w_J.v[l] = one.w_J;
-            r.w_f.v[l] = one.w_f;
+            r.w.v[l] = static_cast<Number>(one.w);
+            r.w_a.v[l] = static_cast<Number>(one.w_a);
+            r.w_b.v[l] = static_cast<Number>(one.w_b);
+            r.w_J.v[l] = static_cast<Number>(one.w_J);
+            r.w_f.v[l] = static_cast<Number>(one.w_f);
         }
         return r;
     }
 }
 
 /// Vectors in space, one a lane.
+template <class Number>
 struct Lanes3 {
-    Lanes x, y, z;
+    using Scalar = Lanes<Number>;
+    Scalar x, y, z;
 
     friend Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
         return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -158,9 +223,9 @@ struct Lanes3 {
     friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
-    friend Lanes3 operator*(Lanes s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+    friend Lanes3 operator*(Scalar s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
     // Sums in the order in which Eigen has them, so that an element at rest is so to the bit.
-    friend Lanes dot(const Lanes3& a, const Lanes3& b) {
+    friend Scalar dot(const Lanes3& a, const Lanes3& b) {
         return a.x * b.x + (a.y * b.y + a.z * b.z);
     }
     friend Lanes3 cross(const Lanes3& a, const Lanes3& b) {
@@ -168,67 +233,150 @@ struct Lanes3 {
     }
 };
 
-using Quad = double __attribute__((vector_size(32)));
-
-/// Rows of a 4 x 4 matrix become its columns.
-inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
-    const Quad ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-               ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7),
-               cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6),
-               cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-    b = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-    c = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-    d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+/// Lane l of the result is lane pick(l) of a followed by b.
+template <auto pick, class Vector>
+Vector shuffle(Vector a, Vector b) {
+    return [&]<int... l>(std::integer_sequence<int, l...>) {
+        return __builtin_shufflevector(a, b, pick(l)...);
+    }
+    (std::make_integer_sequence<int, sizeof(Vector) / sizeof(a[0])>());
 }
 
-/// What `nodes` has at the places of one corner of the elements, a lane each.
-inline Lanes3 gather(const LocalVector* nodes, const std::uint16_t* places) {
-    const auto quads = [&](int first) {
-        std::array<Quad, 4> q;
-        for (int l = 0; l < 4; ++l)
-            q[static_cast<std::size_t>(l)] =
-                *reinterpret_cast<const Quad*>(nodes[places[first + l]].data());
-        transpose(q[0], q[1], q[2], q[3]);
-        return q;
+/// Rows of 4 x 4 matrices, which lie side by side in the vectors, become their columns: within each
+/// four lanes (a0 a1 a2 a3) becomes (a0 b0 c0 d0) and so on.
+template <class Number>
+[[gnu::always_inline]] inline void transpose(Lanes<Number>& a, Lanes<Number>& b, Lanes<Number>& c,
+                                             Lanes<Number>& d) {
+    constexpr int n = num_lanes<Number>;
+    // The steps that processors have one instruction for.
+    constexpr auto halves = [](int l) { return l % 4 < 2 ? l : n + l - 2; };
+    constexpr auto other_halves = [](int l) { return l % 4 < 2 ? l + 2 : n + l; };
+    if constexpr (sizeof(Number) == 8) {
+        constexpr auto even = [](int l) { return l % 2 == 0 ? l : n + l - 1; };
+        constexpr auto odd = [](int l) { return l % 2 == 0 ? l + 1 : n + l; };
+        const auto ab_even = shuffle<even>(a.v, b.v), ab_odd = shuffle<odd>(a.v, b.v),
+                   cd_even = shuffle<even>(c.v, d.v), cd_odd = shuffle<odd>(c.v, d.v);
+        a = shuffle<halves>(ab_even, cd_even);
+        b = shuffle<halves>(ab_odd, cd_odd);
+        c = shuffle<other_halves>(ab_even, cd_even);
+        d = shuffle<other_halves>(ab_odd, cd_odd);
+    } else {
+        constexpr auto low = [](int l) { return l - l % 4 + l % 4 / 2 + l % 2 * n; };
+        constexpr auto high = [](int l) { return l - l % 4 + l % 4 / 2 + l % 2 * n + 2; };
+        const auto ab_low = shuffle<low>(a.v, b.v), ab_high = shuffle<high>(a.v, b.v),
+                   cd_low = shuffle<low>(c.v, d.v), cd_high = shuffle<high>(c.v, d.v);
+        a = shuffle<halves>(ab_low, cd_low);
+        b = shuffle<other_halves>(ab_low, cd_low);
+        c = shuffle<halves>(ab_high, cd_high);
+        d = shuffle<other_halves>(ab_high, cd_high);
+    }
+}
+
+using Quad = double __attribute__((vector_size(32)));  // a LocalVector
+/// As many quads as there is room for: those of the elements i and, if two, i + 4.
+using Doubles = Lanes<double>::Vector;
+using HalfFloats = float __attribute__((vector_size(vector_bytes / 2)));
+
+inline Doubles load_quads(const LocalVector* nodes, const std::uint16_t* places) {
+    const auto quad = [&](int l) {
+        return *reinterpret_cast<const Quad*>(nodes[places[l]].data());
     };
-    const auto a = quads(0);
 #ifdef __AVX512F__
-    const auto b = quads(4);
-    const auto join = [](Quad low, Quad high) {
-        return Lanes(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7));
-    };
-    return {join(a[0], b[0]), join(a[1], b[1]), join(a[2], b[2])};
+    return __builtin_shufflevector(quad(0), quad(4), 0, 1, 2, 3, 4, 5, 6, 7);
 #else
-    return {a[0], a[1], a[2]};
+    return quad(0);
 #endif
 }
 
-/// Adds the elements' vectors, by corner, to what `nodes` has at their places, element by element
-/// in fours, corner by corner within: elements may share nodes, and sums must not depend on how
-/// many lanes there are.
-template <std::size_t num_corners>
-[[gnu::always_inline]] inline void scatter_add(const std::array<Lanes3, num_corners>& f,
-                                               LocalVector* nodes,
-                                               const std::uint16_t (&places)[num_corners][8],
-                                               std::size_t first) {
-    const auto add_four = [&](Quad x, Quad y, Quad z, const std::uint16_t* at) {
-        Quad w{};
-        transpose(x, y, z, w);
-        const Quad all[] = {x, y, z, w};
-        for (int l = 0; l < 4; ++l) *reinterpret_cast<Quad*>(nodes[at[l]].data()) += all[l];
-    };
+inline Lanes<float> joined(Doubles low, Doubles high) {
+    const auto a = __builtin_convertvector(low, HalfFloats),
+               b = __builtin_convertvector(high, HalfFloats);
 #ifdef __AVX512F__
-    const auto low = [](Lanes a) { return __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3); };
-    const auto high = [](Lanes a) { return __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7); };
-    for (std::size_t k = 0; k < num_corners; ++k)
-        add_four(low(f[k].x), low(f[k].y), low(f[k].z), places[k] + first);
-    for (std::size_t k = 0; k < num_corners; ++k)
-        add_four(high(f[k].x), high(f[k].y), high(f[k].z), places[k] + first + 4);
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 #else
-    for (std::size_t k = 0; k < num_corners; ++k)
-        add_four(f[k].x.v, f[k].y.v, f[k].z.v, places[k] + first);
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 #endif
+}
+
+/// Lanes 4q to 4q + 3.
+template <std::size_t q>
+Quad quad_of(Lanes<double> a) {
+    return __builtin_shufflevector(a.v, a.v, 4 * q, 4 * q + 1, 4 * q + 2, 4 * q + 3);
+}
+template <std::size_t q>
+Quad quad_of(Lanes<float> a) {
+    const auto four = __builtin_shufflevector(a.v, a.v, 4 * q, 4 * q + 1, 4 * q + 2, 4 * q + 3);
+#ifdef __AVX2__
+    return _mm256_cvtps_pd(four);  // which GCC 12 makes six instructions of by itself
+#else
+    return __builtin_convertvector(four, Quad);
+#endif
+}
+
+/// The edges from corner 0 of the elements to each of the others, by the places of corners in
+/// `nodes`. Differences are those of doubles, whatever kind of number comes out: a body far from
+/// the origin is as good as one near it. Like scatter_add not for each law anew, which would take
+/// much longer to compile than it gains.
+template <class Number, std::size_t num_corners, std::size_t size>
+std::array<Lanes3<Number>, num_corners - 1> gather_edges(
+    const LocalVector* nodes, const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+    constexpr std::size_t num_parts = sizeof(double) / sizeof(Number), part = num_lanes<double>;
+    // Row p has the elements p, p + 4, p + 8, ...
+    Doubles origins[4][num_parts];
+    for (std::size_t p = 0; p < 4; ++p)
+        for (std::size_t i = 0; i < num_parts; ++i)
+            origins[p][i] = load_quads(nodes, places[0] + first + p + i * part);
+    std::array<Lanes3<Number>, num_corners - 1> edges;
+#pragma GCC unroll 7
+    for (std::size_t k = 1; k < num_corners; ++k) {
+        const auto edge = [&](std::size_t p, std::size_t i) -> Doubles {
+            return load_quads(nodes, places[k] + first + p + i * part) - origins[p][i];
+        };
+        Lanes<Number> rows[4];
+        for (std::size_t p = 0; p < 4; ++p)
+            if constexpr (num_parts == 1)
+                rows[p] = edge(p, 0);
+            else
+                rows[p] = joined(edge(p, 0), edge(p, 1));
+        transpose(rows[0], rows[1], rows[2], rows[3]);
+        edges[k - 1] = {rows[0], rows[1], rows[2]};
+    }
+    return edges;
+}
+
+/// Adds the elements' vectors, given for all corners but corner 0, to what `nodes` has at their
+/// places; corner 0 gets minus their sum in doubles, so that those of an element add up to nothing.
+/// Element by element in fours, corner by corner within: elements may share nodes, and sums must
+/// not depend on how many lanes there are.
+template <class Number, std::size_t num_corners, std::size_t size>
+void scatter_add(const std::array<Lanes3<Number>, num_corners - 1>& f, LocalVector* nodes,
+                 const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+    Lanes<Number> rows[num_corners][4];  // of those but corner 0
+#pragma GCC unroll 7
+    for (std::size_t k = 1; k < num_corners; ++k) {
+        const auto& [x, y, z] = f[k - 1];
+        rows[k][0] = x, rows[k][1] = y, rows[k][2] = z, rows[k][3] = 0.0;
+        transpose(rows[k][0], rows[k][1], rows[k][2], rows[k][3]);
+    }
+    const auto add_four = [&]<std::size_t q>(std::integral_constant<std::size_t, q>) {
+        Quad all[num_corners][4];
+#pragma GCC unroll 4
+        for (std::size_t p = 0; p < 4; ++p) {
+            Quad sum = all[1][p] = quad_of<q>(rows[1][p]);
+#pragma GCC unroll 7
+            for (std::size_t k = 2; k < num_corners; ++k) sum += all[k][p] = quad_of<q>(rows[k][p]);
+            all[0][p] = -sum;
+        }
+#pragma GCC unroll 8
+        for (std::size_t k = 0; k < num_corners; ++k)
+#pragma GCC unroll 4
+            for (std::size_t p = 0; p < 4; ++p)
+                *reinterpret_cast<Quad*>(nodes[places[k][first + 4 * q + p]].data()) += all[k][p];
+    };
+    [&]<std::size_t... q>(std::index_sequence<q...>) {
+        (add_four(std::integral_constant<std::size_t, q>()), ...);
+    }
+    (std::make_index_sequence<num_lanes<Number> / 4>());
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -197,9 +197,10 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
     return {std::move(built.mesh), std::move(built.warnings), {}};
 }
 
-physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
-                                       const topology::Mesh& mesh, const CellVectors& cell_vectors,
+physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
+                                       const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings) {
+    const std::vector<MaterialSpec>& specs = scenario.materials;
     std::set<int> present;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
         if (mesh.is_alive(topology::ElementId(i)))
@@ -229,6 +230,7 @@ physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
     for (const int region : left)
         table.of_region[region] = static_cast<std::size_t>(rest - specs.begin());
     table.fibres = build_fibres(specs, table, mesh, cell_vectors);
+    table.precision = scenario.dynamics.precision;
     return table;
 }
 

@@ -30,12 +30,12 @@ struct SourceMesh {
 /// Throws InputError with every problem found, each line naming the file.
 SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials);
 
-/// Which region has which material, and which element fibres of which direction. Warns of regions
-/// that the mesh does not have.
+/// Which region has which material, which element fibres of which direction, and the precision of
+/// the forces. Warns of regions that the mesh does not have.
 /// Throws InputError for a region of the mesh without material, and for an element whose material
 /// has fibres and whose vector in the file has no direction.
-physics::MaterialTable build_materials(const std::vector<MaterialSpec>& specs,
-                                       const topology::Mesh& mesh, const CellVectors& cell_vectors,
+physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
+                                       const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);
 
 /// Gravity, damping, supports and loads. Throws InputError for empty selections.

@@ -15,6 +15,7 @@
 
 #include "io/frame.h"
 #include "physics/material.h"
+#include "physics/precision.h"
 #include "sim/material_catalog.h"
 #include "topology/cell_kind.h"
 #include "topology/types.h"
@@ -68,6 +69,8 @@ struct DynamicsSpec {
     double damping = 0.0;  ///< mass-proportional, 1/s
     Vec3 gravity = Vec3::Zero();
     std::uint64_t seed = 1;
+    /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
+    physics::Precision precision = physics::Precision::double_precision;
 };
 
 /// A place and an extent along the axes.

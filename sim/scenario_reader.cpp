@@ -25,9 +25,10 @@ constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
                                                 topology::CellKind::hexahedron};
 constexpr Keys dynamics_keys[] = {"mode",   "integrator", "end_time", "time_step", "steps",
-                                  "safety", "damping",    "gravity",  "seed"};
+                                  "safety", "damping",    "gravity",  "seed",      "precision"};
 constexpr Keys mode_names[] = {"dynamic", "static"};
 constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
+constexpr Keys precision_names[] = {"double", "single"};
 constexpr Keys output_keys[] = {"interval", "fields", "compression", "checkpoint_interval"};
 constexpr Keys expectation_keys[] = {"min", "max"};
 
@@ -95,6 +96,28 @@ void check_solver(const TableReader& dynamics, const DynamicsSpec& spec) {
                          "'dynamics.safety' has no effect with integrator = \"implicit-euler\"");
 }
 
+/// Single precision is for the forces of explicit steps, of the methods that have such.
+void check_precision(const TableReader& dynamics, const DynamicsSpec& spec,
+                     std::span<const MaterialSpec> materials) {
+    if (spec.precision != physics::Precision::single_precision) return;
+    if (spec.mode == Mode::statics)
+        dynamics.error("precision",
+                       "\"single\" is not for mode = \"static\", which computes in double "
+                       "precision throughout: leave it out");
+    else if (spec.integrator == TimeIntegrator::implicit_euler)
+        dynamics.error("precision",
+                       "\"single\" is not for integrator = \"implicit-euler\", which computes in "
+                       "double precision throughout: leave it out");
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].method == Method::mass_spring)
+            dynamics.error("precision",
+                           "\"single\" is not for method = \"mass-spring\" of "
+                           "material[" +
+                               std::to_string(i) +
+                               "], which has forces in double precision only: leave it "
+                               "out, or use method = \"heml\"");
+}
+
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     Scenario scenario;
     scenario.name = file.stem().string();
@@ -102,7 +125,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.title = root.text("title", scenario.name);
     scenario.mesh = read_mesh_spec(root, scenario.folder);
     scenario.materials = read_materials(root, scenario.mesh);
-    scenario.dynamics = read_dynamics(root);
+    scenario.dynamics = read_dynamics(root, scenario.materials);
     const double end_time = scenario.dynamics.end_time;
     scenario.constraints = read_constraints(root, end_time);
     scenario.loads = read_loads(root, end_time);
@@ -148,7 +171,7 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     return spec;
 }
 
-DynamicsSpec read_dynamics(const TableReader& root) {
+DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials) {
     DynamicsSpec spec;
     root.require("dynamics", "add a section [dynamics] with an end_time");
     const auto dynamics = root.table("dynamics", {dynamics_keys});
@@ -175,7 +198,10 @@ DynamicsSpec read_dynamics(const TableReader& root) {
     if (dynamics->has("steps"))
         spec.steps =
             static_cast<int>(dynamics->integer("steps", 1, {.low = 1, .high = most_load_steps}));
+    if (const auto precision = dynamics->choice("precision", {precision_names}))
+        spec.precision = static_cast<physics::Precision>(*precision);
     check_solver(*dynamics, spec);
+    check_precision(*dynamics, spec, materials);
     return spec;
 }
 

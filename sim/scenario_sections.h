@@ -16,7 +16,8 @@ namespace incise::sim {
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
 /// @param mesh  that is made of them
 std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh);
-DynamicsSpec read_dynamics(const TableReader& root);
+/// @param materials  of the body, as not all methods have forces of every precision
+DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials);
 /// @param end_time  later keys are warned of; not above 0 if it is not known
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time);
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);

@@ -91,7 +91,7 @@ Simulation::Simulation(const Scenario& scenario, SourceMesh source)
     : scenario_(scenario),
       warnings_(std::move(source.warnings)),
       mesh_(std::move(source.mesh)),
-      model_(mesh_, build_materials(scenario.materials, mesh_, source.cell_vectors, warnings_),
+      model_(mesh_, build_materials(scenario, mesh_, source.cell_vectors, warnings_),
              build_surroundings(scenario, mesh_)),
       integrator_(make_integrator(scenario.dynamics)),
       ledger_(model_),

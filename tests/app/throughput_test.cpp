@@ -27,6 +27,8 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     for (const StepRate& rate : throughput.steps) {
         EXPECT_GT(rate.forces, 0.0);
         EXPECT_GE(rate.step, rate.forces);
+        EXPECT_GT(rate.single_forces, 0.0);
+        EXPECT_GE(rate.single_step, rate.single_forces);
         EXPECT_NEAR(rate.step * 1e-9 * static_cast<double>(rate.elements) * rate.steps_per_second,
                     1.0, 1e-9);
         EXPECT_EQ(rate.reference.has_value(), rate.num_threads == 1);

@@ -48,11 +48,13 @@ Surroundings surroundings(const Selections& selected) {
     return s;
 }
 
-/// A body that is edited at random while it moves, and checked after each edit.
+/// A body that is edited at random while it moves, and checked after each edit. Every other one has
+/// forces in single precision.
 class EditedBody {
   public:
     EditedBody(const topology::MeshData& data, std::uint64_t seed)
-        : table_(table_for(data)),
+        : table_(table_for(
+              data, seed % 2 == 0 ? Precision::single_precision : Precision::double_precision)),
           mesh_(Mesh::build(with_regions(data, table_.materials.size(), seed)).mesh),
           selections_(selections(mesh_)),
           descent_(mesh_, selections_),

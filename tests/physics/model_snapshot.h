@@ -43,10 +43,18 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.stable_step, b.stable_step);
 }
 
-/// All materials for the cells of the mesh; every other law with viscosity, by the two rules.
-inline MaterialTable table_for(const topology::MeshData& data) {
-    if (data.kinds.front() == topology::CellKind::hexahedron) return table_of_hybrid_springs();
-    MaterialTable table = table_of_all_materials(data.num_cells());
+/// All materials for the cells of the mesh that there are in the precision; every other law with
+/// viscosity, by the two rules.
+inline MaterialTable table_for(const topology::MeshData& data,
+                               Precision precision = Precision::double_precision) {
+    const bool are_hexahedra = data.kinds.front() == topology::CellKind::hexahedron;
+    MaterialTable table =
+        are_hexahedra ? table_of_hybrid_springs() : table_of_all_materials(data.num_cells());
+    table.precision = precision;
+    if (precision == Precision::single_precision)
+        for (Material& material : table.materials)
+            if (std::holds_alternative<MassSprings>(material.method))
+                material.method = HyperElasticLinks{soft_law};
     for (std::size_t i = 0; i < table.materials.size(); i += 2)
         if (auto* links = std::get_if<HyperElasticLinks>(&table.materials[i].method)) {
             links->prony = {{0.3, 0.01}, {0.2, 1.0}};

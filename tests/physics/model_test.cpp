@@ -145,6 +145,14 @@ TEST(Model, RefusesCellsWithoutAForceLaw) {
         }
 }
 
+TEST(Model, RefusesMassSpringsInSinglePrecision) {
+    MaterialTable table = table_of_one_material(MassSprings{1e4});
+    table.precision = Precision::single_precision;
+    const Mesh mesh = bar();
+    EXPECT_TRUE(has(message_of([&] { Model(mesh, table); }),
+                    "mass springs have no forces in single precision"));
+}
+
 TEST(Model, StopsAtANonFiniteStateAndNamesAnElement) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1e3, 1e3}));

@@ -192,6 +192,30 @@ TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
     EXPECT_EQ(num_files, 21u + 4u + 2u);  // frames; two indexes, history, edits; checkpoints
 }
 
+TEST(Simulation, InSinglePrecisionEndsNearTheOneInDoubles) {
+    for (const std::string method :
+         {"law = \"saint-venant-kirchhoff\"", "prony = [{ alpha = 0.3, tau = 0.05 }]"}) {
+        SCOPED_TRACE(method);
+        std::string body = soft_cube;
+        body.replace(body.find("[[material]]"), 12, "[[material]]\n" + method);
+        const auto run_in = [&](const std::string& precision) {
+            auto simulation = std::make_unique<Simulation>(
+                scenario_of(body + dynamics(0.2, "gravity = [0, 0, -9.81]\nprecision = \"" +
+                                                     precision + "\"")));
+            run(*simulation);
+            return simulation;
+        };
+        const auto expected = run_in("double"), single = run_in("single");
+        EXPECT_NE(expected->model().positions()[40], single->model().positions()[40]);
+        const double moved = expected->model().max_displacement();
+        EXPECT_GT(moved, 0.005);
+        for (std::size_t n = 0; n < expected->mesh().node_capacity(); ++n)
+            EXPECT_LE((expected->model().positions()[n] - single->model().positions()[n]).norm(),
+                      1e-5 * moved);
+        EXPECT_NEAR(single->ledger().energy_error(), expected->ledger().energy_error(), 1e-5);
+    }
+}
+
 TEST(Ledger, AccountsForEveryEdit) {
     const Scenario scenario =
         scenario_of(soft_cube + two_tools + dynamics(0.2, "gravity = [0, 0, -9.81]"));

@@ -209,6 +209,21 @@ TEST(SolverKeys, ThatDoNotGoTogetherAreToldOf) {
         EXPECT_EQ(with_mode.errors, std::vector<std::string>{});
         EXPECT_TRUE(has(with_mode.warnings, "has no effect with mode = \"static\"")) << line;
     }
+    const std::string single = "\nprecision = \"single\"";
+    EXPECT_EQ(report(single).errors, std::vector<std::string>{});
+    EXPECT_TRUE(has(report("precision = \"float\"").errors, "'dynamics.precision'"));
+    EXPECT_TRUE(has(report("mode = \"static\"" + single).errors,
+                    "'dynamics.precision': \"single\" is not for mode = \"static\""));
+    EXPECT_TRUE(has(report("integrator = \"implicit-euler\"\ntime_step = 0.1" + single).errors,
+                    "'dynamics.precision': \"single\" is not for integrator = \"implicit-euler\""));
+    std::string springs = soft_cube + dynamics(0.2, single);
+    springs.replace(springs.find("[[material]]"), 12, "[[material]]\nmethod = \"mass-spring\"");
+    bool refuses_springs = false;
+    for (const std::string& line : RunFolder().report(springs).errors)
+        refuses_springs |= line.find(
+                               "\"single\" is not for method = \"mass-spring\" of "
+                               "material[0]") != std::string::npos;
+    EXPECT_TRUE(refuses_springs);
     const auto implicit = report("integrator = \"implicit-euler\"\ntime_step = 0.1\nsafety = 0.5");
     EXPECT_EQ(implicit.errors, std::vector<std::string>{});
     EXPECT_TRUE(has(implicit.warnings, "'dynamics.safety' has no effect"));

@@ -77,7 +77,8 @@ TEST(SplittingBlade, OfTheSameScenarioEndsInTheSameBits) {
 }
 
 /// Enough elements for many blocks and ranges of nodes.
-void expect_the_same_bits_for_any_number_of_threads(const std::string& more_of_material) {
+void expect_the_same_bits_for_any_number_of_threads(const std::string& more_of_material,
+                                                    const std::string& precision = "double") {
     const std::string body = R"(
 [mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [16, 16, 16] }
@@ -92,7 +93,8 @@ young = 1000
 poisson = 0.4
 )";
     const Scenario scenario =
-        scenario_of(body + more_of_material + slanting_blade + dynamics(0.06, gravity));
+        scenario_of(body + more_of_material + slanting_blade +
+                    dynamics(0.06, gravity + "precision = \"" + precision + "\"\n"));
     const auto run_on = [&](int num_threads) {
         auto simulation = std::make_unique<Simulation>(scenario);
         simulation->set_num_threads(num_threads);
@@ -125,6 +127,10 @@ TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreads) {
 
 TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreadsInViscousTissue) {
     expect_the_same_bits_for_any_number_of_threads("prony = [{ alpha = 0.3, tau = 0.05 }]\n");
+}
+
+TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreadsInSinglePrecision) {
+    expect_the_same_bits_for_any_number_of_threads("", "single");
 }
 
 // Both are in the body at once, and divide elements that the other is in.

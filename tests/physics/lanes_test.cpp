@@ -1,0 +1,67 @@
+// The functions of lanes against those of the C library.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#define INCISE_PROCESSOR lanes_under_test
+#include "physics/lanes.h"
+
+#include <gtest/gtest.h>
+
+#include "support/mesh_families.h"
+
+namespace incise::physics {
+namespace {
+
+using lanes_under_test::Lanes;
+
+template <class Number>
+class LanesOf : public testing::Test {};
+using Numbers = testing::Types<double, float>;
+TYPED_TEST_SUITE(LanesOf, Numbers, );
+
+/// Calls check(lanes, l) for each lane l of many numbers whose logarithms lie between the bounds.
+template <class Number, class Check>
+void for_many_lanes(double lowest_log, double highest_log, Check check) {
+    test::Random random(1);
+    for (int i = 0; i < 2000; ++i) {
+        Lanes<Number> x = 0.0;
+        for (int l = 0; l < Lanes<Number>::size; ++l)
+            x.v[l] = static_cast<Number>(std::exp(random.uniform(lowest_log, highest_log)));
+        for (int l = 0; l < Lanes<Number>::size; ++l) check(x, l);
+    }
+}
+
+TYPED_TEST(LanesOf, HaveTheFunctionsThatTheyState) {
+    using Number = TypeParam;
+    using L = Lanes<Number>;
+    constexpr bool is_single = sizeof(Number) == sizeof(float);
+    constexpr double widest = is_single ? 80.0 : 600.0, of_root = is_single ? 3e-7 : 4e-16,
+                     of_others = is_single ? 3e-7 : 1e-15;
+    const auto check = [&](const L& x, int l) {
+        const double at = x.v[l], root = 1.0 / std::sqrt(at), ln = std::log(at);
+        EXPECT_NEAR(reciprocal_sqrt(x).v[l], root, of_root * root) << at;
+        EXPECT_NEAR(log(x).v[l], ln, of_others * std::max(1.0, std::abs(ln))) << at;
+    };
+    for_many_lanes<Number>(-widest, widest, check);
+    for_many_lanes<Number>(-0.1, 0.1, check);
+    for (const double sign : {1.0, -1.0})
+        for_many_lanes<Number>(
+            -10.0, std::log(L::Format::largest_exponent), [&](const L& x, int l) {
+                const double at = sign * x.v[l];
+                EXPECT_NEAR(exp(sign * x).v[l], std::exp(at), of_others * std::exp(at)) << at;
+            });
+    // A relative error of the logarithm grows with the exponent.
+    for_many_lanes<Number>(-1.0, 1.0, [&](const L& x, int l) {
+        const double power = std::pow(double{x.v[l]}, -4.0 / 3.0);
+        EXPECT_NEAR(pow(x, -4.0 / 3.0).v[l], power, 4.0 * of_others * power);
+    });
+}
+
+TYPED_TEST(LanesOf, PassOnWhatIsNotANumber) {
+    using L = Lanes<TypeParam>;
+    for (const double x : {0.0, -1.0, std::nan(""), double{INFINITY}})
+        EXPECT_TRUE(std::isnan(log(L(x)).v[0])) << x;
+    EXPECT_TRUE(std::isnan(exp(L(std::nan(""))).v[0]));
+    EXPECT_TRUE(std::isfinite(reciprocal_sqrt(L(0.0)).v[0]));
+}
+
+}  // namespace
+}  // namespace incise::physics
