@@ -246,7 +246,8 @@ struct MovingCut {
 };
 
 TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
-    for (const double strength : {0.3, 1.0})
+    static constexpr std::array strengths{1.0, 0.3};
+    for (const double strength : test::some_of(strengths))
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             Random random(seed);
             const auto data = test::jittered_cube(6, 0.2, seed);
@@ -294,9 +295,10 @@ Stroke way_of_edge(const std::vector<std::array<double, 2>>& corners, double par
 // At round places the edge comes to rest just where it crosses edges of the mesh, and rounding
 // takes the new nodes to one or the other side of it.
 TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
-    constexpr std::array places{0.41, 0.35, 0.5};
-    for (const int n : {4, 8})
-        for (const double at : std::span(places).first(test::num_cases(3)))
+    static constexpr std::array numbers_of_bricks{4, 8};
+    static constexpr std::array places{0.41, 0.35, 0.5};
+    for (const int n : test::some_of(numbers_of_bricks))
+        for (const double at : test::some_of(places))
             for (const double part : {0.05, 0.1})
                 for (const double snap : {0.0, 0.25, 0.6})
                     for (const bool along_x : {true, false}) {

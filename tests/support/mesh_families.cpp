@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -177,9 +178,11 @@ const std::vector<MeshFamily>& mesh_families() {
 }
 
 std::vector<const MeshFamily*> families_of(CellKind kind) {
+    constexpr std::size_t most_cells = 400;
     std::vector<const MeshFamily*> families;
     for (const MeshFamily& family : mesh_families())
-        if (std::all_of(family.data.kinds.begin(), family.data.kinds.end(),
+        if (!(is_sanitized && family.data.num_cells() > most_cells) &&
+            std::all_of(family.data.kinds.begin(), family.data.kinds.end(),
                         [&](CellKind of_cell) { return of_cell == kind; }))
             families.push_back(&family);
     return families;

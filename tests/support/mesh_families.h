@@ -23,7 +23,7 @@ struct MeshFamily {
 /// tetrahedra glued together.
 const std::vector<MeshFamily>& mesh_families();
 
-/// Those of one kind of cell only.
+/// Those of one kind of cell only; under sanitizers, of a few hundred cells only.
 std::vector<const MeshFamily*> families_of(topology::CellKind kind);
 std::vector<const MeshFamily*> tetrahedral_families();
 
