@@ -7,7 +7,6 @@
 #include "app/verbs.h"
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
-#include "sim/run_writer.h"
 #include "sim/scenario_reader.h"
 #include "sim/simulation.h"
 #include "topology/error.h"

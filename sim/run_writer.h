@@ -2,27 +2,19 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <future>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "io/line_file.h"
 #include "io/output_folder.h"
 #include "io/series.h"
 #include "sim/checkpoint.h"
+#include "sim/measured_quantities.h"
 #include "sim/simulation.h"
 
 namespace incise::sim {
-
-/// Values by their names.
-using Quantities = std::vector<std::pair<std::string, double>>;
-
-/// The quantities of a moment by their names in history.csv, in its order.
-Quantities history_row(const Simulation& simulation);
 
 /// How a run ended.
 struct Outcome {
@@ -30,20 +22,6 @@ struct Outcome {
     std::string message;              ///< what went wrong
     double wall_time = 0.0;           ///< s
 };
-
-/// The quantities of summary.json that an [expect] can name: the last history row and totals over
-/// the run.
-Quantities summary_quantities(const Simulation& simulation);
-
-/// What is not as the scenario's [expect] says; each a sentence. Its quantities must exist, which
-/// the scenario reader sees to.
-std::vector<std::string> failed_expectations(const Scenario& scenario,
-                                             const Quantities& quantities);
-
-/// The quantities of summary.json, if the run of this scenario in `folder` is finished.
-/// Throws InputError, naming file, entry and remedy, if there is a summary that no run has written.
-std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
-                                              const Scenario& scenario);
 
 /// Frames are written by a thread of their own while the simulation goes on, one at a time: the
 /// next waits for it, as does a checkpoint and the end. Everything else is on disk, readable, when
