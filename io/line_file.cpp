@@ -5,43 +5,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 #include <cerrno>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "io/atomic_file.h"
-#include "io/checked_file.h"
 #include "topology/error.h"
 
 namespace incise::io {
 
-void require_lines(const std::filesystem::path& path, const LinesWritten& lines) {
-    const auto refuse = [&](const char* why) {
-        throw InputError(path.string() + ": has " + why +
-                         " since the run was stopped; put the former one back, or begin anew "
-                         "without --resume");
-    };
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) refuse("gone");
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 1 << 16> part;
-    std::uint64_t sum = 0;
-    for (std::uint64_t left = lines.size; left > 0;) {
-        file.read(part.data(),
-                  static_cast<std::streamsize>(std::min<std::uint64_t>(left, part.size())));
-        const auto count = static_cast<std::size_t>(file.gcount());
-        if (count == 0) refuse("become shorter");
-        sum = checksum({part.data(), count}, sum);
-        left -= count;
-    }
-    if (sum != lines.checksum) refuse("been changed");
-}
-
-LineFile::LineFile(std::filesystem::path path, const LinesWritten& keep)
+LineFile::LineFile(std::filesystem::path path, const BytesWritten& keep)
     : path_(std::move(path)), file_(path_, O_WRONLY | O_CREAT | O_APPEND), written_(keep) {
     struct stat status {};
     if (!file_.is_open() || ::fstat(file_.get(), &status) != 0) throw_output_error(path_, errno);
@@ -64,8 +37,7 @@ void LineFile::append(std::string_view line) {
         if (::ftruncate(file_.get(), static_cast<off_t>(written_.size)) != 0) errno = reason;
         throw_output_error(path_, reason);
     }
-    written_.size += buffer_.size();
-    written_.checksum = checksum(buffer_, written_.checksum);
+    written_.append(buffer_);
 }
 
 void LineFile::sync() {

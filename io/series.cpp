@@ -63,53 +63,54 @@ void check_name(const std::string& name) {
                          "slashes and control characters");
 }
 
+/// In the folder of the run.
+std::string frame_name(const std::string& series, std::size_t index) {
+    constexpr std::size_t num_digits = 6;  // at least
+    auto digits = std::to_string(index);
+    digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
+    return "frames/" + series + "_" + digits + std::string(frame_suffix);
+}
+
 }  // namespace
 
+void require_frames(const fs::path& folder, const std::string& name,
+                    std::span<const FrameWritten> frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        require_is(folder / frame_name(name, i), frames[i].file);
+}
+
 Series::Series(fs::path folder, std::string name, Compression compression,
-               std::span<const double> kept_times)
+               std::span<const FrameWritten> kept)
     : folder_(std::move(folder)),
       name_(std::move(name)),
       compression_(compression),
-      times_(kept_times.begin(), kept_times.end()) {
+      frames_(kept.begin(), kept.end()) {
     check_name(name_);
     make_output_folder(folder_);
     make_output_folder(folder_ / "frames");
     remove_unfinished_files(folder_ / "frames");
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-        std::error_code error;
-        if (!fs::is_regular_file(frame_path(i), error))
-            throw InputError(frame_path(i).string() +
-                             ": this frame of the run to be resumed is missing; begin anew");
-    }
     // First out of the indexes, then off the disk: a kill in between leaves valid indexes.
-    if (times_.empty()) {
+    if (frames_.empty()) {
         remove_output_file(pvd_path());
         remove_output_file(folder_ / (name_ + ".vtu.series"));
     } else {
         write_indexes();
     }
-    remove_frames_from(times_.size());
+    remove_frames_from(frames_.size());
 }
 
 void Series::add(const Frame& frame) {
     const double time = frame.time.value_or(0.0);
-    if (!std::isfinite(time) || (!times_.empty() && !(time > times_.back())))
+    if (!std::isfinite(time) || (!frames_.empty() && !(time > frames_.back().time)))
         throw std::invalid_argument("the time of a frame must be finite and above the last one's");
-    write_vtu(frame_path(times_.size()), frame, compression_);
-    times_.push_back(time);
+    const std::string text = vtu_text(frame, compression_);
+    write_file(folder_ / frame_name(name_, frames_.size()), text);
+    frames_.push_back({time, {}});
+    frames_.back().file.append(text);
     write_indexes();
 }
 
 fs::path Series::pvd_path() const { return folder_ / (name_ + ".pvd"); }
-
-fs::path Series::frame_path(std::size_t index) const { return folder_ / frame_name(index); }
-
-std::string Series::frame_name(std::size_t index) const {
-    constexpr std::size_t num_digits = 6;  // at least
-    auto digits = std::to_string(index);
-    digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
-    return "frames/" + name_ + "_" + digits + std::string(frame_suffix);
-}
 
 /// Removes the frames of this name (NAME_, digits, suffix) that are numbered `first` and above.
 void Series::remove_frames_from(std::size_t first) {
@@ -139,9 +140,9 @@ void Series::write_indexes() {
         "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
         "  <Collection>\n";
     std::string series = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-        const auto time = format_number(times_[i]);
-        const auto file = frame_name(i);
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        const auto time = format_number(frames_[i].time);
+        const auto file = frame_name(name_, i);
         pvd += "    <DataSet timestep=\"" + time + "\" part=\"0\" file=\"" + escape_xml(file) +
                "\"/>\n";
         series += (i == 0 ? "\n" : ",\n");

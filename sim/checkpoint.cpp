@@ -8,6 +8,7 @@
 #include "io/atomic_file.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
+#include "sim/measured_quantities.h"
 #include "topology/archive.h"
 #include "topology/error.h"
 
@@ -139,13 +140,17 @@ void Checkpoint::restore(Simulation& simulation) const {
     name_place([&] {
         topology::ArchiveReader ar(state_);
         simulation.restore(ar);
-        const std::vector<double>& times = written_.frame_times;
-        const bool ascends = std::adjacent_find(times.begin(), times.end(), [](double a, double b) {
-                                 return !(a < b);
-                             }) == times.end();
-        if (times.size() != simulation.num_frames() || !ascends ||
-            !(times.empty() || (times.front() >= 0.0 && times.back() <= simulation.time())))
+        const auto& frames = written_.frames;
+        const auto is_late = [](const auto& a, const auto& b) { return !(a.time < b.time); };
+        const bool ascends =
+            std::adjacent_find(frames.begin(), frames.end(), is_late) == frames.end();
+        if (frames.size() != simulation.num_frames() || !ascends ||
+            !(frames.empty() ||
+              (frames.front().time >= 0.0 && frames.back().time <= simulation.time())))
             throw InputError("its frames are not those of the run up to then");
+        if (written_.last_row.size() != history_row(simulation).size())
+            throw InputError("its row of the history has " +
+                             std::to_string(written_.last_row.size()) + " columns");
         if (path_of({}, simulation.num_steps()).filename() != path_.filename())
             throw InputError("it is of step " + std::to_string(simulation.num_steps()));
     });

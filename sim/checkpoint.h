@@ -9,18 +9,19 @@
 #include <utility>
 #include <vector>
 
-#include "io/line_file.h"
+#include "io/series.h"
+#include "io/written_bytes.h"
 #include "sim/simulation.h"
 
 namespace incise::sim {
 
 /// What a run has written when a checkpoint is taken, and where it goes on writing.
 struct Written {
-    io::LinesWritten history, edits;
-    std::vector<double> frame_times;  ///< s
-    std::vector<double> last_row;     ///< of the history
+    io::BytesWritten history, edits;
+    std::vector<io::FrameWritten> frames;
+    std::vector<double> last_row;  ///< of the history
     static void archive(auto& ar, auto& self) {
-        ar(self.history, self.edits, self.frame_times, self.last_row);
+        ar(self.history, self.edits, self.frames, self.last_row);
     }
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "topology/error.h"
 #include "topology/geometry.h"
 #include "topology/mesh_metrics.h"
 
@@ -93,13 +94,33 @@ const EditRecord& Ledger::record(double time, std::uint64_t step, const std::str
     edit.before = before;
     counts_ = count();
     edit.after = account();
-    mass_removed_ += mass_removed;
+    add(std::move(edit));
+    return edits_.back();
+}
+
+void Ledger::add(EditRecord edit) {
     const auto energy = [](const Account& a) {
         return a.totals.kinetic_energy + a.totals.elastic_energy;
     };
+    mass_removed_ += edit.mass_removed;
     energy_removed_ += energy(edit.before) - energy(edit.after);
     edits_.push_back(std::move(edit));
-    return edits_.back();
+}
+
+void Ledger::restore(topology::ArchiveReader& ar, const std::vector<EditTrace>& traces) {
+    auto edits = ar.read<std::vector<EditRecord>>();
+    const auto trace_of = [](const EditRecord& edit) {
+        return EditTrace{edit.elements_removed, edit.elements_added, edit.nodes_added,
+                         edit.nodes_removed,    edit.mass_removed,   edit.after.nodes,
+                         edit.after.elements};
+    };
+    if (!std::equal(edits.begin(), edits.end(), traces.begin(), traces.end(),
+                    [&](const EditRecord& edit, const EditTrace& trace) {
+                        return trace_of(edit) == trace;
+                    }))
+        throw InputError("its books are not of its edits");
+    for (EditRecord& edit : edits) add(std::move(edit));
+    counts_ = count();
 }
 
 double Ledger::mass_error() const {

@@ -53,6 +53,14 @@ struct EditRecord {
     }
 };
 
+/// What the mesh and the edits of it tell of one of them.
+struct EditTrace {
+    std::size_t elements_removed, elements_added, nodes_added, nodes_removed;
+    double mass_removed;
+    std::size_t nodes, elements;  ///< after it
+    bool operator==(const EditTrace&) const = default;
+};
+
 class Ledger {
   public:
     explicit Ledger(const physics::Model& model);
@@ -66,11 +74,10 @@ class Ledger {
                              double mass_removed);
 
     /// What it has booked. The rest it has from the model: it restores after that.
-    void save(topology::ArchiveWriter& ar) const { ar(edits_, mass_removed_, energy_removed_); }
-    void restore(topology::ArchiveReader& ar) {
-        ar(edits_, mass_removed_, energy_removed_);
-        counts_ = count();
-    }
+    void save(topology::ArchiveWriter& ar) const { ar(edits_); }
+    /// @param traces  of the edits that the model has followed
+    /// Throws InputError if the records are not of these.
+    void restore(topology::ArchiveReader& ar, const std::vector<EditTrace>& traces);
 
     const std::vector<EditRecord>& edits() const { return edits_; }
     const Account& initial() const { return initial_; }
@@ -89,6 +96,7 @@ class Ledger {
         int components;
     };
     Counts count() const;
+    void add(EditRecord edit);
 
     const physics::Model& model_;
     Counts counts_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "sim/run_writer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -9,25 +8,13 @@
 #include "io/atomic_file.h"
 #include "io/number_format.h"
 #include "sim/frame_builder.h"
+#include "topology/error.h"
 
 namespace incise::sim {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-/// The folder, prepared for a new run or to go on with one.
-io::OutputFolder prepared(io::OutputFolder folder, const Written* written) {
-    if (written) {
-        io::require_lines(folder.path() / "history.csv", written->history);
-        io::require_lines(folder.path() / "edits.jsonl", written->edits);
-    } else {
-        remove_checkpoints(folder.path());
-    }
-    // A summary speaks of a whole run: that of a former one must not outlive its frames.
-    io::remove_output_file(folder.path() / "summary.json");
-    return folder;
-}
 
 Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -65,22 +52,55 @@ Json to_json(const EditRecord& edit) {
             {"after", to_json(edit.after)}};
 }
 
+std::string line_of(const EditRecord& edit) {
+    // A name that is no text can only come from a checkpoint that somebody has made up.
+    return to_json(edit).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Throws InputError unless the files of the run are those that it had written.
+void require_files(const std::filesystem::path& folder, const Simulation& simulation,
+                   const Written& written) {
+    const auto edits = folder / "edits.jsonl";
+    io::require_begins_with(folder / "history.csv", written.history);
+    io::require_begins_with(edits, written.edits);
+    io::require_frames(folder, simulation.scenario().name, written.frames);
+    io::BytesWritten lines;
+    for (const EditRecord& edit : simulation.ledger().edits()) lines.append(line_of(edit) + "\n");
+    if (lines != written.edits)
+        throw InputError(edits.string() +
+                         ": its edits are not those of the checkpoint; begin anew without "
+                         "--resume");
+}
+
+/// The folder, prepared for a new run or to go on with one.
+io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
+                          const Written* written) {
+    if (written)
+        require_files(folder.path(), simulation, *written);
+    else
+        remove_checkpoints(folder.path());
+    // A summary speaks of a whole run: that of a former one must not outlive its frames.
+    io::remove_output_file(folder.path() / "summary.json");
+    return folder;
+}
+
 }  // namespace
 
 RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written)
-    : folder_(prepared(std::move(folder), written)),
+    : folder_(prepared(std::move(folder), simulation, written)),
       series_(this->folder(), simulation.scenario().name, simulation.scenario().output.compression,
-              written ? std::span<const double>(written->frame_times) : std::span<const double>()),
-      history_(this->folder() / "history.csv", written ? written->history : io::LinesWritten{}),
-      edits_(this->folder() / "edits.jsonl", written ? written->edits : io::LinesWritten{}),
+              written ? std::span<const io::FrameWritten>(written->frames)
+                      : std::span<const io::FrameWritten>()),
+      history_(this->folder() / "history.csv", written ? written->history : io::BytesWritten{}),
+      edits_(this->folder() / "edits.jsonl", written ? written->edits : io::BytesWritten{}),
       last_row_(history_row(simulation)),
       first_time_(simulation.time()),
       first_step_(simulation.num_steps()),
       next_checkpoint_(0.0),
       has_checkpoint_(written != nullptr),
-      num_frames_(series_.times().size()) {
+      num_frames_(series_.frames().size()) {
     if (written) {
-        for (std::size_t i = 0; i < std::min(last_row_.size(), written->last_row.size()); ++i)
+        for (std::size_t i = 0; i < last_row_.size(); ++i)
             last_row_[i].second = written->last_row[i];
         note_checkpoint(simulation);
         return;
@@ -106,7 +126,7 @@ void RunWriter::on_start(const Simulation& simulation) {
 }
 
 void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
-    edits_.append(to_json(edit).dump());
+    edits_.append(line_of(edit));
     append_history(simulation);
 }
 
@@ -136,7 +156,7 @@ void RunWriter::take_checkpoint(const Simulation& simulation) {
     history_.sync();
     edits_.sync();
     Written written{history_.written(), edits_.written(), {}, {}};
-    written.frame_times.assign(series_.times().begin(), series_.times().end());
+    written.frames.assign(series_.frames().begin(), series_.frames().end());
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
     write_checkpoint(folder(), simulation, written);
     has_checkpoint_ = true;

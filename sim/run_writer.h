@@ -33,8 +33,8 @@ class RunWriter : public Observer {
     RunWriter(const Simulation& simulation, const std::filesystem::path& folder)
         : RunWriter(simulation, io::OutputFolder(folder), nullptr) {}
     /// Goes on where a checkpoint was taken: what was written after it is removed. The simulation
-    /// is restored from it already. Throws InputError, and has removed only the summary, if files
-    /// of before are missing or cut short.
+    /// is restored from it already. Throws InputError, and has changed nothing, if files of before
+    /// are no longer what they were.
     RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written& written)
         : RunWriter(simulation, std::move(folder), &written) {}
 

@@ -148,10 +148,14 @@ void Simulation::save(topology::ArchiveWriter& ar) const {
 // and what tools remember, is as it was.
 void Simulation::restore(topology::ArchiveReader& ar) {
     const auto edits = ar.read<std::string>();
+    std::vector<EditTrace> traces;
     for (topology::ArchiveReader edit(edits); !edit.is_at_end();) {
         const auto changes = edit.read<topology::ChangeSet>();
         topology::require_fit(changes, mesh_);
         topology::replay(mesh_, changes);
+        traces.push_back({changes.elements_removed.size(), changes.elements_added.size(),
+                          changes.nodes_added.size(), changes.nodes_removed.size(),
+                          removed_mass(model_, changes), mesh_.num_nodes(), mesh_.num_elements()});
         model_.apply(changes);
         edits_(changes);
     }
@@ -162,7 +166,7 @@ void Simulation::restore(topology::ArchiveReader& ar) {
         throw InputError("its time, " + io::format_number(time_) + " s, is not within the run");
     model_.restore(ar, time_);
     integrator_->restore(ar, model_);
-    ledger_.restore(ar);
+    ledger_.restore(ar, traces);
     for (Tool& tool : tools_) ar(tool);
     ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
     const auto is_here = [&](const Tool& tool) { return tool.is_on(mesh_); };

@@ -154,7 +154,7 @@ TEST(LineFile, HoldsEveryLineAsSoonAsItIsAppended) {
 
 TEST(LineFile, BeginsAnewOrGoesOnFromFormerLines) {
     const TemporaryFolder folder;
-    LinesWritten lines;
+    BytesWritten lines;
     {
         LineFile file(folder / "lines");
         file.append("kept");
@@ -162,7 +162,7 @@ TEST(LineFile, BeginsAnewOrGoesOnFromFormerLines) {
         file.append("written after the checkpoint");
     }
     {
-        require_lines(folder / "lines", lines);
+        require_begins_with(folder / "lines", lines);
         LineFile file(folder / "lines", lines);
         file.append("resumed");
         EXPECT_EQ(file.written().checksum, checksum("kept\nresumed\n"));

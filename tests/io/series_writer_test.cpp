@@ -63,9 +63,11 @@ Frame make_frame(double time) {
     return frame;
 }
 
-void write_series(const fs::path& folder, const std::string& name, int num_frames) {
+std::vector<FrameWritten> write_series(const fs::path& folder, const std::string& name,
+                                       int num_frames) {
     Series series(folder, name);
     for (int i = 0; i < num_frames; ++i) series.add(make_frame(0.1 * i));
+    return {series.frames().begin(), series.frames().end()};
 }
 
 TEST(Series, IndexesAreValidAndCompleteAfterEachFrame) {
@@ -114,8 +116,9 @@ TEST(Series, RemovesFramesOfAFormerRunButNothingElse) {
 
 TEST(Series, GoesOnFromTheFramesKept) {
     const TemporaryFolder folder;
-    write_series(folder.path(), "run", 5);
-    const std::vector<double> kept = {0.0, 0.1};
+    auto kept = write_series(folder.path(), "run", 5);
+    kept.resize(2);
+    require_frames(folder.path(), "run", kept);
     Series series(folder.path(), "run", Compression::zlib, kept);
     EXPECT_EQ(read_pvd(folder / "run.pvd").size(), 2U);
     EXPECT_EQ(count_entries(folder / "frames"), 2U);
@@ -124,9 +127,35 @@ TEST(Series, GoesOnFromTheFramesKept) {
                                          {0.1, "frames/run_000001.vtu"},
                                          {0.15, "frames/run_000002.vtu"}};
     EXPECT_EQ(read_pvd(folder / "run.pvd"), expected);
+    require_frames(folder.path(), "run", series.frames());
+}
 
-    fs::remove(folder / "frames/run_000001.vtu");
-    EXPECT_THROW(Series(folder.path(), "run", Compression::zlib, kept), InputError);
+TEST(Series, KnowsItsFramesAgain) {
+    const TemporaryFolder folder;
+    const auto frames = write_series(folder.path(), "run", 3);
+    const auto refusal = [&] {
+        try {
+            require_frames(folder.path(), "run", frames);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal(), "");
+    const auto path = folder / "frames/run_000001.vtu";
+    const std::string text = read_text(path);
+    std::string other = text;
+    other[text.size() / 2] ^= 1;
+    for (const auto& [forged, why] :
+         {std::pair{other, "been changed"}, std::pair{text.substr(0, 100), "become shorter"},
+          std::pair{text + "\n", "become longer"}, std::pair{std::string(), "become shorter"}}) {
+        write_file(path, forged);
+        EXPECT_EQ(refusal().find(path.string() + ": has " + why), 0U) << refusal();
+    }
+    fs::remove(path);
+    EXPECT_EQ(refusal().find(path.string() + ": has gone"), 0U) << refusal();
+    write_file(path, text);
+    EXPECT_EQ(refusal(), "");
 }
 
 TEST(Series, RefusesTimesThatDoNotAscend) {
@@ -136,7 +165,7 @@ TEST(Series, RefusesTimesThatDoNotAscend) {
     EXPECT_THROW(series.add(make_frame(1.0)), std::invalid_argument);
     EXPECT_THROW(series.add(make_frame(0.5)), std::invalid_argument);
     EXPECT_THROW(series.add(make_frame(NAN)), std::invalid_argument);
-    EXPECT_EQ(series.times().size(), 1U);
+    EXPECT_EQ(series.frames().size(), 1U);
 }
 
 TEST(Series, RefusesNamesThatAreNoFileNames) {
@@ -160,7 +189,7 @@ TEST(Series, SaysWhyItCannotWrite) {
     fs::create_symlink("/dev/full", folder / "frames/other_000000.vtu");
     EXPECT_THROW(series.add(make_frame(0)), OutputError);
     EXPECT_FALSE(fs::exists(series.pvd_path()));
-    EXPECT_TRUE(series.times().empty());
+    EXPECT_TRUE(series.frames().empty());
 }
 
 }  // namespace
