@@ -1,7 +1,8 @@
 // Reading of label images. VTK 9.1 has readers for these formats, which were tried and not taken:
 // its MetaImage reader makes labels of uninitialized memory, without an error, where the file is
 // cut short or its data are missing, and drops the directions; its NRRD reader takes the first of
-// three axes for components. SPDX-License-Identifier: LGPL-3.0-or-later
+// three axes for components.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #include "io/label_image.h"
 
 #include <algorithm>

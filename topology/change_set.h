@@ -1,6 +1,6 @@
 // What one edit did to a mesh, as a value: comparable, printable and invertible, so that replay,
-// undo, logs, checkpoints (archive.h) and every follower of the mesh need neither the map nor its
-// callbacks. SPDX-License-Identifier: LGPL-3.0-or-later
+// undo, logs, checkpoints and every follower of the mesh need neither the map nor its callbacks.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // The implicit step of bench/comparators against differences of the program's own forces, which
-// know nothing of its matrix, and against what backward Euler keeps. SPDX-License-Identifier:
-// LGPL-3.0-or-later
+// know nothing of its matrix, and against what backward Euler keeps.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #include "bench/comparators/implicit_step.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The files of the corpus, which include those that fuzzing found, are read or refused; a short
-// burst of random changes to them, for machines without libFuzzer, too. SPDX-License-Identifier:
-// LGPL-3.0-or-later
+// burst of random changes to them, for machines without libFuzzer, too.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
 #include <algorithm>

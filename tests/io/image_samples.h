@@ -1,5 +1,6 @@
 // Small label images as bytes, made by hand: what their format's definition says, nothing of our
-// own code. SPDX-License-Identifier: LGPL-3.0-or-later
+// own code.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <zlib.h>

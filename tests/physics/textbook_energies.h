@@ -1,5 +1,6 @@
 // Energy densities as textbooks write them, in terms of the deformation gradient: what the laws,
-// which see links, are tested against. SPDX-License-Identifier: LGPL-3.0-or-later
+// which see links, are tested against.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <algorithm>

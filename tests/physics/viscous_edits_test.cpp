@@ -1,5 +1,6 @@
 // What elements remember, through edits of the mesh: parts inherit it, copies of nodes share it,
-// and a body built anew has the same. SPDX-License-Identifier: LGPL-3.0-or-later
+// and a body built anew has the same.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
 #include <algorithm>

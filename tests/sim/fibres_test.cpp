@@ -1,5 +1,6 @@
 // Fibres in scenarios: where their directions come from, what is refused, and how frames carry
-// them. SPDX-License-Identifier: LGPL-3.0-or-later
+// them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
 #include "io/mesh_reader.h"
