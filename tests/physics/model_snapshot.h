@@ -13,7 +13,7 @@ namespace incise::physics {
 /// What a model is, as one comparable value.
 struct ModelSnapshot {
     BodyState state;
-    std::vector<Vec3> forces;
+    std::vector<Vec3> forces, outer_forces;
     std::vector<double> masses, energies;
     std::vector<double> history;
     std::vector<Vec3> fibres;
@@ -23,6 +23,7 @@ struct ModelSnapshot {
     ModelSnapshot(Model& model, double time) : state(state_of(model)) {
         model.compute_forces(time);
         forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
+        outer_forces.assign(model.outer_forces().begin(), model.outer_forces().end());
         masses.assign(model.masses().begin(), model.masses().end());
         for (const ElementId e : living_elements(model.mesh()))
             energies.push_back(model.element_result(e).energy);
@@ -37,6 +38,7 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.state.velocities, b.state.velocities);
     EXPECT_EQ(a.masses, b.masses);
     EXPECT_EQ(a.forces, b.forces);
+    EXPECT_EQ(a.outer_forces, b.outer_forces);
     EXPECT_EQ(a.energies, b.energies);
     EXPECT_EQ(a.history, b.history);
     EXPECT_EQ(a.fibres, b.fibres);

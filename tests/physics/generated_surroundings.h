@@ -1,0 +1,66 @@
+// Supports and loads of generated bodies, and which of them an edited body is to have: by places at
+// rest, where physics keeps to ids.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "physics/model.h"
+#include "support/properties.h"
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::physics {
+
+/// Numbers that choose among what the body has at the start, counted on past the last.
+struct GeneratedSurroundings {
+    std::vector<std::size_t> held_elements;   ///< their nodes stay at rest
+    std::vector<std::size_t> moved_elements;  ///< other nodes of these are moved and turned
+    std::vector<std::size_t> loaded_nodes;
+    std::vector<std::size_t> loaded_faces;    ///< of the boundary: traction on all, pressure
+    std::vector<std::size_t> loaded_regions;  ///< with a body force
+};
+std::ostream& operator<<(std::ostream& out, const GeneratedSurroundings& surroundings);
+
+/// Shrinks to none.
+rc::Gen<GeneratedSurroundings> generated_surroundings();
+
+/// Follows a mesh through its edits. A node is what its place is: copies share the place, and one
+/// born between two places belongs to what both belong to. A face is loaded as the one of the start
+/// in which all its corners lie, if it looks the same way.
+class Acting {
+  public:
+    /// @param mesh as it is at the start
+    Acting(const topology::Mesh& mesh, const GeneratedSurroundings& chosen);
+
+    /// What a body has at the start.
+    const Surroundings& at_start() const { return at_start_; }
+
+    /// @param mesh after the edit
+    void follow(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+
+    /// What a body built on the mesh as it is now has to have to be the same: the force on a place
+    /// is shared by its nodes by mass. @param masses by node id
+    Surroundings now(const topology::Mesh& mesh, std::span<const double> masses) const;
+
+  private:
+    using Place = std::array<double, 3>;
+    struct Membership {
+        bool is_held = false, is_moved = false, is_loaded = false;
+        std::uint32_t faces = 0;  // bits: in which of the loaded faces it lies
+    };
+
+    Surroundings select(const topology::Mesh& mesh) const;
+
+    std::map<Place, Membership> places_;
+    std::vector<Vec3> face_areas_;  // area vectors of the loaded faces at the start
+    std::vector<int> regions_;
+    Surroundings at_start_;
+};
+
+}  // namespace incise::physics
