@@ -14,7 +14,7 @@ namespace incise::io {
 
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const char* what_has_happened) {
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const char* what_has_happened) {
     throw InputError(path.string() + ": has " + what_has_happened +
                      " since the run was stopped; put the former one back, or begin anew without "
                      "--resume");
@@ -29,7 +29,7 @@ void BytesWritten::append(std::string_view bytes) {
 
 void require_begins_with(const std::filesystem::path& path, const BytesWritten& bytes) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) refuse(path, "gone");
+    if (!std::filesystem::is_regular_file(path, error)) refuse_file(path, "gone");
     std::ifstream file(path, std::ios::binary);
     if (!file)
         throw InputError(path.string() +
@@ -41,16 +41,16 @@ void require_begins_with(const std::filesystem::path& path, const BytesWritten& 
         file.read(part.data(), static_cast<std::streamsize>(
                                    std::min<std::uint64_t>(bytes.size - found.size, part.size())));
         const auto count = static_cast<std::size_t>(file.gcount());
-        if (count == 0) refuse(path, "become shorter");
+        if (count == 0) refuse_file(path, "become shorter");
         found.append({part.data(), count});
     }
-    if (found != bytes) refuse(path, "been changed");
+    if (found != bytes) refuse_file(path, "been changed");
 }
 
 void require_is(const std::filesystem::path& path, const BytesWritten& bytes) {
     require_begins_with(path, bytes);
     std::error_code error;
-    if (std::filesystem::file_size(path, error) != bytes.size) refuse(path, "become longer");
+    if (std::filesystem::file_size(path, error) != bytes.size) refuse_file(path, "become longer");
 }
 
 }  // namespace incise::io
