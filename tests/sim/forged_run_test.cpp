@@ -183,6 +183,14 @@ TEST_F(ForgedRun, IsRefusedWhereItsRecordsAreOtherThanTheCheckpointSays) {
     EXPECT_EQ(read_text(out_ / "scene.pvd").find(index.substr(0, index.find("  </Coll"))), 0u);
 }
 
+TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
+    std::string bytes = good_;
+    bytes[sizeof(std::uint64_t)] = '9';  // of "0.1.0", behind its length
+    const std::string message = refusal_of([&] { resume(bytes); });
+    EXPECT_NE(message.find("was written by version '9.1.0'"), std::string::npos) << message;
+    EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
+}
+
 TEST_F(ForgedRun, IsRefusedWhereItsBooksAreNotThoseOfItsEdits) {
     using Forge = std::function<void(EditRecord&)>;
     const auto refusal = [&](const Forge& forge) {

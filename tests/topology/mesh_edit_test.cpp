@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
@@ -180,6 +182,47 @@ TEST(MeshEdit, RefusesWhatCannotBeDone) {
     EXPECT_THROW(edit.close(outer[0], outer[0]), InputError);
     edit.remove(ElementId(0));
     EXPECT_THROW(edit.remove(ElementId(0)), InputError);
+}
+
+TEST(MeshEdit, RefusesToDivideOrJoinWhatCannotBe) {
+    Mesh mesh = Mesh::build(box_mesh(CellKind::tetrahedron, {0, 0, 0}, {1, 1, 1}, {1, 1, 1})).mesh;
+    const MeshSnapshot before(mesh);
+    const auto message_of = [](const auto& action) {
+        try {
+            action();
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing was refused");
+    };
+    const auto expect_end = [&](const auto& action, const char* end) {
+        const std::string message = message_of(action);
+        EXPECT_TRUE(message.ends_with(end)) << message;
+    };
+    {
+        MeshEdit edit(mesh);
+        const ElementId e(0);
+        const NodeId a = mesh.corners(e)[0], b = mesh.corners(e)[1];
+        const std::string edge = "edit: the edge between nodes " + std::to_string(a.value) +
+                                 " and " + std::to_string(b.value) +
+                                 " of element 0 cannot be divided: ";
+        for (const double t : {0.0, 1.0, -0.5, std::nan("")})
+            EXPECT_EQ(message_of([&] { edit.bisect(e, a, b, t); }),
+                      edge + "the place " + std::to_string(t) + " is not between 0 and 1");
+        expect_end([&] { edit.bisect(e, a, a, 0.5); }, "the element has no such edge");
+        const ElementId part = edit.bisect(e, a, b, 0.5).elements.front().added;
+        EXPECT_EQ(message_of([&] { edit.remove(part); }),
+                  "edit: element " + std::to_string(part.value) +
+                      " was made in this edit and cannot be removed in it: commit first");
+        FaceId inner;
+        for (int f = 0; f < 4; ++f)
+            if (mesh.neighbor({ElementId(1), f}).is_valid()) inner = {ElementId(1), f};
+        FaceId outer = boundary_faces(mesh).back();
+        for (const FaceId f : boundary_faces(mesh))
+            if (f.element == ElementId(2)) outer = f;
+        expect_end([&] { edit.close(inner, outer); }, "one of them is joined already");
+    }
+    EXPECT_EQ(MeshSnapshot(mesh), before);  // given up, it leaves no trace
 }
 
 TEST(MeshEdit, ReplayRefusesAnEditOutOfTurn) {
