@@ -249,6 +249,31 @@ std::string with_binary_points(const std::string& root_attributes, const std::st
     return text;
 }
 
+TEST(VtuReader, TakesRegionsOfEveryTypeOfWholeNumbers) {
+    // Base64 of the size, in 64 bits, and the numbers, by Python's struct.
+    struct Case {
+        const char *type, *data;
+        int first, second;
+    };
+    for (const auto& [type, data, first, second] : std::initializer_list<Case>{
+             {"Int8", "AgAAAAAAAAD+ZA==", -2, 100},
+             {"UInt8", "AgAAAAAAAADIBw==", 200, 7},
+             {"Int16", "BAAAAAAAAADU/gUA", -300, 5},
+             {"UInt16", "BAAAAAAAAABg6gEA", 60000, 1},
+             {"Int32", "CAAAAAAAAACQ7v7/cBEBAA==", -70000, 70000},
+             {"UInt32", "CAAAAAAAAACghgEAAgAAAA==", 100000, 2},
+             {"Int64", "EAAAAAAAAAD7/////////wYAAAAAAAAA", -5, 6},
+             {"UInt64", "EAAAAAAAAAAHAAAAAAAAAAgAAAAAAAAA", 7, 8},
+         }) {
+        SCOPED_TRACE(type);
+        const std::string array = std::string("type=\"") + type + "\" Name=\"region\" format=";
+        EXPECT_THAT(read_bytes("a.vtu", with("type=\"Int32\" Name=\"region\" format=\"ascii\">5 -6",
+                                             array + "\"binary\">" + data))
+                        .mesh.regions,
+                    ElementsAre(first, second));
+    }
+}
+
 TEST(VtuReader, RefusesBinaryDataThatLieAboutTheirSize) {
     // 15 doubles are 120 bytes. The first four bytes claim other sizes.
     EXPECT_THAT(refusal("liver.vtu", with_binary_points("", "gAAAAA==")),
