@@ -219,6 +219,24 @@ EditRate measure_removal(topology::Mesh mesh, const physics::Material& material)
     return rate;
 }
 
+HalvedRate measure_halved(topology::Mesh mesh, const physics::Material& material, double seconds) {
+    physics::Model model(mesh, table_of(material));
+    const auto time_forces = [&] {
+        model.compute_forces(0.0);  // numbers nodes
+        const double best = best_time(seconds, [&] { model.compute_forces(0.0); });
+        return 1e9 * best / static_cast<double>(mesh.num_elements());
+    };
+    HalvedRate rate{.elements = mesh.num_elements(), .forces = time_forces()};
+    std::mt19937_64 random(1);
+    topology::MeshEdit edit(mesh);
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (random() % 2 == 0) edit.remove(topology::ElementId(i));
+    model.apply(edit.commit());
+    rate.elements_left = mesh.num_elements();
+    rate.forces_left = time_forces();
+    return rate;
+}
+
 std::string processor_name() {
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
@@ -281,6 +299,8 @@ Throughput measure_throughput(const ThroughputPlan& plan,
         for (const auto measure : {measure_split, measure_removal})
             result.edits.push_back(
                 measure(make_cube(topology::CellKind::tetrahedron, n), materials[1].material));
+        result.halved.push_back(measure_halved(make_cube(topology::CellKind::tetrahedron, n),
+                                               materials[1].material, plan.seconds));
     }
     return result;
 }

@@ -44,11 +44,19 @@ struct EditRate {
     double microseconds = 0.0;
 };
 
+/// One evaluation of forces of a body, and of what is left when each of its elements has been
+/// removed with a chance of one half; on one thread, ns per element that is there.
+struct HalvedRate {
+    std::size_t elements = 0, elements_left = 0;
+    double forces = 0.0, forces_left = 0.0;
+};
+
 struct Throughput {
     MachineSpeed machine;
     std::string_view tissue;  ///< the stiffness of the bodies; cubes of 10 cm
     std::vector<StepRate> steps;
     std::vector<EditRate> edits;
+    std::vector<HalvedRate> halved;
 };
 
 /// What to measure; numbers of elements are met approximately.

@@ -49,6 +49,12 @@ ordered_json as_json(const Throughput& throughput) {
                                  {"elements", rate.elements},
                                  {"items", rate.items},
                                  {"microseconds_per_item", rate.microseconds}});
+    json["halved"] = ordered_json::array();
+    for (const HalvedRate& rate : throughput.halved)
+        json["halved"].push_back({{"elements", rate.elements},
+                                  {"elements_left", rate.elements_left},
+                                  {"forces_ns_per_element", rate.forces},
+                                  {"forces_left_ns_per_element", rate.forces_left}});
     return json;
 }
 
@@ -79,6 +85,12 @@ void print_text(const Throughput& throughput) {
     for (const EditRate& rate : throughput.edits)
         std::printf("%-22s %8zu %7zu | %9.2f\n", std::string(rate.kind).c_str(), rate.elements,
                     rate.items, rate.microseconds);
+    std::printf("\n%-22s %8s %7s | %9s %9s\n", "a random half removed", "elements", "left",
+                "forces", "of these");
+    std::printf("%-22s %8s %7s | %9s %9s\n", "", "", "", "ns/elem.", "ns/elem.");
+    for (const HalvedRate& rate : throughput.halved)
+        std::printf("%-22s %8zu %7zu | %9.2f %9.2f\n", "", rate.elements, rate.elements_left,
+                    rate.forces, rate.forces_left);
 }
 
 }  // namespace

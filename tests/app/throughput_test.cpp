@@ -40,6 +40,13 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     ASSERT_EQ(throughput.edits.size(), 2u);
     EXPECT_GT(throughput.edits[0].items, 50u);
     EXPECT_EQ(throughput.edits[1].items, 1000u);
+    ASSERT_EQ(throughput.halved.size(), 1u);
+    const HalvedRate& halved = throughput.halved[0];
+    EXPECT_NEAR(static_cast<double>(halved.elements_left),
+                0.5 * static_cast<double>(halved.elements),
+                0.1 * static_cast<double>(halved.elements));
+    EXPECT_GT(halved.forces, 0.0);
+    EXPECT_GT(halved.forces_left, 0.0);
 }
 
 }  // namespace
