@@ -11,6 +11,7 @@
 #include <set>
 
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 
 namespace incise::cutting {
@@ -103,11 +104,12 @@ std::set<ElementId> as_set(const std::vector<ElementId>& elements) {
     return {elements.begin(), elements.end()};
 }
 
+constexpr int num_moments = test::num_cases(200);
+
 /// Covered at one of many moments of the step, with the tool grown by `growth`.
 std::set<ElementId> covered_at_moments(const Mesh& mesh, const std::vector<Vec3>& x0,
                                        const std::vector<Vec3>& x1, const CarverShape& shape,
                                        const Pose& before, const Pose& after, double growth) {
-    constexpr int num_moments = 200;
     std::set<ElementId> covered;
     for (int i = 0; i <= num_moments; ++i) {
         const double s = static_cast<double>(i) / num_moments;
@@ -161,7 +163,7 @@ TEST(Carver, CoversWhatACrawlInTinyStepsCovers) {
                 // A turning tool sees bent paths, which are taken as straight: the sagitta of an
                 // arc. It also sees a tissue point move by at most this much between two moments.
                 const double bend = 1.5 * size * turn * turn / 8.0 + 1.5 * size * turn / 8.0;
-                const double hop = 3.0 * size / 200;
+                const double hop = 3.0 * size / num_moments;
                 const auto found = as_set(covered_elements({mesh, x0, x1}, shape, before, after));
                 num_covered += found.size();
                 if (turn == 0.0) {
