@@ -129,8 +129,10 @@ void write_file(const fs::path& path, std::string_view bytes) {
     if (::stat(target.c_str(), &status) == 0) {
         if (S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
         if (!S_ISREG(status.st_mode)) {  // a device: never to be replaced by a file
-            FileDescriptor device(target, O_WRONLY);
-            if (!device.is_open() || !device.write(bytes) || !device.close())
+            // A pipe that nobody reads is refused here, not waited for.
+            FileDescriptor device(target, O_WRONLY | O_NONBLOCK);
+            if (!device.is_open() || ::fcntl(device.get(), F_SETFL, 0) != 0 ||
+                !device.write(bytes) || !device.close())
                 throw_output_error(path, errno);
             return;
         }

@@ -93,6 +93,14 @@ TEST(WriteFile, SaysThatADiskIsFullAndLeavesTheDevice) {
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST(WriteFile, DoesNotWaitForAReaderOfAPipe) {
+    const TemporaryFolder folder;
+    const auto pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THAT(output_error([&] { write_file(pipe, "x"); }), HasSubstr("cannot be written"));
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST(WriteFile, NamesTheReasonWhereThereCanBeNoFile) {
     const TemporaryFolder folder;
     write_file(folder / "file", "");
