@@ -281,11 +281,15 @@ double Simulation::step_limit() const {
     constexpr double max_steps = 1e10;
     if (!(limit * max_steps >= dynamics.end_time)) {
         text << "steps of " << limit << " s would take more than 1e10 of them to the end at "
-             << dynamics.end_time << " s";
-        if (!dynamics.time_step)
-            text << "; element " << mesh_.label(model_.limiting_element())
-                 << " is the smallest or stiffest for its mass: check its shape and material";
-        throw PhysicsError(text.str());
+             << dynamics.end_time << " s: lower dynamics.end_time";
+        if (dynamics.time_step)
+            text << " or raise dynamics.time_step";
+        else
+            text << ", or check shape and material of element "
+                 << mesh_.label(model_.limiting_element())
+                 << ", which is the smallest or stiffest for its mass";
+        if (num_steps_ == 0) throw InputError(text.str());
+        throw PhysicsError(text.str());  // edits have left such an element
     }
     return limit;
 }

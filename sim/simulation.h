@@ -36,8 +36,8 @@ class Observer {
 class Simulation {
   public:
     /// Builds what the scenario describes, at time 0.
-    /// Throws InputError for a mesh, selection or material at fault, PhysicsError for a fixed step
-    /// above the bound.
+    /// Throws InputError for a mesh, selection or material at fault and for more than 1e10 steps,
+    /// PhysicsError for a fixed step above the bound.
     explicit Simulation(const Scenario& scenario);
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;

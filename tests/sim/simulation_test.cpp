@@ -40,6 +40,24 @@ std::string text_of(double value) {
     return text.str();
 }
 
+TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
+    const auto refusal = [](const std::string& keys, double end_time) -> std::string {
+        Scenario scenario = scenario_of(soft_cube + dynamics(1, keys));
+        scenario.dynamics.end_time = end_time;
+        try {
+            Simulation{scenario};
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no InputError";
+    };
+    EXPECT_EQ(refusal("time_step = 1e-300", 0.3),
+              "steps of 1e-300 s would take more than 1e10 of them to the end at 0.3 s: lower "
+              "dynamics.end_time or raise dynamics.time_step");
+    EXPECT_NE(refusal("", 1e300).find("check shape and material of element "), std::string::npos);
+    EXPECT_EQ(refusal("", 0.3), "no InputError");
+}
+
 TEST(Simulation, FramesFallOnMultiplesAndTheRunEndsAtItsEnd) {
     struct Case {
         double interval, end_time;
