@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/local_nodes.h"
+#include "physics/sum.h"
 #include "physics/viscous_history.h"
 #include "topology/types.h"
 
@@ -84,9 +85,10 @@ class ElementBlock {
     /// (s). Returns the energy that viscosity took, J; 0 if the material has none.
     virtual double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                            ViscousHistory& history) = 0;
-    /// Appends the elastic energy of each element, J.
-    virtual void append_energies(std::span<const Vec3> positions,
-                                 std::vector<double>& energies) const = 0;
+    /// Sum of the elements' elastic energies, J.
+    virtual Sum elastic_energy(std::span<const Vec3> positions) const = 0;
+    /// Sum of their rest volumes, m3.
+    virtual Sum rest_volume() const = 0;
     /// Sum over the elements of modulus times rest volume, J.
     virtual double stiffness_energy() const = 0;
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;

@@ -80,6 +80,18 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
+    /// compute(block) of each block, in ascending order: computed at the same time, and so to be
+    /// added up in the same order whatever the number of workers.
+    /// @param none  in the places where there is no block
+    template <class Value, class Compute>
+    std::vector<Value> of_blocks(const Workers& workers, const Value& none, Compute compute) const {
+        std::vector<Value> values(blocks_.size(), none);
+        workers.for_each(blocks_.size(), [&](std::size_t b) {
+            if (blocks_[b]) values[b] = compute(*blocks_[b]);
+        });
+        return values;
+    }
+
     /// Calls visit(block) for each block in ascending order.
     template <class Visit>
     void for_each_block(Visit visit) const {

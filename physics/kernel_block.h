@@ -103,10 +103,17 @@ class KernelBlock final : public ElementBlock {
         return energy;
     }
 
-    void append_energies(std::span<const Vec3> positions,
-                         std::vector<double>& energies) const override {
+    Sum elastic_energy(std::span<const Vec3> positions) const override {
+        Sum sum;
         for (std::size_t s = 0; s < elements_.size(); ++s)
-            energies.push_back(kernel_.energy(row(s).rest, gather(s, positions)));
+            sum += kernel_.energy(row(s).rest, gather(s, positions));
+        return sum;
+    }
+
+    Sum rest_volume() const override {
+        Sum sum;
+        for (std::size_t s = 0; s < elements_.size(); ++s) sum += row(s).rest.volume;
+        return sum;
     }
 
     double stiffness_energy() const override {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
-#include "physics/sum.h"
 #include "topology/error.h"
 
 namespace incise::physics {
@@ -390,90 +390,6 @@ double Model::own_step(ElementId e) const {
     const ElementShares& shares = elements_.block_of(mesh_, e).shares(e);
     const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());
     return 2.0 / std::sqrt(stiffness / shares.mass);
-}
-
-Totals Model::totals() const {
-    Sum mass, volume, kinetic, elastic, gravity;
-    std::array<Sum, 3> momentum, angular, moment;
-    for (std::size_t n = 0; n < masses_.size(); ++n) {
-        const double m = masses_[n];
-        if (m == 0.0) continue;
-        const Vec3 p = m * velocities_[n];
-        const Vec3 l = positions_[n].cross(p);
-        mass += m;
-        kinetic += 0.5 * p.dot(velocities_[n]);
-        gravity += -m * gravity_.dot(positions_[n]);
-        for (int c = 0; c < 3; ++c) {
-            momentum[static_cast<std::size_t>(c)] += p[c];
-            angular[static_cast<std::size_t>(c)] += l[c];
-            moment[static_cast<std::size_t>(c)] += m * positions_[n][c];
-        }
-    }
-    std::vector<double> energies;
-    elements_.for_each_block([&](const ElementBlock& block) {
-        energies.clear();
-        block.append_energies(positions_, energies);
-        for (const double w : energies) elastic += w;
-        for (const ElementId e : block.elements()) volume += block.rest_volume(e);
-    });
-    Totals t;
-    t.mass = mass.value();
-    t.rest_volume = volume.value();
-    t.kinetic_energy = kinetic.value();
-    t.elastic_energy = elastic.value();
-    t.gravity_energy = gravity.value();
-    for (int c = 0; c < 3; ++c) {
-        t.momentum[c] = momentum[static_cast<std::size_t>(c)].value();
-        t.angular_momentum[c] = angular[static_cast<std::size_t>(c)].value();
-        if (t.mass > 0.0)
-            t.centre_of_mass[c] = moment[static_cast<std::size_t>(c)].value() / t.mass;
-    }
-    return t;
-}
-
-double Model::elastic_energy() const {
-    Sum elastic;
-    std::vector<double> energies;
-    elements_.for_each_block([&](const ElementBlock& block) {
-        energies.clear();
-        block.append_energies(positions_, energies);
-        for (const double w : energies) elastic += w;
-    });
-    return elastic.value();
-}
-
-double Model::stiffness_energy() const {
-    double sum = 0.0;
-    elements_.for_each_block([&](const ElementBlock& block) { sum += block.stiffness_energy(); });
-    return sum;
-}
-
-double Model::min_volume_ratio() const {
-    double lowest = std::numeric_limits<double>::infinity();
-    elements_.for_each_block([&](const ElementBlock& block) {
-        lowest = std::min(lowest, block.min_volume_ratio(positions_));
-    });
-    return lowest;
-}
-
-double Model::volume_change() const {
-    double now = 0.0, at_rest = 0.0;
-    elements_.for_each_block([&](const ElementBlock& block) {
-        for (const ElementId e : block.elements()) {
-            const ElementResult result = block.result(e, positions_, history_);
-            now += result.volume * result.volume_ratio;
-            at_rest += result.volume;
-        }
-    });
-    return now / at_rest - 1.0;
-}
-
-double Model::max_displacement() const {
-    double largest = 0.0;
-    for (std::size_t n = 0; n < masses_.size(); ++n)
-        if (masses_[n] > 0.0)  // alive
-            largest = std::max(largest, (positions_[n] - mesh_.rest_positions()[n]).norm());
-    return largest;
 }
 
 }  // namespace incise::physics

@@ -17,6 +17,11 @@ class Sum {
         sum_ = next;
         return *this;
     }
+    Sum& operator+=(const Sum& other) {
+        *this += other.sum_;
+        lost_ += other.lost_;
+        return *this;
+    }
     double value() const { return sum_ + lost_; }
 
   private:

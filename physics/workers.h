@@ -31,7 +31,7 @@ class Workers {
 
     /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
     /// to be worth it; returns when all are done. The first exception thrown comes out.
-    void for_each(std::size_t n, const std::function<void(std::size_t)>& work);
+    void for_each(std::size_t n, const std::function<void(std::size_t)>& work) const;
 
   private:
     struct Arena;

@@ -75,8 +75,7 @@ io::Frame build_frame(const physics::Model& model, double time, std::span<const 
     if (const auto fibres = model.fibres(); !fibres.empty())
         cells.push_back(
             field<double>("fibre", 3, elements, [&](ElementId e) { return fibres[e.index()]; }));
-    std::vector<physics::ElementResult> results;
-    for (const ElementId e : elements) results.push_back(model.element_result(e));
+    const auto results = model.element_results(elements);
     std::vector<std::size_t> rows(elements.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
     if (has(Field::J))

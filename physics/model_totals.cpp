@@ -1,0 +1,133 @@
+// What a model's nodes and elements add up to. Sums are those of ranges and blocks, in order: the
+// same bits for any number of threads.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "physics/model.h"
+#include "physics/sum.h"
+
+namespace incise::physics {
+
+namespace {
+
+/// What nodes add up to.
+struct NodeSums {
+    Sum mass, kinetic_energy, gravity_energy;
+    std::array<Sum, 3> momentum, angular_momentum, moment_of_mass;
+
+    NodeSums& operator+=(const NodeSums& o) {
+        mass += o.mass;
+        kinetic_energy += o.kinetic_energy;
+        gravity_energy += o.gravity_energy;
+        for (std::size_t c = 0; c < 3; ++c) {
+            momentum[c] += o.momentum[c];
+            angular_momentum[c] += o.angular_momentum[c];
+            moment_of_mass[c] += o.moment_of_mass[c];
+        }
+        return *this;
+    }
+};
+
+Vec3 value_of(const std::array<Sum, 3>& sums) {
+    return {sums[0].value(), sums[1].value(), sums[2].value()};
+}
+
+double value_of(const std::vector<Sum>& parts) {
+    Sum sum;
+    for (const Sum& part : parts) sum += part;
+    return sum.value();
+}
+
+}  // namespace
+
+Totals Model::totals() const {
+    std::vector<NodeSums> ranges(num_node_ranges(masses_.size()));
+    workers_.for_each(ranges.size(), [&](std::size_t r) {
+        NodeSums& sums = ranges[r];
+        const std::size_t end = std::min((r + 1) * nodes_per_range, masses_.size());
+        for (std::size_t n = r * nodes_per_range; n < end; ++n) {
+            const double m = masses_[n];
+            if (m == 0.0) continue;
+            const Vec3 p = m * velocities_[n];
+            const Vec3 l = positions_[n].cross(p);
+            sums.mass += m;
+            sums.kinetic_energy += 0.5 * p.dot(velocities_[n]);
+            sums.gravity_energy += -m * gravity_.dot(positions_[n]);
+            for (int c = 0; c < 3; ++c) {
+                const auto i = static_cast<std::size_t>(c);
+                sums.momentum[i] += p[c];
+                sums.angular_momentum[i] += l[c];
+                sums.moment_of_mass[i] += m * positions_[n][c];
+            }
+        }
+    });
+    NodeSums sums;
+    for (const NodeSums& range : ranges) sums += range;
+
+    Totals t;
+    t.mass = sums.mass.value();
+    t.rest_volume = value_of(elements_.of_blocks(
+        workers_, Sum(), [](const ElementBlock& block) { return block.rest_volume(); }));
+    t.kinetic_energy = sums.kinetic_energy.value();
+    t.elastic_energy = elastic_energy();
+    t.gravity_energy = sums.gravity_energy.value();
+    t.momentum = value_of(sums.momentum);
+    t.angular_momentum = value_of(sums.angular_momentum);
+    if (t.mass > 0.0) t.centre_of_mass = value_of(sums.moment_of_mass) / t.mass;
+    return t;
+}
+
+double Model::elastic_energy() const {
+    return value_of(elements_.of_blocks(workers_, Sum(), [&](const ElementBlock& block) {
+        return block.elastic_energy(positions_);
+    }));
+}
+
+std::vector<ElementResult> Model::element_results(std::span<const ElementId> elements) const {
+    constexpr std::size_t chunk = 512;
+    std::vector<ElementResult> results(elements.size());
+    workers_.for_each((elements.size() + chunk - 1) / chunk, [&](std::size_t c) {
+        const std::size_t end = std::min((c + 1) * chunk, elements.size());
+        for (std::size_t i = c * chunk; i < end; ++i) results[i] = element_result(elements[i]);
+    });
+    return results;
+}
+
+double Model::stiffness_energy() const {
+    double sum = 0.0;
+    elements_.for_each_block([&](const ElementBlock& block) { sum += block.stiffness_energy(); });
+    return sum;
+}
+
+double Model::min_volume_ratio() const {
+    const double none = std::numeric_limits<double>::infinity();
+    const auto of_blocks = elements_.of_blocks(workers_, none, [&](const ElementBlock& block) {
+        return block.min_volume_ratio(positions_);
+    });
+    return std::accumulate(of_blocks.begin(), of_blocks.end(), none,
+                           [](double a, double b) { return std::min(a, b); });
+}
+
+double Model::volume_change() const {
+    double now = 0.0, at_rest = 0.0;
+    elements_.for_each_block([&](const ElementBlock& block) {
+        for (const ElementId e : block.elements()) {
+            const ElementResult result = block.result(e, positions_, history_);
+            now += result.volume * result.volume_ratio;
+            at_rest += result.volume;
+        }
+    });
+    return now / at_rest - 1.0;
+}
+
+double Model::max_displacement() const {
+    double largest = 0.0;
+    for (std::size_t n = 0; n < masses_.size(); ++n)
+        if (masses_[n] > 0.0)  // alive
+            largest = std::max(largest, (positions_[n] - mesh_.rest_positions()[n]).norm());
+    return largest;
+}
+
+}  // namespace incise::physics
