@@ -136,7 +136,7 @@ TEST(Carver, CoversWhatACrawlInTinyStepsCovers) {
             return b;
         }();
         const double size = box.diagonal().norm();
-        for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
             SCOPED_TRACE(seed);
             Random random(seed);
             // Tissue that drifts and wobbles; a tool that flies past, turning a little or not.
@@ -179,7 +179,7 @@ TEST(Carver, CoversWhatACrawlInTinyStepsCovers) {
             }
         }
     }
-    EXPECT_GT(num_covered, 500u);
+    EXPECT_GT(num_covered, std::size_t{test::num_cases(500)});
 }
 
 TEST(Carver, TurningToolInSmallStepsCoversWhatACrawlCovers) {

@@ -14,6 +14,7 @@
 #include "cutting/triangle_surface.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 
 namespace incise::cutting {
 namespace {
@@ -40,7 +41,7 @@ double angle(const Vec3& u, const Vec3& v) {
 TEST(CrossingPlaces, AreWhereABladeMeetsTissueInRelativeMotion) {
     // Both move straight, each as a whole: seen from the tissue the blade sweeps a parallelogram.
     int num_crossed = 0;
-    for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(4000); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
         const Vec3 p = random.vector(1), q = random.vector(1);
@@ -60,7 +61,7 @@ TEST(CrossingPlaces, AreWhereABladeMeetsTissueInRelativeMotion) {
         EXPECT_NEAR(found[0].place, s[2], 1e-14 / steepness);
         EXPECT_LE(angle(found[0].normal, (b - a).cross(blade_by - tissue_by)), 1e-14 / steepness);
     }
-    EXPECT_GT(num_crossed, 200);
+    EXPECT_GT(num_crossed, test::num_cases(200));
 }
 
 TEST(CrossingPlaces, TurnRoundWithTheTissueAndNotWithTheBlade) {
@@ -115,7 +116,7 @@ TEST(CrossingPlaces, OfABentBladeAreOneForEachOfItsSegmentsThatPass) {
 
 TEST(Pierces, AgreesWithPlainArithmeticInGeneralPosition) {
     int num_pierced = 0;
-    for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(4000); ++seed) {
         Random random(seed);
         const Vec3 p = random.vector(1), q = random.vector(1);
         const std::array<Vec3, 3> t = {random.vector(1), random.vector(1), random.vector(1)};
@@ -126,13 +127,13 @@ TEST(Pierces, AgreesWithPlainArithmeticInGeneralPosition) {
         num_pierced += expected;
         ASSERT_EQ(pierces(p, q, t), expected) << seed;
     }
-    EXPECT_GT(num_pierced, 200);
+    EXPECT_GT(num_pierced, test::num_cases(200));
 }
 
 TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
     // Tetrahedra of grid points, where everything touches everything; the ends are far away.
     int num_pierced = 0;
-    for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(3000); ++seed) {
         Random random(seed);
         const std::size_t size = 2 + random.below(3);
         std::array<Vec3, 4> x;
@@ -150,7 +151,7 @@ TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
         const Vec3 through = random.grid_point(size);
         ASSERT_FALSE(parity(through - 64 * direction, through + 64 * direction)) << seed;
     }
-    EXPECT_GT(num_pierced, 100);
+    EXPECT_GT(num_pierced, test::num_cases(100));
 }
 
 // ---- planes
@@ -248,7 +249,7 @@ TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
     int num_crossed = 0;
     for (const SurfaceData& data : closed_surfaces()) {
         const TriangleSurface surface(data);
-        for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(1500); ++seed) {
             Random random(seed);
             // Between grid points, through corners and along edges and faces.
             std::vector<Vec3> loop;
@@ -273,11 +274,11 @@ TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
             ASSERT_EQ(crossings(surface, inside, inside + 64 * by).size() % 2, 1u) << seed;
         }
     }
-    EXPECT_GT(num_crossed, 1000);
+    EXPECT_GT(num_crossed, test::num_cases(1000));
 }
 
 TEST(TriangleSurface, IsCrossedWhereItIs) {
-    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(500); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
         const Vec3 centre = random.vector(0.5), half = random.vector(0.2) + Vec3::Constant(0.5);
@@ -318,7 +319,7 @@ TEST(TriangleSurface, IsCrossedWhereItIs) {
 }
 
 TEST(TriangleSurface, TellsItsDistance) {
-    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(500); ++seed) {
         Random random(seed);
         const Vec3 half = random.vector(0.2) + Vec3::Constant(0.5), x = random.vector(2);
         const TriangleSurface surface(box_surface(Box(-half, half)));

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 #include "swept_body.h"
 #include "topology/box_mesh.h"
 
@@ -80,7 +81,7 @@ TEST(Separator, PartsTissueThatMovesHoweverItMoves) {
         SCOPED_TRACE(family.name);
         // A step of the blade is a 20th of the way: the fastest tissue outruns it by far.
         for (const double speed : {1e-3, 1e-2, 1e-1})
-            for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
                 SCOPED_TRACE(testing::Message() << "speed " << speed << ", seed " << seed);
                 Body body(family.data);
                 const auto box = body.box();

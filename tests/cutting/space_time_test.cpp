@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 
 namespace incise::cutting {
 namespace {
@@ -213,7 +214,7 @@ History passing_blade(Random& random, std::size_t size, std::size_t num_steps) {
 TEST(Crossing, AClosedPathOfTissueIsCrossedAnEvenNumberOfTimes) {
     int num_crossed = 0;
     for (const std::size_t size : {2u, 3u, 5u})
-        for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(400); ++seed) {
             Random random(1000 * size + seed);
             const auto loop = grid_chain(random, size, 3 + random.below(3), 3, true);
             const auto blade = passing_blade(random, size, 3);
@@ -224,12 +225,12 @@ TEST(Crossing, AClosedPathOfTissueIsCrossedAnEvenNumberOfTimes) {
                 num_crossed += parity(piece, blade);
             }
         }
-    EXPECT_GT(num_crossed, 500);  // its segments for themselves are crossed often
+    EXPECT_GT(num_crossed, test::num_cases(500));  // its segments for themselves are crossed often
 }
 
 TEST(Crossing, APathFromOneSideToTheOtherIsCrossedAnOddNumberOfTimes) {
     for (const std::size_t size : {2u, 3u, 5u})
-        for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(400); ++seed) {
             Random random(1000 * size + seed);
             auto path = grid_chain(random, size, 3 + random.below(3), 3, false);
             for (auto& points : path) {  // held where the blade never comes
@@ -243,7 +244,7 @@ TEST(Crossing, APathFromOneSideToTheOtherIsCrossedAnOddNumberOfTimes) {
 
 TEST(Crossing, AClosedBladeThatComesAndGoesCrossesAPathEvenly) {
     for (const std::size_t size : {2u, 3u, 5u})
-        for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(300); ++seed) {
             Random random(1000 * size + seed);
             const auto loop = grid_chain(random, size, 4, 3, true);
             auto blade = grid_chain(random, size, 4, 3, true);
@@ -280,7 +281,7 @@ TEST(Crossing, OfStraightSweepsIsTheSameHoweverTheyAreDivided) {
     // are divided; then each crossing for itself is kept, free ends and touching ones included.
     int num_crossed = 0;
     for (const std::size_t size : {3u, 4u, 6u})
-        for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(1500); ++seed) {
             Random random(1000 * size + seed);
             const auto swept = [&] {
                 const Vec3 a = random.grid_point(size), b = random.grid_point(size);
@@ -298,14 +299,14 @@ TEST(Crossing, OfStraightSweepsIsTheSameHoweverTheyAreDivided) {
                              with_half_steps(with_half_steps(blade))),
                       expected);
         }
-    EXPECT_GT(num_crossed, 100);
+    EXPECT_GT(num_crossed, test::num_cases(100));
 }
 
 TEST(Crossing, AgreesWithPlainArithmeticInGeneralPosition) {
     // A still tissue segment against a blade that keeps its direction: a segment and a
     // parallelogram in space.
     int num_crossed = 0;
-    for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(3000); ++seed) {
         Random random(seed);
         const Vec3 p = random.vector(1), q = random.vector(1);
         const Vec3 a = random.vector(1), b = random.vector(1), by = 3.0 * random.vector(1);
@@ -316,7 +317,7 @@ TEST(Crossing, AgreesWithPlainArithmeticInGeneralPosition) {
         num_crossed += expected;
         ASSERT_EQ(cross(still(p, q), shifted(a, b, by)), expected) << seed;
     }
-    EXPECT_GT(num_crossed, 100);
+    EXPECT_GT(num_crossed, test::num_cases(100));
 }
 
 }  // namespace

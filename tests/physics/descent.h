@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -49,7 +49,8 @@ class Descent {
             ancestors_.push_back(ElementId(e));
         for (const FaceId f : first_.loaded_faces) {
             const auto at = [&](int p) { return mesh.rest_position(mesh.face_corner(f, p)); };
-            planes_.emplace(f.element, Plane::Through(at(0), at(1), at(2)));
+            planes_.emplace(f.element,
+                            Plane{at(0), (at(1) - at(0)).cross(at(2) - at(0)).normalized()});
         }
     }
 
@@ -89,7 +90,11 @@ class Descent {
     }
 
   private:
-    using Plane = Eigen::Hyperplane<double, 3>;
+    struct Plane {
+        Vec3 point, normal;
+
+        double distance(const Vec3& x) const { return std::abs(normal.dot(x - point)); }
+    };
 
     // A part of the ancestor in the plane of one of its faces lies in that face.
     bool lies_in_loaded_plane(const topology::Mesh& mesh, FaceId f) const {
@@ -97,7 +102,7 @@ class Descent {
         return std::any_of(begin, end, [&](const auto& plane) {
             bool all = true;
             for (int p = 0; p < mesh.face_size(f); ++p)
-                all &= plane.second.absDistance(mesh.rest_position(mesh.face_corner(f, p))) < 1e-12;
+                all &= plane.second.distance(mesh.rest_position(mesh.face_corner(f, p))) < 1e-12;
             return all;
         });
     }

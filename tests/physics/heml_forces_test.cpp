@@ -176,25 +176,31 @@ TEST(ElementForces, OpenAFlatElement) {
     });
 }
 
-// The C_k solve: C is linear in the squared lengths l_k = e_k . C e_k of the rest edges e_k.
+// The C_k solve: C is linear in the squared lengths l_k = e_k . C e_k of the rest edges e_k, so
+// that C_k has length 1 along e_k and 0 along the others. With the gradients g of the corners'
+// weights that is -(g_i g_j^T + g_j g_i^T) / 2 of the edge from i to j.
 TEST(LinkElement, HoldsTheTracesOfTheLinkTensors) {
+    constexpr std::array<std::array<std::size_t, 2>, 6> ends{
+        {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}}};
     test::Random random(9);
     for (int i = 0; i < 100; ++i) {
         const Tetrahedron X = random_tetrahedron(random);
         const LinkElement element = link_element(X);
-        const std::array<Vec3, 6> edges{X[1] - X[0], X[2] - X[0], X[3] - X[0],
-                                        X[2] - X[1], X[3] - X[2], X[1] - X[3]};
-        Mat6 links_of_tensor;  // columns: xx, yy, zz, xy, yz, zx
-        for (int k = 0; k < 6; ++k) {
-            const Vec3& e = edges[static_cast<std::size_t>(k)];
-            links_of_tensor.row(k) << e.x() * e.x(), e.y() * e.y(), e.z() * e.z(),
-                2 * e.x() * e.y(), 2 * e.y() * e.z(), 2 * e.z() * e.x();
+        std::array<Vec3, 4> g;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 &a = X[(k + 1) % 4], &b = X[(k + 2) % 4], &c = X[(k + 3) % 4];
+            const Vec3 normal = (b - a).cross(c - a);
+            g[k] = normal / normal.dot(X[k] - a);
         }
-        const Mat6 tensors = links_of_tensor.inverse();
         std::array<Mat3, 6> C;
-        for (int k = 0; k < 6; ++k) {
-            const Vec6 c = tensors.col(k);
-            C[static_cast<std::size_t>(k)] << c[0], c[3], c[5], c[3], c[1], c[4], c[5], c[4], c[2];
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Mat3 product = g[ends[k][0]] * g[ends[k][1]].transpose();
+            C[k] = -0.5 * (product + product.transpose());
+            for (std::size_t m = 0; m < 6; ++m) {
+                const Vec3 edge = X[ends[m][1]] - X[ends[m][0]];
+                EXPECT_NEAR(edge.dot(C[k] * edge), k == m ? 1.0 : 0.0,
+                            1e-12 * C[k].norm() * edge.squaredNorm());
+            }
         }
         for (int k = 0; k < 6; ++k) {
             const Mat3& Ck = C[static_cast<std::size_t>(k)];

@@ -6,6 +6,7 @@
 
 #include "physics/integrator.h"
 #include "physics/test_bodies.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/mesh_edit.h"
 
@@ -94,7 +95,8 @@ TEST(ImplicitEuler, IsStableFarBeyondTheExplicitBound) {
 }
 
 TEST(ImplicitEuler, ConvergesWithFirstOrderToTheExplicitMotion) {
-    for (const NamedMaterial& m : materials()) {
+    const auto all_materials = materials();
+    for (const NamedMaterial& m : test::some_of(all_materials)) {
         SCOPED_TRACE(m.name);
         const Mesh mesh = bar(m.kind);
         const double end = 0.1;

@@ -11,6 +11,7 @@
 #include "run_folder.h"
 #include "scenario_file.h"
 #include "sim/elastic_constants.h"
+#include "support/num_cases.h"
 
 namespace incise::sim {
 namespace {
@@ -270,7 +271,7 @@ TEST(Preset, RunsStably) {
             std::to_string(pressure) + "\n";
         Simulation simulation(scenario_of(text));
         simulation.start();
-        for (int i = 0; i < 300; ++i) simulation.step();
+        for (int i = 0; i < test::num_cases(300); ++i) simulation.step();
         // NaN fails both.
         EXPECT_GT(simulation.model().min_volume_ratio(), 0.3);
         EXPECT_LT(simulation.model().max_displacement(), 0.02);

@@ -14,8 +14,8 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// All of them; under sanitizers, with which each takes ten times as long, a quarter.
-constexpr int num_cases(int all) { return is_sanitized ? std::max(all / 4, 1) : all; }
+/// All of them; under sanitizers, with which each takes ten times as long, an eighth.
+constexpr int num_cases(int all) { return is_sanitized ? std::max(all / 8, 1) : all; }
 
 /// The first so many of an array of cases, which must outlive the result.
 template <class Cases>

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
 
@@ -26,7 +27,7 @@ TEST(ChangeCheck, LetsEveryEditPassThatTheMeshHasMade) {
         SCOPED_TRACE(family.name);
         test::Random random(8);
         Mesh mesh = Mesh::build(family.data).mesh;
-        for (int i = 0; i < 100; ++i) {
+        for (int i = 0; i < test::num_cases(100); ++i) {
             if (mesh.num_elements() == 0) mesh = Mesh::build(family.data).mesh;
             const ChangeSet changes = test::random_edit(mesh, random);
             if (changes.is_empty()) continue;
@@ -48,7 +49,7 @@ TEST(ChangeCheck, RefusesForgedRecords) {
     {
         MeshEdit edit(mesh);
         edit.remove(ElementId(100));
-        for (std::size_t i = 0; i < 100; ++i)  // a node at least comes apart
+        for (std::size_t i = 0; i < test::num_cases(100); ++i)  // a node at least comes apart
             for (int f = 0; f < 4; ++f)
                 if (i % 7 == 0 && mesh.neighbor({ElementId(i), f}).is_valid())
                     edit.open({ElementId(i), f});

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
 #include "topology/mesh_edit.h"
 
 namespace incise::topology {
@@ -83,7 +84,7 @@ class Oracle {
 TEST(Surgery, CountsAsCgalsManagedOperationsDo) {
     for (const auto& family : test::mesh_families()) {
         if (family.name == "mixed") continue;  // CGAL makes tetrahedra and hexahedra only
-        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
             SCOPED_TRACE(family.name + " " + std::to_string(seed));
             test::Random random(seed);
             Mesh mesh = Mesh::build(family.data).mesh;
