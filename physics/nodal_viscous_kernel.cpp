@@ -8,16 +8,16 @@ namespace incise::physics {
 
 namespace {
 
-Eigen::Map<Mat3> tensor(std::span<double> memory, std::size_t i) {
+Eigen::Map<Mat3> first_stress(std::span<double> memory, std::size_t i) {
     return Eigen::Map<Mat3>(memory.data() + 9 * i);
 }
-Eigen::Map<const Mat3> tensor(std::span<const double> memory, std::size_t i) {
+Eigen::Map<const Mat3> first_stress(std::span<const double> memory, std::size_t i) {
     return Eigen::Map<const Mat3>(memory.data() + 9 * i);
 }
 
-Mat3 sum_of_terms(std::span<const double> memory, std::size_t num_terms) {
+Mat3 sum_of_relaxing(std::span<const double> memory, std::size_t num_terms) {
     Mat3 sum = Mat3::Zero();
-    for (std::size_t i = 0; i < num_terms; ++i) sum += tensor(memory, i + 1);
+    for (std::size_t i = 0; i < num_terms; ++i) sum += first_stress(memory, i + 1);
     return sum;
 }
 
@@ -46,7 +46,7 @@ double NodalViscousKernel::energy(const Element& e, const Corners& x) const {
 std::array<Vec3, 4> NodalViscousKernel::forces_of_memory(const Element& e, const Corners&,
                                                          std::span<const double> memory) const {
     const Mat3 relaxed =
-        e.volume * (sum_of_terms(memory, terms.size()) * e.inverse_edges.transpose());
+        e.volume * (sum_of_relaxing(memory, terms.size()) * e.inverse_edges.transpose());
     return {-relaxed.rowwise().sum(), relaxed.col(0), relaxed.col(1), relaxed.col(2)};
 }
 
@@ -64,7 +64,7 @@ NodalViscousKernel::EndOfStep NodalViscousKernel::end_of_step(std::span<const do
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const NodalPronyStep rule = nodal_prony_step(terms[i], dt);
         end.share -= rule.gain;
-        end.stress -= rule.decay * tensor(memory, i + 1);
+        end.stress -= rule.decay * first_stress(memory, i + 1);
     }
     return end;
 }
@@ -95,7 +95,8 @@ void NodalViscousKernel::begin_step(double dt) {
 double NodalViscousKernel::advance(const Element& e, const Corners& before, const Corners& x,
                                    std::span<double> memory) const {
     const auto relaxing_stress = [&]() -> Mat3 {
-        return (1.0 - long_time_share) * tensor(memory, 0) - sum_of_terms(memory, terms.size());
+        return (1.0 - long_time_share) * first_stress(memory, 0) -
+               sum_of_relaxing(memory, terms.size());
     };
     Mat3 twice_mean = relaxing_stress();
     // P = -sum of f_k X_k^T / Vol: as f_k = -Vol P grad N_k and sum of grad N_k X_k^T = 1.
@@ -104,10 +105,10 @@ double NodalViscousKernel::advance(const Element& e, const Corners& before, cons
     forces << f[1], f[2], f[3];
     const Mat3 P = -1.0 / e.volume * (forces * e.edges.transpose());
     for (std::size_t i = 0; i < terms.size(); ++i) {
-        auto gamma = tensor(memory, i + 1);
+        auto gamma = first_stress(memory, i + 1);
         gamma = steps[i].decay * gamma + steps[i].gain * P;
     }
-    tensor(memory, 0) = P;
+    first_stress(memory, 0) = P;
     twice_mean += relaxing_stress();
     const Mat3 dF = (edge_matrix(x) - edge_matrix(before)) * e.inverse_edges;
     return 0.5 * e.volume * twice_mean.cwiseProduct(dF).sum();
