@@ -9,12 +9,6 @@ namespace incise::io {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 std::vector<std::string_view> split(std::string_view line) {
     std::vector<std::string_view> fields;
     while (true) {

@@ -25,7 +25,7 @@ using topology::CellKind;
 using enum CellForm::Use;
 
 // Gmsh's prism has its first triangle face the second one, VTK's has it face away.
-constexpr CellForm forms[] = {
+constexpr CellForm gmsh_forms[] = {
     {1, "line", 2, ignore},
     {2, "triangle", 3, ignore},
     {3, "quadrilateral", 4, ignore},
@@ -60,7 +60,7 @@ constexpr CellForm forms[] = {
     {92, "third-order hexahedron", 64},
     {93, "fourth-order hexahedron", 125},
 };
-static_assert(std::is_sorted(std::begin(forms), std::end(forms),
+static_assert(std::is_sorted(std::begin(gmsh_forms), std::end(gmsh_forms),
                              [](const auto& a, const auto& b) { return a.code < b.code; }));
 
 class GmshReader {
@@ -198,7 +198,7 @@ class GmshReader {
     }
 
     const CellForm& form_of(int type) const {
-        const auto* form = find_form(forms, type);
+        const auto* form = find_form(gmsh_forms, type);
         if (form == nullptr)
             scanner_.fail("element type " + std::to_string(type) +
                           " is not known; export linear elements");

@@ -7,7 +7,7 @@ namespace incise::io {
 
 namespace {
 
-const char* vtk_cell_type(topology::CellKind kind) {
+const char* legacy_cell_type(topology::CellKind kind) {
     using enum topology::CellKind;
     switch (kind) {
         case tetrahedron:
@@ -43,7 +43,7 @@ std::string legacy_vtk_text(const topology::MeshData& mesh) {
         text += '\n';
     }
     text += "CELL_TYPES " + num_cells + "\n";
-    for (const auto kind : mesh.kinds) text += vtk_cell_type(kind);
+    for (const auto kind : mesh.kinds) text += legacy_cell_type(kind);
     text += "CELL_DATA " + num_cells + "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
     for (const auto region : mesh.regions) {
         append_number(text, region);

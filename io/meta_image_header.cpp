@@ -15,12 +15,6 @@ namespace incise::io {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 struct Entry {
     std::string_view value;
     std::size_t line = 0;

@@ -96,11 +96,6 @@ class NrrdFields {
     }
 
   private:
-    static std::string_view trimmed(std::string_view text) {
-        while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-        while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-        return text;
-    }
     Vec3 vector(const Field& field, std::string_view text) const {
         Vec3 vector;
         for (int i = 0; i < 3; ++i) {

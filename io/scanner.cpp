@@ -114,6 +114,12 @@ void Scanner::fail_expected(std::string_view what, std::string_view found) const
     fail("expected " + std::string(what) + ", found " + in_quotes(found));
 }
 
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
 std::string lower_case(std::string_view text) {
     std::string result(text);
     for (char& c : result)

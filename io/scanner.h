@@ -92,4 +92,7 @@ class Scanner {
 /// In lower case (ASCII letters only).
 std::string lower_case(std::string_view text);
 
+/// The text without blanks at its ends.
+std::string_view trimmed(std::string_view text);
+
 }  // namespace incise::io

@@ -19,7 +19,7 @@ constexpr Keys plane_keys[] = {"point", "normal"};
 constexpr Keys pose_keys[] = {"time", "at", "rotate"};
 constexpr Keys rotation_keys[] = {"axis", "angle"};
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
-constexpr Keys sphere_keys[] = {"radius"};
+constexpr Keys shape_sphere_keys[] = {"radius"};
 constexpr Keys capsule_keys[] = {"from", "to", "radius"};
 constexpr Keys shape_box_keys[] = {"size"};
 
@@ -46,7 +46,7 @@ Carver read_carver(const TableReader& tool) {
         table.require("radius", "a length, as in radius = 0.008");
         return table.number("radius", 1.0, limits::positive);
     };
-    if (const auto sphere = shape->table("sphere", {sphere_keys}); sphere && kind)
+    if (const auto sphere = shape->table("sphere", {shape_sphere_keys}); sphere && kind)
         carver.shape = SphereShape{radius_of(*sphere)};
     if (const auto capsule = shape->table("capsule", {capsule_keys}); capsule && kind) {
         capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
