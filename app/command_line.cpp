@@ -243,6 +243,16 @@ void declare_render(CLI::App& app, Action& action) {
     });
 }
 
+/// An empty word is no value of anything, but what is left of a shell's variable that is not set.
+void refuse_empty_words(CLI::App& app) {
+    const auto complaint = [](const std::string& word) {
+        return std::string(word.empty() ? "must not be empty; give a value or leave it out" : "");
+    };
+    for (CLI::App* verb : app.get_subcommands({}))
+        for (CLI::Option* option : verb->get_options())
+            if (option->get_items_expected_max() > 0) option->check(complaint);
+}
+
 /// A first word that is no verb, told in our own words.
 void check_verb(int argc, const char* const* argv) {
     if (argc < 2)
@@ -271,6 +281,7 @@ int dispatch(int argc, const char* const* argv) {
     declare_materials(app, action);
     declare_render(app, action);
     declare_bench(app, action);
+    refuse_empty_words(app);
     app.footer(footer);  // after the verbs, which would inherit it
     try {
         app.parse(argc, argv);

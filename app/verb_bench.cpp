@@ -96,13 +96,7 @@ void print_text(const Throughput& throughput) {
 }  // namespace
 
 int bench(const BenchOptions& options) {
-    // What cannot be written is told before the work, not after.
-    if (options.json && *options.json != "-") {
-        std::error_code error;
-        const auto status = std::filesystem::status(*options.json, error);
-        if (!std::filesystem::exists(status) || std::filesystem::is_directory(status))
-            io::write_file(*options.json, "{}\n");
-    }
+    if (options.json && *options.json != "-") io::require_writable(*options.json);
     Throughput throughput;
     {
         Progress progress(1.0, "measuring", false);

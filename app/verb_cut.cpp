@@ -52,6 +52,7 @@ Job parse(const CutOptions& options) {
             if (options.json->lexically_normal() == mesh.lexically_normal())
                 throw InputError("--json: " + mesh.string() +
                                  " is the mesh; name another file, or - for standard output");
+    if (options.json && *options.json != "-") io::require_writable(*options.json);
     if (!options.mode.empty()) {
         if (const auto complaint = sim::complaint(options.mode, {modes}))
             throw InputError("--mode: " + sim::in_quotes(options.mode) + " " + *complaint);

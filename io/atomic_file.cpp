@@ -2,12 +2,12 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -53,7 +53,20 @@ const char* remedy(int error_number) {
 /// Between the name of a file and the process that is writing it.
 constexpr std::string_view temporary_mark = ".tmp";
 
-/// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept.
+/// Whether it is a name that a TemporaryFile takes: ".NAME.tmpPROCESS-ATTEMPT".
+bool is_temporary(const std::string& name) {
+    const auto mark = name.rfind(temporary_mark);
+    if (!name.starts_with('.') || mark == name.npos) return false;
+    const auto numbers = std::string_view(name).substr(mark + temporary_mark.size());
+    const auto dash = numbers.find('-');
+    return dash != numbers.npos && parse_number<pid_t>(numbers.substr(0, dash)) &&
+           parse_number<int>(numbers.substr(dash + 1));
+}
+
+/// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept. It is
+/// locked as long as it is being written, and the system unlocks it however the writer ends: that
+/// tells it from what a killed process has left, where its number does not (another process may
+/// have that by now).
 class TemporaryFile {
   public:
     /// Throws OutputError about `meant` if there can be none.
@@ -69,6 +82,7 @@ class TemporaryFile {
             if (file_.is_open() || errno != EEXIST) break;
         }
         if (!file_.is_open()) throw_output_error(meant, errno);
+        ::flock(file_.get(), LOCK_EX | LOCK_NB);  // not everywhere are there locks
     }
     ~TemporaryFile() {
         if (!is_kept_) ::unlink(path_.c_str());
@@ -90,6 +104,14 @@ class TemporaryFile {
     bool is_kept_ = false;
 };
 
+/// Whether another one writes the temporary file at this moment. Also one that may not be opened
+/// counts as such: it is not ours to remove.
+bool is_being_written(const fs::path& temporary) {
+    const FileDescriptor file(temporary, O_WRONLY | O_NONBLOCK);
+    if (!file.is_open()) return true;
+    return ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
 /// What a link finally leads to, even if that is not there yet.
 fs::path follow_links(fs::path path) {
     constexpr int most_links = 40;  // the kernel's own limit
@@ -104,6 +126,22 @@ fs::path follow_links(fs::path path) {
 
 fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+struct Target {
+    fs::path path;
+    bool is_device;  ///< or a pipe: never to be replaced by a file
+};
+
+/// Throws OutputError if it is a folder.
+Target target_of(const fs::path& path) {
+    Target target{follow_links(path), false};
+    struct stat status {};
+    const bool is_there = ::stat(target.path.c_str(), &status) == 0;
+    if (is_there ? S_ISDIR(status.st_mode) : !target.path.has_filename())
+        throw_output_error(path, EISDIR);
+    target.is_device = is_there && !S_ISREG(status.st_mode);
+    return target;
 }
 
 /// Makes a rename in the folder last. A folder that may be written to but not read, as for
@@ -124,27 +162,30 @@ void throw_output_error(const fs::path& path, int error_number) {
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
-    const auto target = follow_links(path);
-    struct stat status {};
-    if (::stat(target.c_str(), &status) == 0) {
-        if (S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
-        if (!S_ISREG(status.st_mode)) {  // a device: never to be replaced by a file
-            // A pipe that nobody reads is refused here, not waited for.
-            FileDescriptor device(target, O_WRONLY | O_NONBLOCK);
-            if (!device.is_open() || ::fcntl(device.get(), F_SETFL, 0) != 0 ||
-                !device.write(bytes) || !device.close())
-                throw_output_error(path, errno);
-            return;
-        }
-    } else if (!target.has_filename()) {
-        throw_output_error(path, EISDIR);
+    const Target target = target_of(path);
+    if (target.is_device) {
+        // A pipe that nobody reads is refused here, not waited for.
+        FileDescriptor device(target.path, O_WRONLY | O_NONBLOCK);
+        if (!device.is_open() || ::fcntl(device.get(), F_SETFL, 0) != 0 || !device.write(bytes) ||
+            !device.close())
+            throw_output_error(path, errno);
+        return;
     }
-
-    const auto folder = folder_of(target);
-    TemporaryFile temporary(folder, target.filename().string(), path);
-    if (!temporary.file().write(bytes) || !temporary.file().sync() || !temporary.file().close() ||
-        !temporary.rename_to(target) || !sync_folder(folder))
+    const auto folder = folder_of(target.path);
+    TemporaryFile temporary(folder, target.path.filename().string(), path);
+    // Closed last, since that unlocks it.
+    if (!temporary.file().write(bytes) || !temporary.file().sync() ||
+        !temporary.rename_to(target.path) || !temporary.file().close() || !sync_folder(folder))
         throw_output_error(path, errno);
+}
+
+void require_writable(const fs::path& path) {
+    const Target target = target_of(path);
+    if (!target.is_device) {
+        const TemporaryFile probe(folder_of(target.path), target.path.filename().string(), path);
+    } else if (::access(target.path.c_str(), W_OK) != 0) {  // not opened: a reader would notice
+        throw_output_error(path, errno);
+    }
 }
 
 void make_output_folder(const fs::path& folder) {
@@ -160,15 +201,7 @@ void remove_unfinished_files(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
-        const auto name = entry->path().filename().string();
-        const auto mark = name.rfind(temporary_mark);
-        if (!name.starts_with('.') || mark == name.npos) continue;
-        std::string_view digits = std::string_view(name).substr(mark + temporary_mark.size());
-        digits = digits.substr(0, digits.find('-'));
-        const auto process = parse_number<pid_t>(digits);
-        // One of our own number is of a process that had it before: we are not writing now.
-        if (process && *process > 0 &&
-            (*process == ::getpid() || (::kill(*process, 0) != 0 && errno == ESRCH)))
+        if (is_temporary(entry->path().filename().string()) && !is_being_written(entry->path()))
             stale.push_back(entry->path());
     }
     // A folder that may be written to but not read keeps them.

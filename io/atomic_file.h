@@ -17,11 +17,16 @@ namespace incise::io {
 /// Cost: two or three waits for the disk.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Throws the OutputError that write_file would throw at once: there is no such folder, it may not
+/// be written to, a folder is in the place of the file. For what is written after long work; a
+/// disk may still be full then. Changes nothing.
+void require_writable(const std::filesystem::path& path);
+
 /// Makes the folder and its parents where they are missing, and makes sure that files can be
 /// written in it. Throws OutputError as above.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// Removes from the folder the hidden files that processes left there which are no more: those that
+/// Removes from the folder the hidden files that nobody writes any more: those of processes that
 /// were killed in the middle of write_file. Throws OutputError as above.
 void remove_unfinished_files(const std::filesystem::path& folder);
 

@@ -74,7 +74,10 @@ void write_mesh(const std::filesystem::path& path, const topology::MeshData& mes
     write_file(path, written_format_of(path).text(mesh));
 }
 
-void check_writable(const std::filesystem::path& path) { written_format_of(path); }
+void check_writable(const std::filesystem::path& path) {
+    written_format_of(path);
+    require_writable(path);
+}
 
 std::vector<std::string> writable_suffixes() {
     std::vector<std::string> suffixes;

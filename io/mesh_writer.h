@@ -19,8 +19,9 @@ namespace incise::io {
 /// cannot be written, which is then left as it was.
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);
 
-/// Throws the InputError of write_mesh() for a suffix that is not known: to be asked before the
-/// work, so that it is not done in vain.
+/// Throws what write_mesh() would throw at once: InputError for a suffix that is not known,
+/// OutputError where there can be no such file (require_writable). To be asked before the work, so
+/// that it is not done in vain.
 void check_writable(const std::filesystem::path& path);
 
 /// With their points, in alphabetical order.

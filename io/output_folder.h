@@ -14,7 +14,7 @@ namespace incise::io {
 class OutputFolder {
   public:
     /// Makes the folder and its parents where they are missing, and removes the hidden files that
-    /// processes left there which were killed in the middle of writing (atomic_file.h).
+    /// killed processes left in it (remove_unfinished_files).
     /// Throws OutputError if files cannot be written there, InputError if the folder is in use.
     explicit OutputFolder(std::filesystem::path path);
 

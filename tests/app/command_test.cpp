@@ -67,6 +67,33 @@ TEST_F(Command, RefusesUsageThatItDoesNotKnow) {
     EXPECT_EQ(refused("--nonsense").substr(0, 8), "incise: ");
 }
 
+TEST_F(Command, RefusesEmptyWords) {
+    for (const auto* arguments :
+         {"bench --json ''", "run ''", "run scene.toml --out ''", "check ''",
+          "info a.vtu --region-array ''", "cut a.vtu --out '' --plane 0,0,0,1,0,0",
+          "cut a.vtu --out b.vtu --plane ''", "materials ''"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_EQ(outcome.out, "") << arguments;
+        EXPECT_NE(outcome.err.find(": must not be empty"), std::string::npos) << outcome.err;
+    }
+}
+
+TEST_F(Command, TellsBeforeTheWorkWhatCannotBeWritten) {
+    write("two.msh", mesh());
+    std::filesystem::create_directory(folder_ / "folder.vtu");
+    for (const auto* arguments :
+         {"bench --json missing/bench.json", "bench --json /proc/version",
+          "bench --json folder.vtu", "cut two.msh --out missing/out.vtu --plane 0,0,0.2,0,0,1",
+          "cut two.msh --out out.vtu --json missing/cut.json --plane 0,0,0.2,0,0,1",
+          "convert no.msh folder.vtu"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 4) << arguments;
+        EXPECT_NE(outcome.err.find(": cannot be written: "), std::string::npos) << outcome.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtu"));
+}
+
 TEST_F(Command, RefusesNumbersOfThreadsThatCannotBe) {
     for (const auto* number : {"0", "-1", "two", "1000000"}) {
         const auto outcome = run(std::string("run scene.toml --threads ") + number);

@@ -299,7 +299,7 @@ TEST_F(Cut, RefusesWhatItCannotUnderstand) {
               "no tool is given; use one or more of --plane, --surface, --sweep, "
               "--remove-sphere, --remove-box, --remove-capsule"},
              {"--plane 0,0,0,1", "--plane: '0,0,0,1' has 4 numbers; it needs 6: px,py,pz,nx,ny,nz"},
-             {"--plane ''", "--plane: '' has 0 numbers; it needs 6: px,py,pz,nx,ny,nz"},
+             {"--plane ''", "--plane: must not be empty"},
              {"--plane 0,0,0,1,0,x",
               "--plane: 'x' in '0,0,0,1,0,x' is no number; it needs 6: px,py,pz,nx,ny,nz"},
              {"--plane 0,0,0,1,,0",

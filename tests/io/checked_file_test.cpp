@@ -2,7 +2,6 @@
 #include "io/checked_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "io/atomic_file.h"
@@ -62,19 +61,15 @@ TEST(OutputFolder, IsOnesOwnUntilItGoes) {
     EXPECT_EQ(count_entries(path), 0u);  // the lock leaves nothing behind
 }
 
-TEST(OutputFolder, RemovesOnlyWhatDeadProcessesLeft) {
+TEST(OutputFolder, RemovesWhatKilledProcessesLeftWhoeverHasTheirNumberNow) {
     const support::TemporaryFolder folder;
-    const pid_t dead = ::fork();
-    if (dead == 0) ::_exit(0);
-    ASSERT_EQ(::waitpid(dead, nullptr, 0), dead);
-    const std::string of_dead = ".summary.json.tmp" + std::to_string(dead) + "-0";
-    const std::string of_parent = ".summary.json.tmp" + std::to_string(::getppid()) + "-0";
-    for (const std::string& name : {of_dead, of_parent, std::string(".hidden"),
-                                    std::string(".x.tmp"), std::string("x.tmp1-0")})
-        write_file(folder / name, "x");
+    for (const pid_t process : {::getpid(), ::getppid(), 1})
+        write_file(folder / (".summary.json.tmp" + std::to_string(process) + "-0"), "x");
+    const auto others = {".hidden", ".x.tmp", ".x.tmp1", ".x.tmp1-", ".x.tmp1-a", "x.tmp1-0"};
+    for (const auto* name : others) write_file(folder / name, "x");
     const OutputFolder ours(folder.path());
-    EXPECT_FALSE(std::filesystem::exists(folder / of_dead));
-    EXPECT_EQ(count_entries(folder.path()), 4u);
+    EXPECT_EQ(count_entries(folder.path()), others.size());
+    for (const auto* name : others) EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // Files are whole or not there, and a failure says what, why and what to do.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -10,6 +12,7 @@
 
 #include "io/atomic_file.h"
 #include "io/checked_file.h"
+#include "io/file_descriptor.h"
 #include "io/line_file.h"
 #include "tests/support/temporary_folder.h"
 #include "topology/error.h"
@@ -82,6 +85,52 @@ TEST(WriteFile, KeepsTheFormerContentsAndLeavesNothingBehindOnFailure) {
     }
     EXPECT_EQ(read_text(folder / "file"), "former contents");
     EXPECT_EQ(count_entries(folder.path()), 1U);
+}
+
+TEST(RemoveUnfinishedFiles, LeavesWhatIsBeingWritten) {
+    const TemporaryFolder folder;
+    static const TemporaryFolder* watched;
+    static std::size_t num_left;
+    watched = &folder;
+    num_left = 0;
+    const FileSizeLimit limit(1000);
+    std::signal(SIGXFSZ, [](int) {  // in the midst of the writing
+        remove_unfinished_files(watched->path());
+        num_left = count_entries(watched->path());
+    });
+    EXPECT_NE(output_error([&] { write_file(folder / "file", std::string(5000, 'x')); }),
+              "no error");
+    EXPECT_EQ(num_left, 1U);
+    EXPECT_EQ(count_entries(folder.path()), 0U);
+}
+
+TEST(RequireWritable, ThrowsWhatWritingWouldAndChangesNothing) {
+    const TemporaryFolder folder;
+    write_file(folder / "file", "contents");
+    fs::create_symlink("missing/target", folder / "link");
+    const std::size_t before = count_entries(folder.path());
+    for (const auto* name : {"new", "file", "missing/file", "file/below", ".", "link", "/proc/file",
+                             "/proc/version", "/dev/null", ""}) {
+        const fs::path path = *name == '\0' ? fs::path() : folder / name;
+        const auto told = output_error([&] { require_writable(path); });
+        EXPECT_EQ(count_entries(folder.path()), before) << name;
+        EXPECT_EQ(read_text(folder / "file"), "contents");
+        if (path == folder / "file" || path == folder / "new")
+            EXPECT_EQ(told, "no error");
+        else
+            EXPECT_EQ(told, output_error([&] { write_file(path, ""); }));
+    }
+}
+
+TEST(RequireWritable, DoesNotEndWhatAReaderOfAPipeReads) {
+    const TemporaryFolder folder;
+    const auto pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const FileDescriptor reader(pipe, O_RDONLY | O_NONBLOCK);
+    require_writable(pipe);
+    // Once someone has opened the pipe for writing and closed it again, its reader is at the end.
+    pollfd waiting{reader.get(), POLLIN, 0};
+    EXPECT_EQ(::poll(&waiting, 1, 0), 0);
 }
 
 TEST(WriteFile, SaysThatADiskIsFullAndLeavesTheDevice) {
