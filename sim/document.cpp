@@ -8,7 +8,6 @@
 #include <charconv>
 #include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "io/number_format.h"
 #include "sim/diagnostics.h"
@@ -18,7 +17,7 @@ namespace incise::sim {
 
 namespace {
 
-constexpr std::uintmax_t max_file_size = 16u << 20;  // a mesh given by mistake, not a scenario
+constexpr std::size_t max_file_size = 16u << 20;  // a mesh given by mistake, not a scenario
 
 Place place_of(const toml::source_region& region, int override_number) {
     if (override_number >= 0) return {0, 0, override_number};
@@ -239,17 +238,19 @@ Value read_document(const std::filesystem::path& file) {
         throw InputError(file.string() + ": there is no such file");
     if (std::filesystem::is_directory(status))
         throw InputError(file.string() + ": is a folder, not a scenario file");
-    const auto size = std::filesystem::file_size(file, error);
-    if (!error && size > max_file_size)
-        throw InputError(file.string() + ": is " + std::to_string(size >> 20) +
-                         " MiB long, too long for a scenario (at most 16 MiB)");
     std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    if (stream) text << stream.rdbuf();
-    if (!stream || stream.bad())
+    std::string text;
+    std::array<char, 65536> block;
+    do {  // a pipe or a device has no size to ask for
+        stream.read(block.data(), block.size());
+        text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    } while (stream && text.size() <= max_file_size);
+    if (!stream.is_open() || stream.bad())
         throw InputError(file.string() + ": cannot be read; check its permissions");
+    if (text.size() > max_file_size)
+        throw InputError(file.string() + ": is too long for a scenario (at most 16 MiB)");
     try {
-        return convert(toml::parse(text.str()), -1);
+        return convert(toml::parse(text), -1);
     } catch (const toml::parse_error& failure) {
         throw DocumentError{place_of(failure.source(), -1), std::string(failure.description())};
     }
