@@ -99,8 +99,26 @@ Simulation::Simulation(const Scenario& scenario, SourceMesh source)
     const cutting::UncutBody uncut = uncut_body(model_);
     for (const ToolSpec& spec : scenario.tools)
         tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_);
+    warn_of_tools_out_of_reach();
     fingerprint_ = fingerprint_of(model_, scenario.tools);
     step_limit();  // a fixed step that is too large is refused before anything is written
+}
+
+/// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
+void Simulation::warn_of_tools_out_of_reach() {
+    cutting::Box body;
+    for (const Vec3& x : mesh_.rest_positions()) body.extend(x);
+    const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+        if (tools_[i].may_meet(body)) continue;
+        std::ostringstream text;
+        text << "key 'tool[" << i << "]': '" << tools_[i].name()
+             << "' touches nothing where the body rests, between "
+             << body.min().transpose().format(list) << " and "
+             << body.max().transpose().format(list)
+             << "; check its coordinates and units, unless the tissue moves to it";
+        warnings_.push_back(text.str());
+    }
 }
 
 void Simulation::start() {

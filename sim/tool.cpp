@@ -29,6 +29,26 @@ cutting::CarverShape rigid(const Carver& carver) {
     return cutting::Cuboid{std::get<BoxShape>(carver.shape).size};
 }
 
+/// Points in the tool's frame and a distance from them, so that the tool is within that distance of
+/// their hull.
+struct Extent {
+    std::vector<Vec3> points;
+    double reach = 0.0;
+};
+
+Extent extent_of(const Carver& carver) {
+    if (const auto* sphere = std::get_if<SphereShape>(&carver.shape))
+        return {{Vec3::Zero()}, sphere->radius};
+    if (const auto* capsule = std::get_if<CapsuleShape>(&carver.shape))
+        return {{capsule->from, capsule->to}, capsule->radius};
+    Extent extent;
+    const Vec3 half = 0.5 * std::get<BoxShape>(carver.shape).size;
+    for (const double x : {-half.x(), half.x()})
+        for (const double y : {-half.y(), half.y()})
+            for (const double z : {-half.z(), half.z()}) extent.points.emplace_back(x, y, z);
+    return extent;
+}
+
 std::shared_ptr<const cutting::CutSurface> load_surface(const Cut& cut,
                                                         std::vector<std::string>& warnings) {
     if (const auto* plane = std::get_if<PlaneSpec>(&cut.along))
@@ -92,6 +112,36 @@ bool Tool::is_present(double from, double to) const {
     const double first = spec_.path.front().time, last = spec_.path.back().time;
     if (first == last) return first <= to && (from < first || (from == 0.0 && first == 0.0));
     return to > first && from < last;
+}
+
+bool Tool::may_meet(const cutting::Box& box) const {
+    if (surface_) return surface_->may_meet(box);
+    Extent extent;
+    if (const auto* carver = std::get_if<Carver>(&spec_.kind)) extent = extent_of(*carver);
+    if (const auto* blade = std::get_if<Blade>(&spec_.kind)) extent.points = blade->edge;
+    const cutting::Box swept = swept_box(extent.points);
+    const Vec3 reach = Vec3::Constant(extent.reach);
+    return box.intersects(cutting::Box(swept.min() - reach, swept.max() + reach));
+}
+
+/// Holds the points of the tool's frame all along the path. A point at the distance r from the
+/// frame's origin that turns by an angle leaves the straight way between its ends by at most
+/// r angle^2 / 8: its acceleration over a path of length 1 is r angle^2.
+cutting::Box Tool::swept_box(std::span<const Vec3> points) const {
+    cutting::Box swept;
+    cutting::Pose before = rigid(spec_.path.front().value);
+    for (const auto& key : spec_.path) {
+        const cutting::Pose after = rigid(key.value);
+        const double angle = before.rotation.angularDistance(after.rotation);
+        for (const Vec3& x : points) {
+            cutting::Box way(before.to_world(x));
+            way.extend(after.to_world(x));
+            const Vec3 bulge = Vec3::Constant(x.norm() * angle * angle / 8.0);
+            swept.extend(cutting::Box(way.min() - bulge, way.max() + bulge));
+        }
+        before = after;
+    }
+    return swept;
 }
 
 cutting::Split Tool::cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,

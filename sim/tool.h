@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class Tool {
     /// tool with one key in the step that contains it. The first step contains its start too.
     bool is_present(double from, double to) const;
 
+    /// False only if nothing of it is ever in the box. Cost: that of its path, or of its surface.
+    bool may_meet(const cutting::Box& box) const;
+
     /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
     /// did, which is nothing if it is not there.
     cutting::Split cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
@@ -58,6 +62,7 @@ class Tool {
                             const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
                             double to);
     std::vector<Vec3> edge_at(const Blade& blade, double time) const;
+    cutting::Box swept_box(std::span<const Vec3> points) const;
 
     ToolSpec spec_;
     cutting::SplitOptions options_;

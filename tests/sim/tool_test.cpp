@@ -72,6 +72,73 @@ TEST(Tool, IsThereFromItsFirstToItsLastKey) {
     EXPECT_FALSE(tool.is_present(3.0, 4.0));
 }
 
+ToolSpec spec_of(decltype(ToolSpec::kind) kind, std::vector<TimeKey<Pose>> path) {
+    ToolSpec spec;
+    spec.kind = std::move(kind);
+    spec.path = std::move(path);
+    return spec;
+}
+
+bool may_meet_unit_box(const ToolSpec& spec) {
+    std::vector<std::string> warnings;
+    return Tool(spec, {}, warnings).may_meet({Vec3::Zero(), Vec3::Ones()});
+}
+
+TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
+    const auto at = [](double x) { return TimeKey<Pose>{0.0, {{x, 0.5, 0.5}}}; };
+    const auto there = [](double x) { return TimeKey<Pose>{1.0, {{x, 0.5, 0.5}}}; };
+    const Carver ball{SphereShape{0.25}};
+    const Carver rod{CapsuleShape{{0, 0, 0}, {0.5, 0, 0}, 0.25}};
+    const Carver block{BoxShape{{0.5, 4, 4}}};
+    EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(1.24)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(ball, {at(1.26)})));
+    EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(-5), there(5)})));  // right through
+    EXPECT_FALSE(may_meet_unit_box(spec_of(ball, {at(5), there(1.26)})));
+    EXPECT_TRUE(may_meet_unit_box(spec_of(rod, {at(-0.74)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(rod, {at(-0.76)})));
+    EXPECT_TRUE(may_meet_unit_box(spec_of(block, {at(1.24)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(block, {at(1.26)})));
+    const Blade knife{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
+    EXPECT_TRUE(may_meet_unit_box(spec_of(knife, {at(3), there(0.99)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(knife, {at(3), there(1.01)})));
+    const auto cut_at = [](double x) { return Cut{PlaneSpec{{x, 0, 0}, Vec3::UnitX()}, 1.0, {}}; };
+    EXPECT_TRUE(may_meet_unit_box(spec_of(cut_at(0.9), {at(0)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
+}
+
+TEST(Tool, MayMeetWhateverItComesToWhileItTurns) {
+    // Between its keys the tip is farther out in x than at either of them.
+    for (const double angle : {0.1, 0.5, 1.0, 0.99 * pi}) {
+        const Pose down{{0, 0, 0}, Vec3::UnitZ(), -angle / 2}, up{{0, 3, -2}, {0, 0, 1}, angle / 2};
+        ToolSpec spec =
+            spec_of(Blade{{{1, 0, 0}, {2, 0, 0}}, CutMode::split, {}}, {{0.0, down}, {1.0, up}});
+        std::vector<std::string> warnings;
+        const Tool tool(spec, {}, warnings);
+        for (int i = 0; i <= 1000; ++i) {
+            const Vec3 x = tool.pose(i / 1000.0).to_world({2, 0, 0});
+            EXPECT_TRUE(tool.may_meet(cutting::Box(x, x))) << angle << " " << i;
+        }
+        EXPECT_FALSE(tool.may_meet(cutting::Box(Vec3(5, -9, -9), Vec3(6, 9, 9))));
+    }
+}
+
+TEST(Tool, OutOfReachOfTheBodyWarns) {
+    const std::string ball = R"([[tool]]
+kind = "carver"
+shape = { sphere = { radius = 0.01 } }
+path = [{ time = 0, at = [0.05, 0.05, )";
+    const auto warnings = [&](const std::string& tools) {
+        return Simulation(scenario_of(soft_cube + dynamics(0.1) + tools)).warnings();
+    };
+    EXPECT_EQ(warnings(two_tools + ball + "0.109] }]\n"), std::vector<std::string>{});
+    const auto told = warnings(two_tools + ball + "109] }]\n");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(
+        told[0],
+        "key 'tool[2]': 'carver_2' touches nothing where the body rests, between [0, 0, 0] "
+        "and [0.1, 0.1, 0.1]; check its coordinates and units, unless the tissue moves to it");
+}
+
 TEST(Tool, WithOneKeyActsInExactlyOneStep) {
     for (const double time : {0.0, 0.1, 0.25, 0.3, 1.0}) {
         const Tool tool = tool_on({{time, {}}});
