@@ -8,6 +8,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -63,6 +64,23 @@ bool is_temporary(const std::string& name) {
            parse_number<int>(numbers.substr(dash + 1));
 }
 
+/// Puts off what would end the process, as far as this thread may, until it goes.
+class SignalsPutOff {
+  public:
+    SignalsPutOff() {
+        sigset_t signals;
+        ::sigemptyset(&signals);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&signals, signal);
+        ::pthread_sigmask(SIG_BLOCK, &signals, &former_);
+    }
+    ~SignalsPutOff() { ::pthread_sigmask(SIG_SETMASK, &former_, nullptr); }
+    SignalsPutOff(const SignalsPutOff&) = delete;
+    SignalsPutOff& operator=(const SignalsPutOff&) = delete;
+
+  private:
+    sigset_t former_;
+};
+
 /// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept. It is
 /// locked as long as it is being written, and the system unlocks it however the writer ends: that
 /// tells it from what a killed process has left, where its number does not (another process may
@@ -99,6 +117,7 @@ class TemporaryFile {
     }
 
   private:
+    SignalsPutOff signals_put_off_;  // or they would leave the file behind
     fs::path path_;
     FileDescriptor file_;
     bool is_kept_ = false;

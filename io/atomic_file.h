@@ -10,7 +10,8 @@ namespace incise::io {
 /// Makes `bytes` the contents of the file, at once: whoever opens it, at any moment and also after
 /// a kill or a loss of power, finds the old contents or the new ones. The bytes go to a hidden
 /// file in the same folder, which is synchronised with the disk and renamed. A link is followed
-/// and stays a link; a device or a pipe is written to as it is.
+/// and stays a link; a device or a pipe is written to as it is. SIGINT, SIGTERM and SIGHUP to this
+/// thread wait until the hidden file has gone.
 /// Throws OutputError that names the file, the system's reason and a remedy; no hidden file is
 /// left behind then, and the contents are the old ones (or, if only the very last wait failed,
 /// the new ones).

@@ -104,6 +104,24 @@ TEST(RemoveUnfinishedFiles, LeavesWhatIsBeingWritten) {
     EXPECT_EQ(count_entries(folder.path()), 0U);
 }
 
+TEST(WriteFile, LetsASignalWaitThatWouldLeaveAHiddenFileBehind) {
+    const TemporaryFolder folder;
+    static const TemporaryFolder* watched;
+    static std::size_t num_left;
+    watched = &folder;
+    num_left = 99;
+    const auto former =
+        std::signal(SIGTERM, [](int) { num_left = count_entries(watched->path()); });
+    {
+        const FileSizeLimit limit(1000);
+        std::signal(SIGXFSZ, [](int) { ::raise(SIGTERM); });  // in the midst of the writing
+        EXPECT_NE(output_error([&] { write_file(folder / "file", std::string(5000, 'x')); }),
+                  "no error");
+    }
+    std::signal(SIGTERM, former);
+    EXPECT_EQ(num_left, 0U);
+}
+
 TEST(RequireWritable, ThrowsWhatWritingWouldAndChangesNothing) {
     const TemporaryFolder folder;
     write_file(folder / "file", "contents");
