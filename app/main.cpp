@@ -1,30 +1,34 @@
 // The incise command: the one place where exceptions become messages and exit statuses.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 
 #include "app/command_line.h"
 #include "app/messages.h"
 #include "app/verbs.h"
 #include "topology/error.h"
 
-int main(int argc, char** argv) {
-    using namespace incise;
-    const auto fail = [](app::Status status, std::string_view text) {
-        app::print_error(text);
-        return static_cast<int>(status);
-    };
-    // A limit on file sizes or a closed pipe is then an error of writing like any other.
-    std::signal(SIGXFSZ, SIG_IGN);
-    std::signal(SIGPIPE, SIG_IGN);
+namespace {
+
+using namespace incise;
+
+int fail(app::Status status, std::string_view text) {
+    app::print_error(text);
+    return status;
+}
+
+/// Prints what the exception says; returns the status that it stands for.
+int report(const std::exception_ptr& exception) {
+    const std::string fault = "a fault of the program, please report it: ";
+    if (!exception) return fail(app::program_at_fault, fault + "it has given up");
     try {
-        const int status = app::dispatch(argc, argv);
-        std::cout.flush();
-        if (!std::cout) throw OutputError("standard output: cannot be written");
-        return status;
+        std::rethrow_exception(exception);
     } catch (const InputError& error) {
         return fail(app::input_at_fault, error.what());
     } catch (const PhysicsError& error) {
@@ -35,8 +39,31 @@ int main(int argc, char** argv) {
         return fail(app::out_of_memory, "out of memory: the mesh is too large for this machine");
     } catch (const std::length_error&) {
         return fail(app::out_of_memory, "out of memory: the mesh is too large for this machine");
+    } catch (const std::system_error& error) {
+        if (error.code() == std::errc::resource_unavailable_try_again)
+            return fail(app::out_of_memory,
+                        "out of memory or of processes: the system gives no further thread; use "
+                        "--threads 1, or raise the limits (ulimit -v, ulimit -u)");
+        return fail(app::program_at_fault, fault + error.what());
     } catch (const std::exception& error) {
-        return fail(app::program_at_fault,
-                    std::string("a fault of the program, please report it: ") + error.what());
+        return fail(app::program_at_fault, fault + error.what());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // A limit on file sizes or a closed pipe is then an error of writing like any other.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    // In the threads of libraries there is nobody to catch.
+    std::set_terminate([] { std::_Exit(report(std::current_exception())); });
+    try {
+        const int status = app::dispatch(argc, argv);
+        std::cout.flush();
+        if (!std::cout) throw OutputError("standard output: cannot be written");
+        return status;
+    } catch (...) {
+        return report(std::current_exception());
     }
 }

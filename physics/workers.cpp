@@ -1,14 +1,49 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/workers.h"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <mutex>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
+
 namespace incise::physics {
 
+namespace {
+
+/// Makes as many threads as TBB will make, all at once, and ends them. TBB makes its own from one
+/// another, where nothing could catch an exception.
+void require_threads(int count) {
+    std::mutex gate;
+    std::vector<std::jthread> threads;  // joined when the gate is open
+    const std::lock_guard closed(gate);
+    for (int i = 0; i < count; ++i)
+        threads.emplace_back([&gate] { const std::lock_guard opened(gate); });
+}
+
+}  // namespace
+
 struct Workers::Arena {
-    explicit Arena(int num_threads) : arena(num_threads) {}
+    explicit Arena(int num_threads)
+        : limit(tbb::global_control::max_allowed_parallelism,
+                static_cast<std::size_t>(std::max(num_threads, num_cores()))),
+          arena(num_threads) {
+        require_threads(num_threads - 1);
+        // TBB makes its threads with the first work that there is: now, not when memory is taken.
+        try {
+            arena.execute([&] { tbb::parallel_for(0, 64 * num_threads, [](int) {}); });
+        } catch (const std::runtime_error& refusal) {  // TBB's own
+            throw std::system_error(EAGAIN, std::generic_category(), refusal.what());
+        }
+    }
+    tbb::global_control limit;  // else there are no more threads than cores, and a complaint
     tbb::task_arena arena;
 };
 

@@ -18,6 +18,7 @@ inline std::size_t num_node_ranges(std::size_t num_nodes) {
 
 class Workers {
   public:
+    /// Throws std::system_error if the system has no memory for so many threads, or allows fewer.
     /// @param num_threads at least 1, the caller's own among them
     explicit Workers(int num_threads);
     ~Workers();

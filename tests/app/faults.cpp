@@ -2,10 +2,12 @@
 // it makes. INCISE_FAULT_AT is n, from 1; INCISE_FAULT is the number of the error to report, or
 // "kill", or "half": half of what is to be written is, and then the disk is full. Files that are
 // opened to be written count only if INCISE_FAULT_OPEN is there, and then nothing else does. The
-// number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself.
+// number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself. Where
+// INCISE_FAULT_THREADS is there, no thread can be made.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -67,6 +69,12 @@ int openat(int folder, const char* path, int flags, ...) {
     va_end(arguments);
     if (is_to_be_written(flags) && fails(true)) return -1;
     return original<int(int, const char*, int, ...)>("openat")(folder, path, flags, mode);
+}
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) {
+    if (std::getenv("INCISE_FAULT_THREADS")) return EAGAIN;
+    using Create = int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+    return original<Create>("pthread_create")(thread, attributes, start, argument);
 }
 ssize_t write(int file, const void* bytes, size_t size) {
     const auto next = original<ssize_t(int, const void*, size_t)>("write");

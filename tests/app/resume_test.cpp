@@ -278,5 +278,20 @@ TEST_F(ResumedProcess, LeavesTheFolderOfAnotherRunAlone) {
     expect_readable(folder_ / "scene.out");
 }
 
+TEST_F(ResumedProcess, NeedsNoThreadButItsOwn) {
+    write("scene.toml", scene + "[output]\ninterval = 0.001\n");
+    const Environment environment{{"LD_PRELOAD", INCISE_FAULTS}, {"INCISE_FAULT_THREADS", "1"}};
+    std::vector<std::string> arguments{"scene.toml", "--quiet", "--end-time",
+                                       "0.05",       "--set",   "mesh.box.cells=[10, 10, 10]",
+                                       "--threads",  "2"};
+    auto outcome = run(arguments, environment);
+    EXPECT_EQ(outcome.status, 5);
+    EXPECT_EQ(outcome.err.find("incise: out of memory or of processes: "), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    arguments.back() = "1";
+    outcome = run(arguments, environment);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 }  // namespace
 }  // namespace incise::test

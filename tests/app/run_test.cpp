@@ -228,5 +228,13 @@ TEST_F(Run, EndsWithASentenceWhereMemoryEnds) {
               std::string::npos);
 }
 
+TEST_F(Run, TakesAsManyThreadsAsAreAskedForWithoutAWord) {
+    write("scene.toml", scene);
+    const auto outcome = run({"scene.toml", "--quiet", "--end-time", "0.05", "--set",
+                              "mesh.box.cells=[10, 10, 10]", "--threads", "40"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+}
+
 }  // namespace
 }  // namespace incise::test
