@@ -98,9 +98,9 @@ TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
     EXPECT_FALSE(may_meet_unit_box(spec_of(rod, {at(-0.76)})));
     EXPECT_TRUE(may_meet_unit_box(spec_of(block, {at(1.24)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(block, {at(1.26)})));
-    const Blade knife{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
-    EXPECT_TRUE(may_meet_unit_box(spec_of(knife, {at(3), there(0.99)})));
-    EXPECT_FALSE(may_meet_unit_box(spec_of(knife, {at(3), there(1.01)})));
+    const Blade blade{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
+    EXPECT_TRUE(may_meet_unit_box(spec_of(blade, {at(3), there(0.99)})));
+    EXPECT_FALSE(may_meet_unit_box(spec_of(blade, {at(3), there(1.01)})));
     const auto cut_at = [](double x) { return Cut{PlaneSpec{{x, 0, 0}, Vec3::UnitX()}, 1.0, {}}; };
     EXPECT_TRUE(may_meet_unit_box(spec_of(cut_at(0.9), {at(0)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
