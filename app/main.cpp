@@ -42,11 +42,13 @@ int report(const std::exception_ptr& exception) {
     } catch (const std::system_error& error) {
         if (error.code() == std::errc::resource_unavailable_try_again)
             return fail(app::out_of_memory,
-                        "out of memory or of processes: the system gives no further thread; use "
-                        "--threads 1, or raise the limits (ulimit -v, ulimit -u)");
+                        "out of memory or of processes: the system gives no further thread; raise "
+                        "the limits (ulimit -v, ulimit -u), or let a run have --threads 1");
         return fail(app::program_at_fault, fault + error.what());
     } catch (const std::exception& error) {
         return fail(app::program_at_fault, fault + error.what());
+    } catch (...) {
+        return fail(app::program_at_fault, fault + "it has given up");
     }
 }
 

@@ -81,6 +81,15 @@ class SignalsPutOff {
     sigset_t former_;
 };
 
+/// Waits for the lock of a file that is open, where there are locks. Returns false if the file has
+/// been removed meanwhile, as by one who looked whether it was locked before it was.
+bool lock(const FileDescriptor& file) {
+    while (::flock(file.get(), LOCK_EX) != 0 && errno == EINTR) {
+    }
+    struct stat status {};
+    return ::fstat(file.get(), &status) != 0 || status.st_nlink > 0;
+}
+
 /// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept. It is
 /// locked as long as it is being written, and the system unlocks it however the writer ends: that
 /// tells it from what a killed process has left, where its number does not (another process may
@@ -97,10 +106,9 @@ class TemporaryFile {
         for (int attempt = 0; attempt < 1000; ++attempt) {
             path_ = folder / (stem + "-" + std::to_string(attempt));
             file_ = FileDescriptor(path_, O_WRONLY | O_CREAT | O_EXCL);
-            if (file_.is_open() || errno != EEXIST) break;
+            if (file_.is_open() ? lock(file_) : errno != EEXIST) break;
         }
         if (!file_.is_open()) throw_output_error(meant, errno);
-        ::flock(file_.get(), LOCK_EX | LOCK_NB);  // not everywhere are there locks
     }
     ~TemporaryFile() {
         if (!is_kept_) ::unlink(path_.c_str());
@@ -123,12 +131,12 @@ class TemporaryFile {
     bool is_kept_ = false;
 };
 
-/// Whether another one writes the temporary file at this moment. Also one that may not be opened
-/// counts as such: it is not ours to remove.
-bool is_being_written(const fs::path& temporary) {
+/// Removes the temporary file unless another one is writing it. It stays too if that cannot be
+/// told: where it may not be opened, or there are no locks.
+void remove_if_left(const fs::path& temporary) {
     const FileDescriptor file(temporary, O_WRONLY | O_NONBLOCK);
-    if (!file.is_open()) return true;
-    return ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (file.is_open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0)
+        remove_output_file(temporary);  // while it is locked, or it could be a new one by now
 }
 
 /// What a link finally leads to, even if that is not there yet.
@@ -154,12 +162,13 @@ struct Target {
 
 /// Throws OutputError if it is a folder.
 Target target_of(const fs::path& path) {
-    Target target{follow_links(path), false};
     struct stat status {};
-    const bool is_there = ::stat(target.path.c_str(), &status) == 0;
-    if (is_there ? S_ISDIR(status.st_mode) : !target.path.has_filename())
-        throw_output_error(path, EISDIR);
-    target.is_device = is_there && !S_ISREG(status.st_mode);
+    const bool is_there = ::stat(path.c_str(), &status) == 0;
+    if (is_there && S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
+    // Links of the system to pipes, as /dev/stdout, cannot be followed by name.
+    if (is_there && !S_ISREG(status.st_mode)) return {path, true};
+    const Target target{follow_links(path), false};
+    if (!target.path.has_filename()) throw_output_error(path, EISDIR);
     return target;
 }
 
@@ -216,15 +225,13 @@ void make_output_folder(const fs::path& folder) {
 }
 
 void remove_unfinished_files(const fs::path& folder) {
-    std::vector<fs::path> stale;
+    std::vector<fs::path> temporaries;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        if (is_temporary(entry->path().filename().string()) && !is_being_written(entry->path()))
-            stale.push_back(entry->path());
-    }
+         entry.increment(error))
+        if (is_temporary(entry->path().filename().string())) temporaries.push_back(entry->path());
     // A folder that may be written to but not read keeps them.
-    for (const auto& path : stale) remove_output_file(path);
+    for (const auto& path : temporaries) remove_if_left(path);
 }
 
 void remove_output_file(const fs::path& path) {

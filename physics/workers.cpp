@@ -4,10 +4,13 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <mutex>
 #include <stdexcept>
 #include <system_error>
@@ -30,6 +33,18 @@ void require_threads(int count) {
     const std::lock_guard closed(gate);
     for (int i = 0; i < count; ++i)
         threads.emplace_back([&gate] { const std::lock_guard opened(gate); });
+}
+
+/// Work for so many threads, each of which waits for the others; not for ever, as fewer may come.
+void meet(int num_threads) {
+    using Clock = std::chrono::steady_clock;
+    const auto latest = Clock::now() + std::chrono::milliseconds(100);
+    std::atomic<int> num_there = 0;
+    const auto wait = [&](int) {
+        ++num_there;
+        while (num_there < num_threads && Clock::now() < latest) std::this_thread::yield();
+    };
+    tbb::parallel_for(0, num_threads, wait, tbb::simple_partitioner());
 }
 
 /// Tells the thread sanitizer what it cannot see, as TBB is not built for it: all work begins after
@@ -58,9 +73,9 @@ struct Workers::Arena {
                 static_cast<std::size_t>(std::max(num_threads, num_cores()))),
           arena(num_threads) {
         require_threads(num_threads - 1);
-        // TBB makes its threads with the first work that there is: now, not when memory is taken.
+        // TBB makes its threads when there is work for them: now, not when memory is taken.
         try {
-            arena.execute([&] { tbb::parallel_for(0, 64 * num_threads, [](int) {}); });
+            arena.execute([&] { meet(num_threads); });
         } catch (const std::runtime_error& refusal) {  // TBB's own
             throw std::system_error(EAGAIN, std::generic_category(), refusal.what());
         }

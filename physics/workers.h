@@ -19,7 +19,8 @@ inline std::size_t num_node_ranges(std::size_t num_nodes) {
 class Workers {
   public:
     /// Throws std::system_error if the system has no memory for so many threads, or allows fewer.
-    /// @param num_threads at least 1, the caller's own among them
+    /// @param num_threads at least 1, the caller's own among them; more than num_cores() come only
+    /// if no other Workers with fewer of them live
     explicit Workers(int num_threads);
     ~Workers();
     Workers(Workers&&) noexcept;

@@ -238,6 +238,10 @@ Value read_document(const std::filesystem::path& file) {
         throw InputError(file.string() + ": there is no such file");
     if (std::filesystem::is_directory(status))
         throw InputError(file.string() + ": is a folder, not a scenario file");
+    const std::string remedy = " (at most 16 MiB); name the scenario, not a mesh";
+    if (const auto size = std::filesystem::file_size(file, error); !error && size > max_file_size)
+        throw InputError(file.string() + ": is " + std::to_string(size >> 20) +
+                         " MiB long, too long for a scenario" + remedy);
     std::ifstream stream(file, std::ios::binary);
     std::string text;
     std::array<char, 65536> block;
@@ -248,7 +252,7 @@ Value read_document(const std::filesystem::path& file) {
     if (!stream.is_open() || stream.bad())
         throw InputError(file.string() + ": cannot be read; check its permissions");
     if (text.size() > max_file_size)
-        throw InputError(file.string() + ": is too long for a scenario (at most 16 MiB)");
+        throw InputError(file.string() + ": is too long for a scenario" + remedy);
     try {
         return convert(toml::parse(text), -1);
     } catch (const toml::parse_error& failure) {

@@ -120,7 +120,8 @@ bool Tool::may_meet(const cutting::Box& box) const {
     if (const auto* carver = std::get_if<Carver>(&spec_.kind)) extent = extent_of(*carver);
     if (const auto* blade = std::get_if<Blade>(&spec_.kind)) extent.points = blade->edge;
     const cutting::Box swept = swept_box(extent.points);
-    const Vec3 reach = Vec3::Constant(extent.reach);
+    // With room for what rounding takes.
+    const Vec3 reach = Vec3::Constant(extent.reach + 1e-12 * swept.diagonal().norm());
     return box.intersects(cutting::Box(swept.min() - reach, swept.max() + reach));
 }
 

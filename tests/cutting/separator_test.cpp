@@ -253,7 +253,7 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
                 std::includes(reached.begin(), reached.end(), behind.begin(), behind.end()));
         }
     }
-    EXPECT_GE(num_sheets, test::num_cases(20));
+    EXPECT_GE(num_sheets, test::num_cases(21));
 }
 
 TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {

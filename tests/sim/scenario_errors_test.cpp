@@ -97,7 +97,8 @@ TEST(ScenarioErrors, OfTheFileItself) {
               Lines{(folder / "none.toml").string() + ": there is no such file"});
     EXPECT_EQ(read_scenario(folder.path()).errors,
               Lines{folder.path().string() + ": is a folder, not a scenario file"});
-    const Lines too_long{"/dev/zero: is too long for a scenario (at most 16 MiB)"};
+    const Lines too_long{
+        "/dev/zero: is too long for a scenario (at most 16 MiB); name the scenario, not a mesh"};
     EXPECT_EQ(read_scenario("/dev/zero").errors, too_long);
 }
 
