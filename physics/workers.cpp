@@ -35,18 +35,6 @@ void require_threads(int count) {
         threads.emplace_back([&gate] { const std::lock_guard opened(gate); });
 }
 
-/// Work for so many threads, each of which waits for the others; not for ever, as fewer may come.
-void meet(int num_threads) {
-    using Clock = std::chrono::steady_clock;
-    const auto latest = Clock::now() + std::chrono::milliseconds(100);
-    std::atomic<int> num_there = 0;
-    const auto wait = [&](int) {
-        ++num_there;
-        while (num_there < num_threads && Clock::now() < latest) std::this_thread::yield();
-    };
-    tbb::parallel_for(0, num_threads, wait, tbb::simple_partitioner());
-}
-
 /// Tells the thread sanitizer what it cannot see, as TBB is not built for it: all work begins after
 /// what came before, and what comes after begins when all has ended.
 class Order {
@@ -64,6 +52,21 @@ class Order {
     void end_work() {}
 #endif
 };
+
+/// Work for so many threads, each of which waits for the others; not for ever, as fewer may come.
+void meet(int num_threads) {
+    using Clock = std::chrono::steady_clock;
+    const auto latest = Clock::now() + std::chrono::milliseconds(100);
+    std::atomic<int> num_there = 0;
+    Order order;
+    const auto wait = [&](int) {
+        order.begin_work();
+        ++num_there;
+        while (num_there < num_threads && Clock::now() < latest) std::this_thread::yield();
+        order.end_work();
+    };
+    tbb::parallel_for(0, num_threads, wait, tbb::simple_partitioner());
+}
 
 }  // namespace
 
