@@ -23,10 +23,20 @@ int fail(app::Status status, std::string_view text) {
     return status;
 }
 
+int fail_by_fault(std::string_view text) {
+    return fail(app::program_at_fault,
+                "a fault of the program, please report it: " + std::string(text));
+}
+
+/// Needs no memory.
+int fail_for_memory() {
+    std::cerr << "incise: out of memory: the mesh is too large for this machine\n";
+    return app::out_of_memory;
+}
+
 /// Prints what the exception says; returns the status that it stands for.
 int report(const std::exception_ptr& exception) {
-    const std::string fault = "a fault of the program, please report it: ";
-    if (!exception) return fail(app::program_at_fault, fault + "it has given up");
+    if (!exception) return fail_by_fault("it has given up");
     try {
         std::rethrow_exception(exception);
     } catch (const InputError& error) {
@@ -36,19 +46,20 @@ int report(const std::exception_ptr& exception) {
     } catch (const OutputError& error) {
         return fail(app::output_failed, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(app::out_of_memory, "out of memory: the mesh is too large for this machine");
+        return fail_for_memory();
     } catch (const std::length_error&) {
-        return fail(app::out_of_memory, "out of memory: the mesh is too large for this machine");
+        return fail_for_memory();
     } catch (const std::system_error& error) {
+        if (error.code() == std::errc::not_enough_memory) return fail_for_memory();
         if (error.code() == std::errc::resource_unavailable_try_again)
             return fail(app::out_of_memory,
                         "out of memory or of processes: the system gives no further thread; raise "
                         "the limits (ulimit -v, ulimit -u), or let a run have --threads 1");
-        return fail(app::program_at_fault, fault + error.what());
+        return fail_by_fault(error.what());
     } catch (const std::exception& error) {
-        return fail(app::program_at_fault, fault + error.what());
+        return fail_by_fault(error.what());
     } catch (...) {
-        return fail(app::program_at_fault, fault + "it has given up");
+        return fail_by_fault("it has given up");
     }
 }
 

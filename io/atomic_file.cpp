@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cerrno>
 #include <csignal>
+#include <new>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -182,6 +183,7 @@ bool sync_folder(const fs::path& folder) {
 }  // namespace
 
 void throw_output_error(const fs::path& path, int error_number) {
+    if (error_number == ENOMEM) throw std::bad_alloc();
     auto reason = std::generic_category().message(error_number);
     if (!reason.empty())
         reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));

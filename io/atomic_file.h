@@ -35,7 +35,7 @@ void remove_unfinished_files(const std::filesystem::path& folder);
 void remove_output_file(const std::filesystem::path& path);
 
 /// The text of every OutputError of this folder: `path`, the reason of the system's error number,
-/// and what to do about it.
+/// and what to do about it. Throws std::bad_alloc instead where the system is out of memory.
 [[noreturn]] void throw_output_error(const std::filesystem::path& path, int error_number);
 
 }  // namespace incise::io

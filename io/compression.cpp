@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <limits>
+#include <new>
 
 namespace incise::io {
 
@@ -39,6 +40,7 @@ bool decompress_zlib(std::string_view packed, std::span<char> unpacked) {
     const int status = uncompress(reinterpret_cast<Bytef*>(unpacked.data()), &size,
                                   reinterpret_cast<const Bytef*>(packed.data()),
                                   static_cast<uLong>(packed.size()));
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
     return status == Z_OK && size == unpacked.size();
 }
 
@@ -58,6 +60,7 @@ bool decompress_lzma(std::string_view packed, std::span<char> unpacked) {
         &memory_limit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(packed.data()),
         &packed_position, packed.size(), reinterpret_cast<std::uint8_t*>(unpacked.data()),
         &unpacked_position, unpacked.size());
+    if (status == LZMA_MEM_ERROR) throw std::bad_alloc();
     return status == LZMA_OK && unpacked_position == unpacked.size();
 }
 

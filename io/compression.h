@@ -19,6 +19,7 @@ std::optional<Compressor> compressor_of(std::string_view vtk_class_name);
 std::size_t max_expansion(Compressor compressor);
 
 /// Unpacks one block. True if it is sound and fills `unpacked` exactly; writes nowhere else.
+/// Throws std::bad_alloc.
 /// @pre compressor is not none
 bool decompress(Compressor compressor, std::string_view packed, std::span<char> unpacked);
 

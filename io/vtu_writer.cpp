@@ -8,6 +8,8 @@
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
+#include <vtkLZ4DataCompressor.h>
+#include <vtkLZMADataCompressor.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -15,16 +17,18 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
 
 #include "io/atomic_file.h"
+#include "io/throwing_vtk.h"
 
 namespace incise::io {
 
@@ -62,7 +66,7 @@ vtkSmartPointer<vtkAOSDataArrayTemplate<T>> view_as_array(std::span<const T> val
 template <class Array>
 vtkSmartPointer<Array> copy_as_array(const auto& values) {
     auto array = vtkSmartPointer<Array>::New();
-    array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+    if (!array->SetNumberOfValues(static_cast<vtkIdType>(values.size()))) throw std::bad_alloc();
     std::transform(values.begin(), values.end(), array->GetPointer(0),
                    [](auto value) { return static_cast<typename Array::ValueType>(value); });
     return array;
@@ -70,13 +74,12 @@ vtkSmartPointer<Array> copy_as_array(const auto& values) {
 
 template <class IndexArray>
 void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
-    vtkNew<vtkUnsignedCharArray> types;
-    types->SetNumberOfValues(static_cast<vtkIdType>(mesh.num_cells()));
-    std::transform(mesh.kinds.begin(), mesh.kinds.end(), types->GetPointer(0), vtk_cell_type);
+    std::vector<unsigned char> types(mesh.num_cells());
+    std::transform(mesh.kinds.begin(), mesh.kinds.end(), types.begin(), vtk_cell_type);
     vtkNew<vtkCellArray> cells;
     cells->SetData(copy_as_array<IndexArray>(mesh.offsets),
                    copy_as_array<IndexArray>(mesh.corners));
-    grid.SetCells(types, cells);
+    grid.SetCells(copy_as_array<vtkUnsignedCharArray>(types), cells);
 }
 
 void add_fields(vtkFieldData& data, const std::vector<Field>& fields, std::size_t num_tuples,
@@ -150,23 +153,19 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     return grid;
 }
 
-void set_compression(vtkXMLWriter& writer, Compression compression) {
+vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression) {
+    constexpr int fastest = 1;
     switch (compression) {
         case Compression::none:
-            writer.SetCompressorTypeToNone();
-            return;
+            break;
         case Compression::lz4:
-            writer.SetCompressorTypeToLZ4();
-            return;
+            return ThrowingCompressor<vtkLZ4DataCompressor>::make(fastest);
         case Compression::zlib:
-            writer.SetCompressorTypeToZLib();
-            break;
+            return ThrowingCompressor<vtkZLibDataCompressor>::make(fastest);
         case Compression::lzma:
-            writer.SetCompressorTypeToLZMA();
-            break;
+            return ThrowingCompressor<vtkLZMADataCompressor>::make(fastest);
     }
-    constexpr int fastest = 1;
-    writer.SetCompressionLevel(fastest);
+    return nullptr;
 }
 
 /// The text without VTK's notes on arrays (ranges of norms): nobody needs them, and VTK writes them
@@ -187,12 +186,13 @@ std::string without_notes(std::string_view text) {
 }  // namespace
 
 std::string vtu_text(const Frame& frame, Compression compression) {
+    const SilentVtk silence;
     const auto grid = view_as_grid(frame);
-    vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    const auto writer = ThrowingGridWriter::make();
     writer->SetInputData(grid);
     writer->SetDataModeToBinary();
     writer->SetHeaderTypeToUInt64();  // uncompressed arrays may exceed 4 GB
-    set_compression(*writer, compression);
+    writer->SetCompressor(make_compressor(compression));
     writer->WriteToOutputStringOn();
     if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError)
         throw std::runtime_error(std::string("VTK cannot make a .vtu file: ") +

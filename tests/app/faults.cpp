@@ -3,13 +3,15 @@
 // "kill", or "half": half of what is to be written is, and then the disk is full. Files that are
 // opened to be written count only if INCISE_FAULT_OPEN is there, and then nothing else does. The
 // number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself. Where
-// INCISE_FAULT_THREADS is there, no thread can be made.
+// INCISE_FAULT_THREADS is there, no thread can be made. From the INCISE_FAULT_MEMORY-th request for
+// a page of memory or more on, none is granted.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
@@ -48,11 +50,44 @@ struct Counter {
     }
 } counter;
 
+/// Whether there is no memory of that size, with errno set.
+bool is_out_of_memory(std::size_t size) {
+    static std::atomic<long> num_requests = 0;
+    constexpr std::size_t page = 4096;
+    if (size < page) return false;
+    const char* at = std::getenv("INCISE_FAULT_MEMORY");
+    if (!at || ++num_requests < std::atol(at)) return false;
+    errno = ENOMEM;
+    return true;
+}
+
 bool is_to_be_written(int flags) { return (flags & O_ACCMODE) != O_RDONLY; }
 
 }  // namespace
 
 extern "C" {
+
+// The C library's own: the search for the original would itself ask for memory.
+void* __libc_malloc(size_t size);
+void* __libc_calloc(size_t number, size_t size);
+void* __libc_realloc(void* memory, size_t size);
+void* __libc_memalign(size_t alignment, size_t size);
+
+void* malloc(size_t size) { return is_out_of_memory(size) ? nullptr : __libc_malloc(size); }
+void* calloc(size_t number, size_t size) {
+    return is_out_of_memory(number * size) ? nullptr : __libc_calloc(number, size);
+}
+void* realloc(void* memory, size_t size) {
+    return is_out_of_memory(size) ? nullptr : __libc_realloc(memory, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+    return is_out_of_memory(size) ? nullptr : __libc_memalign(alignment, size);
+}
+int posix_memalign(void** memory, size_t alignment, size_t size) {
+    if (is_out_of_memory(size)) return ENOMEM;
+    *memory = __libc_memalign(alignment, size);
+    return *memory ? 0 : ENOMEM;
+}
 
 int open(const char* path, int flags, ...) {
     va_list arguments;

@@ -293,5 +293,24 @@ TEST_F(ResumedProcess, NeedsNoThreadButItsOwn) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+// Wherever memory ends: also within VTK, whose compressors and streams do not expect it.
+TEST_F(ResumedProcess, EndsWithOneMessageWhereMemoryEnds) {
+    write("scene.toml", scene + "[output]\ninterval = 0.01\n");
+    int num_refused = 0, status = 5;
+    for (long at = 1; status == 5; at += 1 + at / 20, ++num_refused) {
+        const auto outcome =
+            run({"scene.toml", "--quiet", "--set", "mesh.box.cells=[6, 6, 6]"},
+                {{"LD_PRELOAD", INCISE_FAULTS}, {"INCISE_FAULT_MEMORY", std::to_string(at)}});
+        status = outcome.status;
+        ASSERT_EQ(signal_, 0) << at << outcome.err;
+        ASSERT_TRUE(status == 5 || status == 0) << at << outcome.err;
+        EXPECT_EQ(
+            outcome.err,
+            status == 0 ? "" : "incise: out of memory: the mesh is too large for this machine\n")
+            << at;
+    }
+    EXPECT_GT(num_refused, 20);
+}
+
 }  // namespace
 }  // namespace incise::test

@@ -1,0 +1,68 @@
+// VTK's writer of unstructured grids and its compressors, made safe where memory ends: as VTK has
+// them, the writer goes on to free pointers that it never set when its stream in memory is full,
+// and the compressors write through a null pointer. These throw std::bad_alloc at once.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vtkObject.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <cstddef>
+#include <ios>
+#include <new>
+
+namespace incise::io {
+
+/// As long as it lives, VTK does not print its complaints: exceptions say them.
+class SilentVtk {
+  public:
+    SilentVtk() : before_(vtkObject::GetGlobalWarningDisplay()) {
+        vtkObject::GlobalWarningDisplayOff();
+    }
+    ~SilentVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
+    SilentVtk(const SilentVtk&) = delete;
+    SilentVtk& operator=(const SilentVtk&) = delete;
+
+  private:
+    int before_;
+};
+
+class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
+  public:
+    static vtkSmartPointer<ThrowingGridWriter> make() {
+        const auto made = vtkSmartPointer<ThrowingGridWriter>::Take(new ThrowingGridWriter);
+        made->InitializeObjectBase();
+        return made;
+    }
+
+  protected:
+    /// The first thing that is written.
+    int WriteHeader() override {
+        Stream->exceptions(std::ios::badbit);
+        return vtkXMLUnstructuredGridWriter::WriteHeader();
+    }
+};
+
+/// Of a compressor of VTK. The name of its class stays VTK's, since files have it.
+template <class VtkCompressor>
+class ThrowingCompressor final : public VtkCompressor {
+  public:
+    static vtkSmartPointer<ThrowingCompressor> make(int level) {
+        const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor);
+        made->InitializeObjectBase();
+        made->SetCompressionLevel(level);
+        return made;
+    }
+
+  protected:
+    std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
+                               std::size_t space) override {
+        const auto num_packed =
+            packed ? VtkCompressor::CompressBuffer(data, size, packed, space) : 0;
+        if (num_packed == 0) throw std::bad_alloc();
+        return num_packed;
+    }
+};
+
+}  // namespace incise::io
