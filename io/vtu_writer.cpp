@@ -154,12 +154,12 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
 }
 
 vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression) {
-    constexpr int fastest = 1;
+    constexpr int fastest = 1, middle = 5;
     switch (compression) {
         case Compression::none:
             break;
         case Compression::lz4:
-            return ThrowingCompressor<vtkLZ4DataCompressor>::make(fastest);
+            return ThrowingCompressor<vtkLZ4DataCompressor>::make(middle);  // fast at any level
         case Compression::zlib:
             return ThrowingCompressor<vtkZLibDataCompressor>::make(fastest);
         case Compression::lzma:

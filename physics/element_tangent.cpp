@@ -14,6 +14,21 @@ Mat3 cross_matrix(const Vec3& u) {
     return m;
 }
 
+/// A S A^T. By loops, since products of Eigen of these sizes take the compiler long.
+template <int m, int n>
+Eigen::Matrix<double, m, m> congruent(const Eigen::Matrix<double, m, n>& A,
+                                      const Eigen::Matrix<double, n, n>& S) {
+    Eigen::Matrix<double, m, n> AS = Eigen::Matrix<double, m, n>::Zero();
+    for (int j = 0; j < n; ++j)
+        for (int k = 0; k < n; ++k)
+            for (int i = 0; i < m; ++i) AS(i, j) += A(i, k) * S(k, j);
+    Eigen::Matrix<double, m, m> result = Eigen::Matrix<double, m, m>::Zero();
+    for (int j = 0; j < m; ++j)
+        for (int k = 0; k < n; ++k)
+            for (int i = 0; i < m; ++i) result(i, j) += AS(i, k) * A(j, k);
+    return result;
+}
+
 /// Of a tetrahedron, from the derivatives by its corners 1 to 3: a shift of all four changes
 /// nothing.
 ElementTangent<4> with_first_corner(const Eigen::Matrix<double, 9, 9>& inner) {
@@ -102,8 +117,8 @@ ElementTangent<4> element_tangent(const HemlKernel& kernel, const LinkElement& e
     w.col(3) = r.w_f.gradient;
     w = (0.5 * (w + w.transpose())).eval();
 
-    Eigen::Matrix<double, 9, 9> inner = gradients * w * gradients.transpose();
-    inner += 2.0 * r.w_b.value * (L * e.Mtr * L.transpose());
+    Eigen::Matrix<double, 9, 9> inner = congruent(gradients, w);
+    inner += 2.0 * r.w_b.value * congruent(L, e.Mtr);
     const Vec6 t =
         2.0 * (r.w_a.value * e.vtr + 2.0 * r.w_b.value * Mdl + r.w_f.value * e.fibre_links);
     Mat3 tension;
@@ -179,15 +194,15 @@ ElementTangent<8> element_tangent(const HybmssKernel& kernel, const HybmssKernel
     couple(0, 1, -cross_matrix(now.c));
     couple(0, 2, cross_matrix(now.b));
     couple(1, 2, -cross_matrix(now.a));
-    Eigen::Matrix<double, 9, 24> frame = Eigen::Matrix<double, 9, 24>::Zero();
+    Eigen::Matrix<double, 24, 9> frame = Eigen::Matrix<double, 24, 9>::Zero();
     for (int k = 0; k < 8; ++k)
         for (int i = 0; i < 3; ++i)
-            frame.block<3, 3>(3 * i, 3 * k)
+            frame.block<3, 3>(3 * k, 3 * i)
                 .diagonal()
                 .setConstant(
                     0.25 *
                     BoxFrame::sides[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)]);
-    K += kappa / e.volume * (frame.transpose() * second * frame);
+    K += kappa / e.volume * congruent(frame, second);
     return K;
 }
 

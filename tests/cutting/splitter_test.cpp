@@ -318,8 +318,9 @@ TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
 
 // What a step length is worth to the whole body's stable step: tests of physics.
 TEST(Split, NeverDividesAnElementBelowTheLimit) {
+    static constexpr std::array snaps{0.6, 0.1, 0.2, 0.35};
     for (const auto* family : test::tetrahedral_families())
-        for (const double snap : {0.1, 0.2, 0.35, 0.6})
+        for (const double snap : test::some_of(snaps))
             for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
                 SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
                              std::to_string(seed));

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -42,12 +41,14 @@ std::vector<std::string> split(const std::string& line) {
     return cells;
 }
 
-/// All matches of the first group.
-std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
-    const std::regex regex(pattern);
+/// The values of all XML attributes of that name, in order.
+std::vector<std::string> attributes(const std::string& text, const std::string& name) {
+    const std::string before = " " + name + "=\"";
     std::vector<std::string> found;
-    for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end; ++i)
-        found.push_back((*i)[1]);
+    for (auto i = text.find(before); i != text.npos; i = text.find(before, i)) {
+        i += before.size();
+        found.push_back(text.substr(i, text.find('"', i) - i));
+    }
     return found;
 }
 
@@ -169,8 +170,7 @@ TEST_F(RunFiles, SummaryTellsHowItEnded) {
 
 TEST_F(RunFiles, IndexesNameTheFramesAndTheirTimes) {
     const std::string pvd = read_text(folder_ / "out/scene.pvd");
-    const auto files = matches(pvd, "file=\"([^\"]*)\""),
-               times = matches(pvd, "timestep=\"([^\"]*)\"");
+    const auto files = attributes(pvd, "file"), times = attributes(pvd, "timestep");
     ASSERT_EQ(files.size(), 11u);
     ASSERT_EQ(times.size(), 11u);
     const json series = json::parse(read_text(folder_ / "out/scene.vtu.series"));
@@ -195,14 +195,14 @@ TEST_F(RunFiles, FramesDeclareTheArraysOfTheContract) {
     // Name -> type and number of components.
     const auto arrays = [](const std::string& text) {
         std::map<std::string, std::pair<std::string, int>> found;
-        const std::regex element("<(?:Data)?Array[^>]*>");
-        for (std::sregex_iterator i(text.begin(), text.end(), element), end; i != end; ++i) {
-            const std::string tag = i->str();
-            const auto components = matches(tag, " NumberOfComponents=\"(\\d+)\"");
-            found[matches(tag, " Name=\"([^\"]*)\"").at(0)] = {
-                matches(tag, " type=\"([^\"]*)\"").at(0),
-                components.empty() ? 1 : std::stoi(components[0])};
-        }
+        for (const char* element : {"<DataArray ", "<Array "})
+            for (auto i = text.find(element); i != text.npos; i = text.find(element, i + 1)) {
+                const std::string tag = text.substr(i, text.find('>', i) - i);
+                const auto components = attributes(tag, "NumberOfComponents");
+                found[attributes(tag, "Name").at(0)] = {
+                    attributes(tag, "type").at(0),
+                    components.empty() ? 1 : std::stoi(components[0])};
+            }
         return found;
     };
     using Arrays = std::map<std::string, std::pair<std::string, int>>;

@@ -79,7 +79,7 @@ TEST(SplittingBlade, OfTheSameScenarioEndsInTheSameBits) {
 /// Enough elements for many blocks and ranges of nodes.
 void expect_the_same_bits_for_any_number_of_threads(const std::string& more_of_material,
                                                     const std::string& precision = "double") {
-    const std::string box = test::is_sanitized ? "cells = [12, 12, 12]" : "cells = [16, 16, 16]";
+    const std::string box = test::is_sanitized ? "cells = [9, 9, 9]" : "cells = [16, 16, 16]";
     const std::string body = "[mesh]\nbox = { size = [0.1, 0.1, 0.1], " + box + R"( }
 [[constraint]]
 name = "floor"
