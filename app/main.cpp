@@ -1,5 +1,8 @@
 // The incise command: the one place where exceptions become messages and exit statuses.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -34,6 +37,16 @@ int fail_for_memory() {
     return app::out_of_memory;
 }
 
+/// Gives descriptors that the caller has closed to nobody else: the first files of a run would be
+/// its standard output otherwise. Writing there still fails.
+void occupy_standard_descriptors() {
+    int file = 0;
+    do {
+        file = ::open("/dev/null", O_RDONLY);
+    } while (file >= 0 && file <= STDERR_FILENO);
+    if (file >= 0) ::close(file);
+}
+
 /// Prints what the exception says; returns the status that it stands for.
 int report(const std::exception_ptr& exception) {
     if (!exception) return fail_by_fault("it has given up");
@@ -66,6 +79,7 @@ int report(const std::exception_ptr& exception) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    occupy_standard_descriptors();
     // A limit on file sizes or a closed pipe is then an error of writing like any other.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <iostream>
 #include <set>
+#include <sstream>
 
 #include "app/messages.h"
 #include "app/verbs.h"
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
+#include "sim/body_problems.h"
 #include "sim/scenario_reader.h"
 #include "sim/simulation.h"
 #include "topology/error.h"
@@ -72,6 +74,9 @@ Findings check_scenario(const std::filesystem::path& path) {
                 if (!is_of_file && !known.contains(warning))
                     findings.warnings.push_back(path.string() + ": " + warning);
             }
+        } catch (const sim::BodyError& error) {
+            std::istringstream lines(error.what());
+            for (std::string line; std::getline(lines, line);) findings.errors.push_back(line);
         } catch (const std::runtime_error& error) {
             findings.errors.push_back(path.string() + ": " + error.what());
         }

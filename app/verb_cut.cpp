@@ -44,14 +44,30 @@ double parse_snap(const std::string& text) {
                      " is not allowed; it must be a number from 0 to 1");
 }
 
+/// Also by another name or a link.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code is_missing;
+    return a.lexically_normal() == b.lexically_normal() ||
+           std::filesystem::equivalent(a, b, is_missing);
+}
+
+/// What is read, and the mesh that is written, are no files for the figures.
+void check_json(const CutOptions& options) {
+    const auto refuse = [&](const std::filesystem::path& file, const std::string& what) {
+        if (is_same_file(*options.json, file))
+            throw InputError("--json: " + file.string() + " is the " + what +
+                             "; name another file, or - for standard output");
+    };
+    refuse(options.mesh, "mesh");
+    refuse(options.out, "mesh");
+    for (const CutToolArgument& tool : options.tools)
+        if (tool.option == "--surface") refuse(tool.text, "surface");
+}
+
 Job parse(const CutOptions& options) {
     Job job;
     io::check_writable(options.out);
-    if (options.json)
-        for (const auto& mesh : {options.mesh, options.out})
-            if (options.json->lexically_normal() == mesh.lexically_normal())
-                throw InputError("--json: " + mesh.string() +
-                                 " is the mesh; name another file, or - for standard output");
+    if (options.json) check_json(options);
     if (options.json && *options.json != "-") io::require_writable(*options.json);
     if (!options.mode.empty()) {
         if (const auto complaint = sim::complaint(options.mode, {modes}))

@@ -16,6 +16,7 @@
 #include "app/verbs.h"
 #include "io/number_format.h"
 #include "physics/workers.h"
+#include "sim/body_problems.h"
 #include "sim/run_writer.h"
 #include "sim/simulation.h"
 #include "topology/error.h"
@@ -71,7 +72,7 @@ int num_threads(const RunOptions& options) {
     return physics::Workers::num_cores();
 }
 
-/// Errors of the body name the scenario.
+/// Its errors name the scenario.
 std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
                                        const std::filesystem::path& file) {
     const auto named = [&](const std::exception& error) {
@@ -79,11 +80,29 @@ std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
     };
     try {
         return std::make_unique<sim::Simulation>(scenario);
+    } catch (const sim::BodyError&) {
+        throw;
     } catch (const InputError& error) {
         throw InputError(named(error));
     } catch (const PhysicsError& error) {
         throw PhysicsError(named(error));
     }
+}
+
+/// A run replaces the frames of a former one in its folder: none of them may be what it reads.
+void require_inputs_elsewhere(const sim::Scenario& scenario, const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> inputs;
+    if (const auto* mesh = std::get_if<std::filesystem::path>(&scenario.mesh.source))
+        inputs.push_back(*mesh);
+    for (const sim::ToolSpec& tool : scenario.tools)
+        if (const auto* cut = std::get_if<sim::Cut>(&tool.kind))
+            if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
+                inputs.push_back(*surface);
+    for (const auto& input : inputs)
+        if (weakly_canonical(input).parent_path() == weakly_canonical(folder / "frames"))
+            throw InputError(input.string() + ": lies among the frames in " + folder.string() +
+                             ", which the run would replace; give the run another folder with "
+                             "--out, or the scenario a copy of the file elsewhere");
 }
 
 /// Tools that had time to cut and did not, which is seldom what was meant.
@@ -185,6 +204,8 @@ int run(const RunOptions& options) {
             return tell_expectations(scenario, *quantities);
         }
         stopped.emplace(stopped_run(folder, scenario));
+    } else {
+        require_inputs_elsewhere(scenario, folder);
     }
 
     const auto built = build(scenario, options.scenario);

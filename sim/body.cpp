@@ -10,8 +10,10 @@
 
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
+#include "sim/body_problems.h"
 #include "sim/elastic_constants.h"
 #include "sim/selection.h"
+#include "sim/tool.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 
@@ -234,15 +236,46 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
     return table;
 }
 
-physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh) {
+namespace {
+
+physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh,
+                                         BodyProblems& problems) {
     physics::Surroundings surroundings;
     surroundings.gravity = scenario.dynamics.gravity;
     surroundings.damping = scenario.dynamics.damping;
     for (const ConstraintSpec& spec : scenario.constraints)
-        surroundings.supports.push_back(build_support(spec, mesh));
+        surroundings.supports.push_back(
+            problems.try_to(spec.place, [&] { return build_support(spec, mesh); }));
     for (const LoadSpec& spec : scenario.loads)
-        surroundings.loads.push_back(build_load(spec, mesh));
+        surroundings.loads.push_back(
+            problems.try_to(spec.place, [&] { return build_load(spec, mesh); }));
     return surroundings;
+}
+
+}  // namespace
+
+physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh) {
+    BodyProblems problems;
+    physics::Surroundings surroundings = build_surroundings(scenario, mesh, problems);
+    problems.throw_if_any();
+    return surroundings;
+}
+
+Body build_body(const Scenario& scenario) {
+    SourceMesh source = build_mesh(scenario.mesh, scenario.materials);
+    BodyProblems problems;
+    const std::string place = scenario.materials.empty() ? "" : scenario.materials.front().place;
+    physics::MaterialTable materials = problems.try_to(place, [&] {
+        return build_materials(scenario, source.mesh, source.cell_vectors, source.warnings);
+    });
+    physics::Surroundings surroundings = build_surroundings(scenario, source.mesh, problems);
+    if (problems.are_there())  // else tools are made for good, and tell their own
+        for (const ToolSpec& spec : scenario.tools)
+            problems.try_to(spec.place,
+                            [&] { Tool(with_mode(spec, source.mesh), {}, source.warnings); });
+    problems.throw_if_any();
+    return {std::move(source.mesh), std::move(materials), std::move(surroundings),
+            std::move(source.warnings)};
 }
 
 }  // namespace incise::sim

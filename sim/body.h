@@ -38,7 +38,19 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
                                        const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);
 
-/// Gravity, damping, supports and loads. Throws InputError for empty selections.
+/// Gravity, damping, supports and loads. Throws BodyError with all empty selections.
 physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh);
+
+/// What a scenario describes, at rest.
+struct Body {
+    topology::Mesh mesh;
+    physics::MaterialTable materials;
+    physics::Surroundings surroundings;
+    std::vector<std::string> warnings;
+};
+
+/// Throws InputError as build_mesh, and BodyError with all materials, selections and tools at
+/// fault.
+Body build_body(const Scenario& scenario);
 
 }  // namespace incise::sim

@@ -45,16 +45,15 @@ std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) c
         return key(a.place) < key(b.place);
     });
     std::vector<std::string> texts;
-    for (const auto& [place, text] : findings) {
-        std::string where = file_ + ": ";
-        if (place.override_number >= 0)
-            where = "--set " + overrides_[static_cast<std::size_t>(place.override_number)] + ": ";
-        else if (place.line > 0)
-            where = file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) +
-                    ": ";
-        texts.push_back(where + text);
-    }
+    for (const auto& [place, text] : findings) texts.push_back(text_of(place) + ": " + text);
     return texts;
+}
+
+std::string Diagnostics::text_of(const Place& place) const {
+    if (place.override_number >= 0)
+        return "--set " + overrides_[static_cast<std::size_t>(place.override_number)];
+    if (place.line == 0) return file_;
+    return file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
 }
 
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {

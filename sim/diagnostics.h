@@ -26,6 +26,9 @@ class Diagnostics {
         warnings_.push_back({place, std::move(text)});
     }
 
+    /// "FILE:line:column", or "--set OVERRIDE".
+    std::string text_of(const Place& place) const;
+
     bool has_errors() const { return !errors_.empty(); }
 
     /// In the order of the file, then of the overrides, each as "FILE:line:column: text".

@@ -19,6 +19,55 @@ namespace {
 
 constexpr std::size_t max_file_size = 16u << 20;  // a mesh given by mistake, not a scenario
 
+/// Tables within tables: more, which dotted keys can make, would overrun the stack.
+constexpr std::size_t max_depth = 256;
+
+/// Behind the quoted text that begins at `i`; on its line unless it is a multi-line one.
+std::size_t end_of_quoted(std::string_view text, std::size_t i) {
+    const char quote = text[i];
+    const std::string triple(3, quote);
+    if (text.substr(i, 3) == triple) {
+        const auto end = text.find(triple, i + 3);
+        return end == text.npos ? text.size() : end + 3;
+    }
+    for (++i; i < text.size() && text[i] != quote && text[i] != '\n'; ++i)
+        if (quote == '"' && text[i] == '\\') ++i;
+    return std::min(i + (i < text.size() && text[i] == quote ? 1 : 0), text.size());
+}
+
+/// Throws DocumentError for a key of more than max_depth parts. The place is that of an override,
+/// or else the line.
+void require_flat_keys(std::string_view text, int override_number) {
+    constexpr std::string_view parts_of_keys =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_- \t";
+    int line = 1;
+    std::size_t num_dots = 0;
+    for (std::size_t i = 0; i < text.size();) {
+        if (text[i] == '"' || text[i] == '\'') {
+            const std::size_t end = end_of_quoted(text, i);
+            line +=
+                static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(i),
+                                            text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+            i = end;
+            continue;
+        }
+        if (text[i] == '#') {
+            i = std::min(text.find('\n', i), text.size());
+            continue;
+        }
+        if (text[i] == '\n') ++line;
+        if (text[i] == '.')
+            ++num_dots;
+        else if (parts_of_keys.find(text[i]) == parts_of_keys.npos)
+            num_dots = 0;
+        if (num_dots >= max_depth)
+            throw DocumentError{{override_number < 0 ? line : 0, 1, override_number},
+                                "a key of more than " + std::to_string(max_depth) +
+                                    " parts; no key of a scenario has more than six"};
+        ++i;
+    }
+}
+
 Place place_of(const toml::source_region& region, int override_number) {
     if (override_number >= 0) return {0, 0, override_number};
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), -1};
@@ -253,6 +302,7 @@ Value read_document(const std::filesystem::path& file) {
         throw InputError(file.string() + ": cannot be read; check its permissions");
     if (text.size() > max_file_size)
         throw InputError(file.string() + ": is too long for a scenario" + remedy);
+    require_flat_keys(text, -1);
     try {
         return convert(toml::parse(text), -1);
     } catch (const toml::parse_error& failure) {
@@ -269,6 +319,7 @@ void apply_override(Value& document, std::string_view text, int number) {
         while (part.ends_with(' ')) part.remove_suffix(1);
         return part;
     };
+    require_flat_keys(text, number);
     Value* target = &document;
     std::string path;
     for (const auto& step : split_path(trimmed(text.substr(0, equals)), place)) {

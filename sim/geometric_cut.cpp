@@ -368,7 +368,7 @@ std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts&
         if (counts.elements_crossed > 0) {
             text << "opens no face, though it crosses " << counts.elements_crossed
                  << (counts.elements_crossed == 1 ? " element" : " elements")
-                 << ": it grazes the body, or runs along an earlier cut";
+                 << ": it grazes the body, runs along an earlier cut, or needs a smaller snap";
             return text.str();
         }
         text << "cuts nothing, it parts no two elements";

@@ -20,6 +20,12 @@ struct Limits {
                (includes_high ? value <= high : value < high);
     }
 
+    /// Whether it has an end at all.
+    constexpr bool is_bounded() const {
+        return low > -std::numeric_limits<double>::infinity() ||
+               high < std::numeric_limits<double>::infinity();
+    }
+
     /// Such as "above 0 and at most 1"; "a finite number" without ends.
     std::string text() const;
 };

@@ -212,6 +212,7 @@ constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
 
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
+    spec.place = material.place_text();
     if (material.has("regions")) {
         const auto regions = material.integers("regions", region_limits);
         spec.regions.emplace(regions.begin(), regions.end());

@@ -52,6 +52,7 @@ struct MaterialSpec {
     std::variant<std::monostate, Vec3, std::string> fibre;
     double stiffness_ratio = 1.0;   ///< A of HybMSS, 0 to infinity
     bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
+    std::string place = {};         ///< for messages: FILE:line:column
 };
 
 enum class Mode { dynamic, statics };
@@ -118,6 +119,7 @@ struct ConstraintSpec {
     std::vector<TimeKey<double>> rotate;  ///< radians
     Vec3 about_point = Vec3::Zero();
     Vec3 about_axis = Vec3::UnitZ();  ///< of unit length
+    std::string place = {};           ///< for messages: FILE:line:column
 };
 
 struct NodalForce {
@@ -139,6 +141,7 @@ struct LoadSpec {
     Selection where;
     std::variant<NodalForce, Traction, Pressure, BodyForce> load;
     std::vector<TimeKey<double>> factor;  ///< empty: 1
+    std::string place = {};               ///< for messages: FILE:line:column
 };
 
 struct SphereShape {
@@ -191,6 +194,7 @@ struct ToolSpec {
     std::string name;
     std::variant<Carver, Blade, Cut> kind;
     std::vector<TimeKey<Pose>> path;  ///< at least one key, for a blade two
+    std::string place = {};           ///< for messages: FILE:line:column
 };
 
 /// What a frame can hold besides points, rest positions, ids and regions.

@@ -13,6 +13,7 @@
 #include "io/number_format.h"
 #include "physics/winding.h"
 #include "sim/body.h"
+#include "sim/body_problems.h"
 #include "topology/change_check.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -65,40 +66,24 @@ std::uint64_t fingerprint_of(const physics::Model& model, const std::vector<Tool
     return io::checksum(ar.bytes());
 }
 
-/// Blades get a mode that suits the mesh, unless they have one.
-/// Throws InputError for what is to split a mesh without tetrahedra.
-ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
-    auto* blade = std::get_if<Blade>(&spec.kind);
-    if (blade && !blade->mode) blade->mode = usual_mode(mesh);
-    const bool splits =
-        blade ? blade->mode == CutMode::split : std::holds_alternative<Cut>(spec.kind);
-    if (!splits) return spec;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i);
-            mesh.is_alive(e) && mesh.kind(e) == topology::CellKind::tetrahedron)
-            return spec;
-    throw InputError("tool '" + spec.name +
-                     "' splits tetrahedra, and the mesh has none; use a blade with mode = "
-                     "\"separate\", which opens the faces nearest to it");
-}
-
 }  // namespace
 
-Simulation::Simulation(const Scenario& scenario)
-    : Simulation(scenario, build_mesh(scenario.mesh, scenario.materials)) {}
+Simulation::Simulation(const Scenario& scenario) : Simulation(scenario, build_body(scenario)) {}
 
-Simulation::Simulation(const Scenario& scenario, SourceMesh source)
+Simulation::Simulation(const Scenario& scenario, Body body)
     : scenario_(scenario),
-      warnings_(std::move(source.warnings)),
-      mesh_(std::move(source.mesh)),
-      model_(mesh_, build_materials(scenario, mesh_, source.cell_vectors, warnings_),
-             build_surroundings(scenario, mesh_)),
+      warnings_(std::move(body.warnings)),
+      mesh_(std::move(body.mesh)),
+      model_(mesh_, std::move(body.materials), std::move(body.surroundings)),
       integrator_(make_integrator(scenario.dynamics)),
       ledger_(model_),
       boxes_(mesh_, model_.positions()) {
     const cutting::UncutBody uncut = uncut_body(model_);
+    BodyProblems problems;
     for (const ToolSpec& spec : scenario.tools)
-        tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_);
+        problems.try_to(spec.place,
+                        [&] { tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_); });
+    problems.throw_if_any();
     warn_of_tools_out_of_reach();
     fingerprint_ = fingerprint_of(model_, scenario.tools);
     step_limit();  // a fixed step that is too large is refused before anything is written

@@ -19,7 +19,7 @@
 namespace incise::sim {
 
 class Simulation;
-struct SourceMesh;
+struct Body;
 
 /// Watches a run. All functions may throw, which ends the run.
 class Observer {
@@ -36,7 +36,8 @@ class Observer {
 class Simulation {
   public:
     /// Builds what the scenario describes, at time 0.
-    /// Throws InputError for a mesh, selection or material at fault and for more than 1e10 steps,
+    /// Throws InputError for a mesh at fault and for more than 1e10 steps, BodyError with all
+    /// selections, regions and tools at fault,
     /// PhysicsError for a fixed step above the bound.
     explicit Simulation(const Scenario& scenario);
     Simulation(const Simulation&) = delete;
@@ -77,7 +78,7 @@ class Simulation {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
-    Simulation(const Scenario& scenario, SourceMesh source);
+    Simulation(const Scenario& scenario, Body body);
 
     struct Interval {
         double from, to;  // s

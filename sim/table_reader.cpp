@@ -218,6 +218,10 @@ const Place& TableReader::place_of(std::string_view key) const {
     return value != nullptr ? value->place : place_;
 }
 
+std::string TableReader::place_text(std::string_view key) const {
+    return diagnostics_.text_of(place_of(key));
+}
+
 void TableReader::error(std::string_view key, const std::string& text) const {
     diagnostics_.key_error(place_of(key), path_of(key), text);
 }
@@ -247,7 +251,9 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
     }
     if (limits.contains(number)) return number;
     diagnostics_.key_error(value.place, path,
-                           io::format_number(number) + " is not allowed: must be " + limits.text());
+                           io::format_number(number) + " is not allowed: must be " +
+                               (std::isinf(number) && limits.is_bounded() ? "finite, " : "") +
+                               limits.text());
     return std::nullopt;
 }
 

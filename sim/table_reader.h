@@ -76,6 +76,8 @@ class TableReader {
     std::string path_of(std::string_view key = {}) const;
     /// Where the key's value stands, or the table if there is none.
     const Place& place_of(std::string_view key = {}) const;
+    /// The same for messages: "FILE:line:column".
+    std::string place_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
 
     /// Reports "key 'PATH': TEXT" at the key, or at the table without key.

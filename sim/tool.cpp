@@ -12,6 +12,7 @@
 #include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
 #include "io/surface_reader.h"
+#include "topology/error.h"
 
 namespace incise::sim {
 
@@ -88,6 +89,21 @@ CutMode usual_mode(const topology::Mesh& mesh) {
             mesh.is_alive(e) && mesh.kind(e) != topology::CellKind::tetrahedron)
             return CutMode::separate;
     return CutMode::split;
+}
+
+ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
+    auto* blade = std::get_if<Blade>(&spec.kind);
+    if (blade && !blade->mode) blade->mode = usual_mode(mesh);
+    const bool splits =
+        blade ? blade->mode == CutMode::split : std::holds_alternative<Cut>(spec.kind);
+    if (!splits) return spec;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const topology::ElementId e(i);
+            mesh.is_alive(e) && mesh.kind(e) == topology::CellKind::tetrahedron)
+            return spec;
+    throw InputError("tool '" + spec.name +
+                     "' splits tetrahedra, and the mesh has none; use a blade with mode = "
+                     "\"separate\", which opens the faces nearest to it");
 }
 
 Tool::Tool(const ToolSpec& spec, const cutting::UncutBody& uncut,

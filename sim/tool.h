@@ -20,6 +20,10 @@ namespace incise::sim {
 /// tetrahedra. Cost: O(#elements).
 CutMode usual_mode(const topology::Mesh& mesh);
 
+/// Blades get a mode that suits the mesh, unless they have one.
+/// Throws InputError for what is to split a mesh without tetrahedra.
+ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh);
+
 /// Follows its path: position linear between keys, orientation along the shortest turn.
 class Tool {
   public:

@@ -132,6 +132,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         const auto kind = tool.choice("kind", {kinds});
         if (!kind) continue;
         ToolSpec spec;
+        spec.place = tool.place_text();
         spec.name = read_name(
             tool, std::string(kinds[*kind]) + "_" + std::to_string(++counts[*kind]), names);
         if (kinds[*kind] == "carver") {

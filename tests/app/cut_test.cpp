@@ -334,6 +334,7 @@ TEST_F(Cut, RefusesWhatItCannotUnderstand) {
              {"--snap nan --plane 0,0,0,1,0,0", "--snap: 'nan' is not allowed"},
              {"--json out.vtu --plane 0,0,0,1,0,0", "--json: out.vtu is the mesh"},
              {"--json ./box.vtu --plane 0,0,0,1,0,0", "--json: box.vtu is the mesh"},
+             {"--json ./cut.stl --surface cut.stl", "--json: cut.stl is the surface"},
              {"--remove-sphere 0,0,0,9",
               "box.vtu: --remove-sphere 0,0,0,9: removes the last "
               "element: nothing is left of the body"},

@@ -100,6 +100,31 @@ TEST_F(Run, RefusesBadInputBeforeItWritesAnything) {
     EXPECT_NE(refused(elsewhere).find("constraint 'floor' selects no node"), std::string::npos);
 }
 
+TEST_F(Run, RefusesAFrameAsItsMeshThatItWouldReplace) {
+    write("scene.toml", scene);
+    ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
+    write("scene.toml", "[mesh]\nfile = \"scene.out/frames/scene_000001.vtu\"\n" +
+                            scene.substr(scene.find("[[material]]")));
+    const auto outcome = run({"scene.toml", "--quiet"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("scene_000001.vtu: lies among the frames in scene.out"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(run({"scene.toml", "--quiet", "--out", "other"}).status, 0);
+}
+
+// The files of a run do not come to be what the program prints on.
+TEST_F(Run, KeepsToItsFilesWhereNothingIsOpenToPrintOn) {
+    write("scene.toml", scene);
+    ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
+    const std::string command = "cd '" + folder_.path().string() +
+                                "' && '" INCISE_PROGRAM
+                                "' run scene.toml --out mute <&- 2>&- >/dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    for (const char* file : {"history.csv", "edits.jsonl"})
+        EXPECT_EQ(read_text(folder_ / "mute" / file), read_text(folder_ / "scene.out" / file));
+}
+
 TEST_F(Run, RefusesAFixedStepAboveTheBound) {
     write("scene.toml", scene + "time_step = 0.04\n");
     const auto outcome = run({"scene.toml"});

@@ -78,6 +78,23 @@ TEST(ScenarioErrors, OfSyntaxHaveLineAndColumn) {
     EXPECT_EQ(errors[0].substr(0, 13), "scene.toml:2:");
 }
 
+// Tables within tables, of which the TOML library has no limit for those of dotted keys.
+TEST(ScenarioErrors, OfKeysThatWouldOverrunTheStack) {
+    std::string key;
+    for (int i = 0; i < 100'000; ++i) key += "a.";
+    const std::string text =
+        ": a key of more than 256 parts; no key of a scenario has more than six";
+    EXPECT_EQ(ScenarioFile("title = 'a'\n" + key + "a = 1\n").errors(),
+              Lines{"scene.toml:2:1" + text});
+    EXPECT_EQ(ScenarioFile("[" + key + "a]\n").errors(), Lines{"scene.toml:1:1" + text});
+    EXPECT_EQ(ScenarioFile(minimal).errors({key + "a=1"}), Lines{"--set " + key + "a=1" + text});
+    // Text is no key.
+    const std::string dots(1000, '.');
+    for (const std::string& title :
+         {"\"" + dots + "\"", "'" + dots + "'", "\"\"\"\n" + dots + "\n\"\"\"", "'a' # " + dots})
+        EXPECT_EQ(ScenarioFile("title = " + title + "\n" + minimal).errors(), Lines{});
+}
+
 TEST(ScenarioErrors, OfAnEmptyFileNameWhatIsMissing) {
     const auto errors = ScenarioFile("").errors();
     ASSERT_EQ(errors.size(), 3u);
@@ -127,7 +144,8 @@ TEST(ScenarioErrors, OfTheMesh) {
 
 TEST(ScenarioErrors, OfNumbersThatAreNotFinite) {
     EXPECT_EQ(error_of("damping = inf\n"),
-              "scene.toml:9:11: key 'dynamics.damping': inf is not allowed: must be at least 0");
+              "scene.toml:9:11: key 'dynamics.damping': inf is not allowed: must be finite, at "
+              "least 0");
     EXPECT_EQ(error_of("gravity = [0, nan, 0]\n"),
               "scene.toml:9:15: key 'dynamics.gravity[1]': nan is not allowed: must be a finite "
               "number");
@@ -269,7 +287,7 @@ TEST(ScenarioErrors, OfViscosity) {
         "is not known; did you mean 'tau'? Known here: alpha, tau | scene.toml:5:36: key "
         "'material[0].prony[1].alpha': is missing: the share of the stress that relaxes, as "
         "in alpha = 0.3 | scene.toml:5:44: key 'material[0].prony[1].tau': inf is not "
-        "allowed: must be above 0");
+        "allowed: must be finite, above 0");
     EXPECT_EQ(material_error(good + "prony = [{ alpha = 0.5, tau = 1 }, { alpha = 0.5, tau = 2 }]"),
               "scene.toml:5:9: key 'material[0].prony': has shares alpha that add up to 1: their "
               "sum must be below 1, or no stress would last");

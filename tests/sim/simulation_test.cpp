@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "run_folder.h"
+#include "sim/body_problems.h"
 #include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -33,6 +34,45 @@ std::string message_of(const std::function<void()>& action) {
         return error.what();
     }
     return "no PhysicsError";
+}
+
+TEST(Simulation, TellsAllThatIsAtFaultWithTheBodyAtOnce) {
+    const RunFolder folder;
+    const Scenario scenario = folder.scenario(R"([mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
+[[material]]
+density = 1000
+young = 1000
+poisson = 0.4
+regions = [3]
+[[constraint]]
+where = { nodes = [99] }
+fix = "xyz"
+[[constraint]]
+where = { sphere = { center = [9, 9, 9], radius = 0.01 } }
+fix = "xyz"
+[[load]]
+where = { region = 5 }
+body_force = [0, 0, 1]
+[[tool]]
+kind = "cut"
+time = 0.01
+surface = "scene.toml"
+[dynamics]
+end_time = 0.05
+)");
+    std::vector<std::string> places;
+    try {
+        const Simulation simulation(scenario);
+    } catch (const BodyError& error) {
+        const std::string file = (folder / "scene.toml").string() + ":";
+        std::istringstream lines(error.what());
+        for (std::string line; std::getline(lines, line);) {
+            ASSERT_EQ(line.find(file), 0u) << line;
+            places.push_back(line.substr(file.size(), line.find(' ') - file.size()));
+        }
+    }
+    EXPECT_EQ(places, (std::vector<std::string>{"3:1:", "9:9:", "12:9:", "15:9:", "17:1:"}));
 }
 
 std::string text_of(double value) {
