@@ -258,8 +258,7 @@ class AbaqusReader {
 
     void add_elements() {
         if (const auto twice = node_tags_.sort())
-            throw InputError(file_.name() + ": number " + std::to_string(*twice) +
-                             " is given to two nodes");
+            throw InputError(file_.name() + ": number " + *twice);
         std::ranges::stable_sort(elements_, {}, &Element::number);
         const auto twin = std::ranges::adjacent_find(elements_, {}, &Element::number);
         if (twin != elements_.end()) {

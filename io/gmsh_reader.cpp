@@ -102,7 +102,7 @@ class GmshReader {
         } else {
             const auto end = "$End" + std::string(name);
             if (!scanner_.skip_past(end))
-                scanner_.fail("section " + in_quotes(name) + " has no " + end +
+                scanner_.fail("section " + in_quotes(name) + " has no " + in_quotes(end) +
                               "; the file is cut short");
             return;
         }
@@ -182,10 +182,8 @@ class GmshReader {
 
     void finish_nodes() {
         has_nodes_ = true;
-        const auto twice = node_tags_.sort();
-        if (twice)
-            throw InputError(file_.name() + ": node tag " + std::to_string(*twice) +
-                             " is given to two nodes");
+        if (const auto twice = node_tags_.sort())
+            throw InputError(file_.name() + ": node tag " + *twice);
     }
 
     void begin_nodes() {
@@ -208,7 +206,8 @@ class GmshReader {
     static std::string element_name(std::int64_t tag) { return "element " + std::to_string(tag); }
 
     void refuse_form(const CellForm& form, std::int64_t tag) const {
-        if (form.use == refuse) collector_.refuse(form, file_.name() + ": " + element_name(tag));
+        if (form.use == refuse)
+            collector_.refuse(form, scanner_.place() + ": " + element_name(tag));
     }
 
     /// Keeps the element with the node tags in nodes_, which are replaced by point numbers.
@@ -256,7 +255,9 @@ class GmshReader {
                 num_in_block = static_cast<std::size_t>(count);
             }
             const int num_tags = int_value("the number of tags");
-            if (num_tags < 0) scanner_.fail("the number of tags is " + std::to_string(num_tags));
+            if (num_tags < 0)
+                scanner_.fail("the number of tags is " + std::to_string(num_tags) +
+                              "; it must be 0 or more");
             for (std::size_t i = 0; i < num_in_block; ++i) {
                 if (scanner_.is_binary()) tag = int_value("an element tag");
                 read_element_2(form, tag, num_tags);
@@ -285,6 +286,10 @@ class GmshReader {
     // --- version 4.1: points, curves, surfaces, volumes; of these we want the physical groups of
     // the volumes. Those of a partition say first from which entity they come.
     void read_entities(bool are_partitioned) {
+        if (has_elements_)
+            scanner_.fail(
+                "the entities come behind $Elements, whose regions they tell; put $Elements last, "
+                "or save the mesh anew with Gmsh");
         if (are_partitioned) {
             size_value("the number of partitions");
             const auto num_ghosts = count_value("the number of ghost entities", 2, 4);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,14 +17,17 @@ class NodeTags {
     /// Names the next node.
     void add(std::int64_t tag) { sorted_.emplace_back(tag, std::ssize(sorted_)); }
 
-    /// To be called when all are added. The first tag given twice, if any.
-    std::optional<std::int64_t> sort() {
+    /// To be called when all are added. What is wrong with the lowest tag given twice, if any is.
+    std::optional<std::string> sort() {
         std::sort(sorted_.begin(), sorted_.end());
         const auto twin =
             std::adjacent_find(sorted_.begin(), sorted_.end(),
                                [](const auto& a, const auto& b) { return a.first == b.first; });
         if (twin == sorted_.end()) return std::nullopt;
-        return twin->first;
+        const auto number = [](const auto& entry) { return std::to_string(entry.second + 1); };
+        return std::to_string(twin->first) + " is given to two nodes, the nodes number " +
+               number(twin[0]) + " and " + number(twin[1]) +
+               " in the order of the file; give each node one of its own";
     }
 
     /// The number of the node with this tag, if there is one. Cost: constant if tags have no

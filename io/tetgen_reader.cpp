@@ -104,10 +104,7 @@ class TetgenReader {
             points.emplace_back(x, y, z);
         }
         nodes_.expect_end(std::to_string(num_nodes) + " nodes");
-        const auto twice = tags_.sort();
-        if (twice)
-            throw InputError(nodes_name_ + ": index " + std::to_string(*twice) +
-                             " is given to two nodes");
+        if (const auto twice = tags_.sort()) throw InputError(nodes_name_ + ": index " + *twice);
     }
 
     double coordinate(std::size_t column, std::string_view what) const {
@@ -137,12 +134,21 @@ class TetgenReader {
         std::array<std::int64_t, 4> corners{};
         for (std::uint64_t i = 0; i < num_elements; ++i) {
             elements_.next("an element");
+            expect_columns(num_attributes);
             const auto index = elements_.number<std::int64_t>(0, "the index of an element");
             for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = corner(index, 1 + k);
             collector_.keep(*form, corners, num_attributes > 0 ? region(1 + corners.size()) : 0,
                             result_.mesh);
         }
         elements_.expect_end(std::to_string(num_elements) + " elements");
+    }
+
+    void expect_columns(std::size_t num_attributes) const {
+        const auto expected = 1 + std::size_t{4} + num_attributes;
+        if (elements_.num_columns() != expected)
+            elements_.fail("expected an index, 4 nodes and " + std::to_string(num_attributes) +
+                           " attributes, as the first line has it, found " +
+                           std::to_string(elements_.num_columns()) + " columns");
     }
 
     std::int64_t corner(std::int64_t element, std::size_t column) const {

@@ -27,9 +27,19 @@ struct VtuText {
     bool is_cut = false;
 };
 
+/// Where the start tag of AppendedData begins, or npos. In comments anything may stand.
+std::size_t find_appended(std::string_view bytes) {
+    auto at = bytes.find('<');
+    while (at != bytes.npos && !bytes.substr(at).starts_with("<AppendedData")) {
+        const bool is_comment = bytes.substr(at).starts_with("<!--");
+        at = bytes.find('<', is_comment ? bytes.find("-->", at + 4) : at + 1);
+    }
+    return at;
+}
+
 VtuText cut_appended(const InputFile& file) {
     const std::string_view bytes = file.bytes;
-    const auto tag = bytes.find("<AppendedData");
+    const auto tag = find_appended(bytes);
     if (tag == bytes.npos) return {bytes, {}, false};
     const auto tag_end = bytes.find('>', tag);
     if (tag_end == bytes.npos) return {bytes, {}, false};  // the XML parser will complain

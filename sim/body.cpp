@@ -181,9 +181,16 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
     return fibres;
 }
 
+/// The first few by number.
 std::string list(const std::set<int>& regions) {
+    constexpr std::size_t max_listed = 20;
     std::string text;
-    for (const int region : regions) text += (text.empty() ? "" : ", ") + std::to_string(region);
+    std::size_t num_listed = 0;
+    for (const int region : regions) {
+        if (num_listed++ == max_listed)
+            return text + " and " + std::to_string(regions.size() - max_listed) + " more";
+        text += (text.empty() ? "" : ", ") + std::to_string(region);
+    }
     return text;
 }
 

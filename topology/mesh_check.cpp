@@ -159,6 +159,17 @@ std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::u
     return sorted;
 }
 
+/// The cells of at least two faces, the first few by number.
+std::string cell_numbers(std::span<const FaceKey> faces) {
+    constexpr std::size_t max_listed = 5;
+    const std::size_t num_listed = faces.size() > max_listed + 1 ? max_listed : faces.size() - 1;
+    std::string text = std::to_string(faces[0].face.cell);
+    for (std::size_t k = 1; k < num_listed; ++k) text += ", " + std::to_string(faces[k].face.cell);
+    return text + " and " +
+           (num_listed + 1 == faces.size() ? std::to_string(faces.back().face.cell)
+                                           : std::to_string(faces.size() - num_listed) + " more");
+}
+
 std::int64_t face_point(const MeshData& data, SourceFace f, std::size_t position) {
     const auto face = traits(data.kinds[f.cell]).face(f.face);
     return data.cell(f.cell)[static_cast<std::size_t>(face[position % face.size()])];
@@ -237,14 +248,11 @@ MeshCheck check(const MeshData& data) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].points == faces[i].points) ++end;
         if (end - i == 2) check_pair(data, faces[i].face, faces[i + 1].face, result, errors);
-        if (end - i > 2) {
-            std::ostringstream cells;
-            for (std::size_t k = i; k < end; ++k)
-                cells << (k == i ? "" : k + 1 == end ? " and " : ", ") << faces[k].face.cell;
+        if (end - i > 2)
             errors.add(
-                "faces shared by more than two cells", "cells ", cells.str(),
+                "faces shared by more than two cells", "cells ",
+                cell_numbers(std::span(faces).subspan(i, end - i)),
                 " all share one face; a face joins two cells at the most: remove the others");
-        }
         i = end;
     }
     std::sort(result.shared_faces.begin(), result.shared_faces.end(),

@@ -122,6 +122,7 @@ class MeshImport {
         // Slots ascend with elements: the set that a node's first slot is in keeps the node.
         std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), mesh_.corners_.size());
         std::vector<NodeId> node_of_set(mesh_.corners_.size());
+        std::vector<bool> is_pinched(mesh_.rest_positions_.size(), false);
         std::size_t num_pinched = 0;
         for (std::size_t slot = 0; slot < mesh_.corners_.size(); ++slot) {
             const NodeId n = mesh_.corners_[slot];
@@ -135,12 +136,13 @@ class MeshImport {
                     mesh_.rest_positions_.push_back(mesh_.rest_positions_[n.index()]);
                     mesh_.pinched_.emplace_back(mesh_.node_labels_[n.index()], node_of_set[set]);
                     ++mesh_.num_nodes_;
-                    if (++num_pinched <= max_pinches_listed) {
+                    if (!is_pinched[n.index()] && ++num_pinched <= max_pinches_listed) {
                         std::ostringstream text;
                         text << "point " << mesh_.node_labels_[n.index()]
                              << " joins cells that share no face there; the cells get a node each";
                         check_.warnings.push_back(text.str());
                     }
+                    is_pinched[n.index()] = true;
                 }
             }
             mesh_.corners_[slot] = node_of_set[set];

@@ -220,8 +220,10 @@ TEST(AbaqusReader, RefusesUnknownNodesAndNumbersGivenTwice) {
               "liver.inp:12: element 3: node 927 is not one of the 5 nodes");
     EXPECT_EQ(abaqus_refusal_with("50, 40", "50, 0"),
               "liver.inp:12: expected a node, from 1 on, found '0'");
-    EXPECT_EQ(abaqus_refusal_with(" 40, 1.", " 10, 1."),
-              "liver.inp: number 10 is given to two nodes");
+    EXPECT_EQ(
+        abaqus_refusal_with(" 40, 1.", " 10, 1."),
+        "liver.inp: number 10 is given to two nodes, the nodes number 2 and 5 in the order of "
+        "the file; give each node one of its own");
     EXPECT_EQ(abaqus_refusal_with("3, 10", "7, 10"),
               "liver.inp:12: number 7 is given to two elements");
 }

@@ -116,7 +116,9 @@ TEST(GmshReader, RefusesUnknownNodes) {
               "liver.msh:16: element 3: node tag 927 is not one of the 5 nodes");
     EXPECT_EQ(refusal_4("2 2 3 4 5", "2 2 3 4 0"),
               "liver.msh:28: element 2: node tag 0 is not one of the 5 nodes");
-    EXPECT_EQ(refusal_2("40 1 1 1", "10 1 1 1"), "liver.msh: node tag 10 is given to two nodes");
+    EXPECT_EQ(refusal_2("40 1 1 1", "10 1 1 1"),
+              "liver.msh: node tag 10 is given to two nodes, the nodes number 2 and 5 in the order "
+              "of the file; give each node one of its own");
 }
 
 TEST(GmshReader, RefusesCountsThatTheFileCannotHold) {
@@ -130,7 +132,8 @@ TEST(GmshReader, RefusesCountsThatTheFileCannotHold) {
     EXPECT_THAT(refusal_4("2 2 1 2", "2 3 1 2"), HasSubstr("hold 2 elements, but 3"));
     EXPECT_THAT(refusal_2("$Nodes\n5", "$Nodes\n4"),
                 StartsWith("liver.msh:10: expected $EndNodes, found '40'"));
-    EXPECT_THAT(refusal_2("3 4 0 10", "3 4 -1 10"), HasSubstr("the number of tags is -1"));
+    EXPECT_THAT(refusal_2("3 4 0 10", "3 4 -1 10"),
+                HasSubstr("the number of tags is -1; it must be 0 or more"));
 }
 
 TEST(GmshReader, RefusesWhatItCannotRead) {
@@ -141,12 +144,12 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
     EXPECT_THAT(refusal("liver.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n"), HasSubstr("of version 1"));
     EXPECT_THAT(refusal("liver.msh", "$Nodes\n1\n"), HasSubstr("before $MeshFormat"));
     EXPECT_THAT(refusal("liver.msh", "$Comments\nhello\n"),
-                StartsWith("liver.msh:1: section 'Comments' has no $EndComments"));
+                StartsWith("liver.msh:1: section 'Comments' has no '$EndComments'"));
     EXPECT_THAT(refusal("liver.msh", version_2.substr(0, version_2.find("$Elements"))),
                 HasSubstr("has no $Elements section"));
     EXPECT_THAT(
         refusal_2("3 4 0 10", "3 11 0 10"),
-        StartsWith("liver.msh: element 3: a second-order tetrahedron (Gmsh element type 11)"));
+        StartsWith("liver.msh:16: element 3: a second-order tetrahedron (Gmsh element type 11)"));
     EXPECT_THAT(refusal_2("3 4 0 10", "3 77 0 10"), HasSubstr("element type 77 is not known"));
     EXPECT_THAT(refusal_2("10 1 0 0", "10 1 zero 0"),
                 StartsWith("liver.msh:7: expected a y coordinate, found 'zero'"));
@@ -154,6 +157,23 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
               "liver.msh:7: a y coordinate is nan; it must be finite");
     EXPECT_THAT(refusal_2("2 4 2 7", "2 5 2 7"),
                 HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
+}
+
+TEST(GmshReader, QuotesAndShortensNamesOfSections) {
+    const auto message =
+        refusal("liver.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$\x1b[31m" +
+                                 std::string(1, '\0') + std::string(5000, 'a') + "\n");
+    EXPECT_LT(message.size(), 200u);
+    EXPECT_EQ(message, printable(message));
+    EXPECT_THAT(message, HasSubstr("the file is cut short"));
+}
+
+TEST(GmshReader, RefusesEntitiesBehindTheElementsWhoseRegionsTheyTell) {
+    const auto begin = version_4.find("$Entities"), end = version_4.find("$Nodes");
+    const auto entities = version_4.substr(begin, end - begin);
+    EXPECT_THAT(refusal("liver.msh", replaced(version_4, entities, "") + entities),
+                AllOf(StartsWith("liver.msh:25: the entities come behind $Elements"),
+                      HasSubstr("put $Elements last")));
 }
 
 TEST(GmshReader, RefusesBinaryCountsThatTheFileCannotHold) {

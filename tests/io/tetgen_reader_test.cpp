@@ -128,8 +128,6 @@ TEST(TetgenReader, TakesTheFirstAttributeAsTheRegion) {
                 StartsWith("liver.ele:2: attribute 0.25 is taken as the region, but is no whole"));
     EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 nan\n"), HasSubstr("attribute nan"));
     EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 2147483648\n"), HasSubstr("of 32 bits"));
-    EXPECT_EQ(refusal_of(node_file, "1 4 1\n1 1 4 8 3\n"),
-              "liver.ele:2: the attribute of an element is missing: the line has 5 numbers");
 }
 
 TEST(TetgenReader, RefusesUnknownNodes) {
@@ -138,7 +136,8 @@ TEST(TetgenReader, RefusesUnknownNodes) {
     EXPECT_THAT(refusal_of_elements("7     1     3     2", "7     1     3   0"),
                 HasSubstr("node 0 is not one"));
     EXPECT_EQ(refusal_of_nodes("   8    0", "   7    0"),
-              "liver.node: index 7 is given to two nodes");
+              "liver.node: index 7 is given to two nodes, the nodes number 7 and 8 in the order of "
+              "the file; give each node one of its own");
 }
 
 TEST(TetgenReader, RefusesCountsThatTheFileCannotHold) {
@@ -154,6 +153,16 @@ TEST(TetgenReader, RefusesCountsThatTheFileCannotHold) {
     EXPECT_THAT(refusal_of_elements("6  4", "7  4"), HasSubstr("the file ends where an element"));
     EXPECT_THAT(refusal_of_elements("6  4", "5  4"), HasSubstr("behind 5 elements"));
     EXPECT_THAT(refusal_of(node_file, "0 4 0"), HasSubstr("liver.ele: holds no cells at all"));
+}
+
+TEST(TetgenReader, RefusesElementsOfOtherThanTheAnnouncedColumns) {
+    EXPECT_EQ(refusal_of(node_file, "1 4 1\n1 1 4 8 3\n"),
+              "liver.ele:2: expected an index, 4 nodes and 1 attributes, as the first line has it, "
+              "found 5 columns");
+    EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 5 2 6 7 1 2\n"),
+                HasSubstr("liver.ele:2: expected an index, 4 nodes and 1 attributes"));
+    EXPECT_THAT(refusal_of(node_file, "1 4 4294967295\n1 1 4 8 3 10\n"),
+                HasSubstr("4294967295 attributes, as the first line has it, found 6 columns"));
 }
 
 TEST(TetgenReader, RefusesEveryFileThatIsCutShort) {

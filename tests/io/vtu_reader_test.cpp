@@ -302,6 +302,15 @@ TEST(VtuReader, RefusesBlocksThatLieAboutTheirSize) {
     EXPECT_THAT(refusal("liver.vtu", text), HasSubstr("array 'Points': "));
 }
 
+TEST(VtuReader, StepsOverCommentsThatSpeakOfAppendedData) {
+    for (const auto& sample : vtu_samples()) {
+        SCOPED_TRACE(sample.name);
+        const auto commented = replaced(sample.bytes, "<UnstructuredGrid",
+                                        "<!-- no <AppendedData here> --><UnstructuredGrid");
+        expect_same_mesh(read_bytes("a.vtu", commented).mesh, sample_mesh());
+    }
+}
+
 TEST(VtuReader, RefusesAppendedDataOutsideTheFile) {
     for (const auto& sample : vtu_samples()) {
         if (!sample.name.starts_with("raw-")) continue;

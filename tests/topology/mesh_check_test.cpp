@@ -96,6 +96,17 @@ TEST(MeshCheck, RefusesFacesSharedByThree) {
                    "remove the others");
 }
 
+TEST(MeshCheck, NamesTheFirstOfManyCellsAtOneFace) {
+    MeshData data = two_by_a_face();
+    for (std::int64_t point = 5; point < 1000; ++point) {
+        data.points.emplace_back(2, 2, 2);
+        data.add_cell(CellKind::tetrahedron, std::vector<std::int64_t>{3, 1, 2, point});
+    }
+    expect_refused(data,
+                   "cells 0, 1, 2, 3, 4 and 992 more all share one face; a face joins two cells at "
+                   "the most: remove the others");
+}
+
 TEST(MeshCheck, RefusesNeighboursOnTheSameSide) {
     MeshData data = test::mesh_families()[0].data;
     data.points.emplace_back(0.1, 0.1, 2);

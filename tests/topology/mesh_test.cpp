@@ -133,6 +133,25 @@ TEST(Mesh, DividesPinchedNodesAndSaysSo) {
     EXPECT_EQ(built.mesh.nodes_with_label(2).size(), 1u);
 }
 
+TEST(Mesh, WarnsOncePerPinchedNode) {
+    MeshData data;
+    data.points = {{0, 0, 0}};
+    for (int i = 0; i < 4; ++i) {  // tetrahedra in different quadrants about the origin
+        const Vec3 x(i % 2 == 0 ? 1 : -1, 0, 0), y(0, i < 2 ? 1 : -1, 0), z(0, 0, 1);
+        const auto first = static_cast<std::int64_t>(data.points.size());
+        for (const Vec3& corner : {Vec3(x + y), Vec3(2 * x + y), Vec3(x + y + z)})
+            data.points.push_back(corner);
+        const bool is_mirrored = i == 1 || i == 2;
+        data.add_cell(CellKind::tetrahedron,
+                      std::vector<std::int64_t>{0, first + (is_mirrored ? 0 : 1),
+                                                first + (is_mirrored ? 1 : 0), first + 2});
+    }
+    const BuiltMesh built = Mesh::build(data);
+    EXPECT_EQ(built.mesh.nodes_with_label(0).size(), 4u);
+    ASSERT_EQ(built.warnings.size(), 1u);
+    EXPECT_NE(built.warnings[0].find("point 0 joins cells"), std::string::npos);
+}
+
 TEST(Mesh, LeavesUnusedPointsOut) {
     MeshData data = test::mesh_families().front().data;
     data.points.insert(data.points.begin() + 1, Vec3(9, 9, 9));
