@@ -41,6 +41,7 @@ struct ImageHeader {
     std::size_t skip_lines = 0;
     std::size_t skip_bytes = 0;  ///< bytes before the values, once unpacked
     bool is_at_end = false;      ///< in place of these: the values are the last of their file
+    std::optional<double> packed_size;  ///< bytes of the values as they are packed, if stated
 
     std::vector<std::string> warnings;
 
@@ -68,5 +69,10 @@ ImageHeader read_nrrd_header(const InputFile& file);
 /// and of a product below 2^31.
 std::array<std::int64_t, 3> image_dimensions(const InputFile& file,
                                              const std::vector<std::int64_t>& numbers);
+
+/// The path of the data file that line `line` of a header names, which lies relative to the header.
+/// Throws InputError for what can be no name of a file, and for the header itself.
+std::filesystem::path data_file_path(const InputFile& file, std::string_view name,
+                                     std::size_t line);
 
 }  // namespace incise::io

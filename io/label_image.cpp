@@ -76,13 +76,13 @@ void settle_pose(const InputFile& file, ImageHeader& header) {
 
 class LabelDecoder {
   public:
-    LabelDecoder(const InputFile& file, const ImageHeader& header) : file_(file), header_(header) {
+    LabelDecoder(const InputFile& file, ImageHeader& header) : file_(file), header_(header) {
         const auto [x, y, z] = header.dimensions;
         num_voxels_ = static_cast<std::size_t>(x * y * z);
     }
 
     /// @param stored  what the file holds from where its values or what they are packed in begin
-    std::vector<int> decode(std::string_view stored) const {
+    std::vector<int> decode(std::string_view stored) {
         using enum ImageHeader::Encoding;
         if (header_.encoding == text) return from_text(stored);
         const auto size = num_voxels_ * size_of(header_.type);
@@ -103,7 +103,7 @@ class LabelDecoder {
     }
 
   private:
-    std::string_view values_in(std::string_view bytes, std::size_t size) const {
+    std::string_view values_in(std::string_view bytes, std::size_t size) {
         auto skip = header_.skip_bytes;
         if (header_.is_at_end && bytes.size() >= size) skip = bytes.size() - size;
         if (skip > bytes.size() || bytes.size() - skip < size)
@@ -111,6 +111,10 @@ class LabelDecoder {
                              std::to_string(size) + " bytes of values, and there are " +
                              std::to_string(bytes.size() - std::min(skip, bytes.size())) +
                              "; get it anew");
+        if (const auto surplus = bytes.size() - skip - size; surplus > 0)
+            header_.warnings.push_back("has " + std::to_string(surplus) +
+                                       " bytes behind the values that its header announces, which "
+                                       "are not read; check the dimensions and the type");
         return bytes.substr(skip, size);
     }
 
@@ -231,7 +235,7 @@ class LabelDecoder {
     }
 
     const InputFile& file_;
-    const ImageHeader& header_;
+    ImageHeader& header_;  ///< takes the warnings
     std::size_t num_voxels_;
 };
 
@@ -245,6 +249,16 @@ InputFile load_data_file(const InputFile& header_file, const std::filesystem::pa
     } catch (const InputError& error) {
         throw InputError(header_file.name() + ": its data: " + error.what());
     }
+}
+
+/// Refuses fewer bytes than the header states; writers round that number to six digits.
+void require_packed(const InputFile& file, const ImageHeader& header, std::size_t num_stored) {
+    constexpr double rounding = 1e-5;
+    if (!header.packed_size) return;
+    if (!(*header.packed_size <= (1.0 + rounding) * static_cast<double>(num_stored)))
+        throw InputError(file.name() + ": ends too early: its header announces " +
+                         shown(*header.packed_size) + " bytes of packed values, and there are " +
+                         std::to_string(num_stored) + "; get it anew");
 }
 
 std::string_view without_lines(std::string_view bytes, std::size_t num_lines) {
@@ -283,6 +297,24 @@ std::array<std::int64_t, 3> image_dimensions(const InputFile& file,
     return dimensions;
 }
 
+std::filesystem::path data_file_path(const InputFile& file, std::string_view name,
+                                     std::size_t line) {
+    constexpr std::size_t longest = 1000;
+    const auto refuse = [&](const std::string& message) {
+        throw InputError(file.name() + ":" + std::to_string(line) + ": " + message);
+    };
+    const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 127; };
+    if (name.empty()) refuse("names no file for the data");
+    if (name.size() > longest || std::ranges::any_of(name, is_control))
+        refuse("the name of the data file, " + in_quotes(name) +
+               ", is too long or has control characters; the header is damaged");
+    const auto path = file.path.parent_path() / std::string(name);
+    std::error_code error;  // where one is not there, they are not the same
+    if (std::filesystem::equivalent(path, file.path, error))
+        refuse("names itself as the file of the data; name the file that has the values");
+    return path;
+}
+
 LabelImage read_label_image(const std::filesystem::path& path) {
     const auto file = load_input_file(path);
     auto header = format_of(file).read(file);
@@ -292,6 +324,7 @@ LabelImage read_label_image(const std::filesystem::path& path) {
     const auto& data_file = header.data_file ? data : file;
     const auto stored = std::string_view(data_file.bytes)
                             .substr(std::min(header.data_begin, data_file.bytes.size()));
+    require_packed(data_file, header, stored.size());
     LabelImage image;
     image.labels = LabelDecoder(data_file, header).decode(without_lines(stored, header.skip_lines));
     if (std::ranges::all_of(image.labels, [](int label) { return label == 0; }))

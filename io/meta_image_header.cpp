@@ -125,13 +125,12 @@ void set_pose(ImageHeader& header, const Entries& entries) {
 void set_place(ImageHeader& header, const InputFile& file, const Entries& entries) {
     const auto& data = entries.need("ElementDataFile");
     const auto word = data.value.substr(0, data.value.find_first_of(" \t"));
-    if (data.value.empty()) entries.fail(data, "ElementDataFile names no file");
     if (word == "LIST" || data.value.find('%') != data.value.npos)
         entries.fail(data, "data in a list of files are not read; save the image as one .mha file");
     if (data.value == "LOCAL" || data.value == "Local" || data.value == "local")
         header.data_begin = entries.data_begin();
     else
-        header.data_file = file.path.parent_path() / std::string(data.value);
+        header.data_file = data_file_path(file, data.value, data.line);
     if (const auto* skip = entries.find({"HeaderSize"})) {
         const auto bytes = entries.numbers<std::int64_t>(*skip, 1)[0];
         if (bytes < -1) entries.fail(*skip, "HeaderSize cannot be " + std::to_string(bytes));
@@ -174,6 +173,9 @@ ImageHeader read_meta_image_header(const InputFile& file) {
         header.encoding = ImageHeader::Encoding::text;
     else if (entries.flag({"CompressedData"}, false))
         header.encoding = ImageHeader::Encoding::zlib_or_gzip;
+    const auto* packed_size = entries.find({"CompressedDataSize"});
+    if (packed_size && header.encoding == ImageHeader::Encoding::zlib_or_gzip)
+        header.packed_size = entries.numbers<double>(*packed_size, 1)[0];
     set_pose(header, entries);
     set_place(header, file, entries);
     return header;

@@ -219,8 +219,7 @@ void set_place(ImageHeader& header, const InputFile& file, const NrrdFields& fie
         if (data->value.starts_with("LIST") || data->value.find('%') != data->value.npos)
             fields.fail(*data,
                         "data in a list of files are not read; save the image as one .nrrd file");
-        if (data->value.empty()) fields.fail(*data, "names no file");
-        header.data_file = file.path.parent_path() / std::string(data->value);
+        header.data_file = data_file_path(file, data->value, data->line);
     } else {
         header.data_begin = fields.data_begin();
     }

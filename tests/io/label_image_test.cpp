@@ -15,6 +15,7 @@
 #include <numbers>
 #include <random>
 
+#include "io/input_file.h"
 #include "io/memory.h"
 #include "tests/io/image_samples.h"
 #include "tests/io/reader_samples.h"
@@ -245,6 +246,48 @@ TEST(LabelImage, ReadsMetaImageDataFromAnotherFile) {
     EXPECT_EQ(labels[0], 0xEF);
     EXPECT_EQ(labels[2], 0xBF);
     EXPECT_EQ(labels[23], 23);
+}
+
+TEST(LabelImage, RefusesHeadersThatNameThemselvesAsTheData) {
+    EXPECT_THAT(image_refusal("a.mhd", meta_image_header("./a.mhd")),
+                HasSubstr("a.mhd:12: names itself as the file of the data"));
+    EXPECT_THAT(image_refusal("a.nhdr", nrrd_header() + "data file: a.nhdr\n"),
+                HasSubstr("a.nhdr:13: names itself as the file of the data"));
+    for (const auto& name : {std::string(5000, 'a'), std::string("\x1b[31m")}) {
+        const auto message = image_refusal("a.mhd", meta_image_header(name));
+        EXPECT_THAT(message, HasSubstr("a.mhd:12: the name of the data file, '"));
+        EXPECT_LT(message.size(), 200u);
+        EXPECT_EQ(message, printable(message));
+    }
+}
+
+TEST(LabelImage, WarnsOfBytesBehindTheValues) {
+    const support::TemporaryFolder folder;
+    write_bytes(folder / "a.raw", bytes_of<std::uint8_t>(sample_labels()) + "xyz");
+    write_bytes(folder / "a.mhd", meta_image_header("a.raw"));
+    write_bytes(folder / "a.nhdr", nrrd_header() + "data file: a.raw\n");
+    for (const auto* name : {"a.mhd", "a.nhdr"}) {
+        const auto image = read_label_image(folder / name);
+        EXPECT_EQ(image.labels, sample_labels());
+        EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("has 3 bytes behind the values")));
+    }
+}
+
+TEST(LabelImage, RefusesFewerPackedBytesThanTheHeaderStates) {
+    const auto packed = gzipped(bytes_of<std::uint8_t>(sample_labels()));
+    const auto image = [&](const std::string& size) {
+        return replaced(meta_image_header("LOCAL"), "CompressedData = False",
+                        "CompressedData = True\nCompressedDataSize = " + size) +
+               packed;
+    };
+    expect_image(read_image("a.mha", image(std::to_string(packed.size()))), quarter_turn,
+                 {-10, 5, 7});
+    for (const auto& [size, shown_size] :
+         {std::pair<std::string, std::string>{"99999999999", "99999999999"}, {"nan", "nan"}})
+        EXPECT_EQ(image_refusal("a.mha", image(size)),
+                  "a.mha: ends too early: its header announces " + shown_size +
+                      " bytes of packed values, and there are " + std::to_string(packed.size()) +
+                      "; get it anew");
 }
 
 TEST(LabelImage, ReadsNrrdInAllItsEncodings) {
