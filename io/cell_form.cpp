@@ -27,7 +27,9 @@ void CellCollector::finish(const topology::MeshData& mesh,
                               ? "no cells at all; "
                               : list + " but no tetrahedra, hexahedra, wedges or pyramids; ") +
                          "make a volume mesh of it first");
-    if (!list.empty()) warnings.push_back("ignored " + list + ": only volume cells are used");
+    if (!list.empty())
+        warnings.push_back("ignored " + list +
+                           ": only volume cells are used, and counted from 0 in what follows");
 }
 
 }  // namespace incise::io
