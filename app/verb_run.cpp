@@ -98,11 +98,18 @@ void require_inputs_elsewhere(const sim::Scenario& scenario, const std::filesyst
         if (const auto* cut = std::get_if<sim::Cut>(&tool.kind))
             if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
                 inputs.push_back(*surface);
-    for (const auto& input : inputs)
-        if (weakly_canonical(input).parent_path() == weakly_canonical(folder / "frames"))
+    // What cannot be looked at is told when it is opened.
+    std::error_code error;
+    const auto frames = weakly_canonical(folder / "frames", error);
+    for (const auto& input : inputs) {
+        const auto path = weakly_canonical(input, error);
+        const bool is_frame =
+            path.filename().string().starts_with(scenario.name + "_") && path.extension() == ".vtu";
+        if (!frames.empty() && is_frame && path.parent_path() == frames)
             throw InputError(input.string() + ": lies among the frames in " + folder.string() +
                              ", which the run would replace; give the run another folder with "
                              "--out, or the scenario a copy of the file elsewhere");
+    }
 }
 
 /// Tools that had time to cut and did not, which is seldom what was meant.

@@ -112,8 +112,9 @@ class LabelDecoder {
                              std::to_string(bytes.size() - std::min(skip, bytes.size())) +
                              "; get it anew");
         if (const auto surplus = bytes.size() - skip - size; surplus > 0)
-            header_.warnings.push_back("has " + std::to_string(surplus) +
-                                       " bytes behind the values that its header announces, which "
+            header_.warnings.push_back(file_.name() + " has " + std::to_string(surplus) +
+                                       (surplus == 1 ? " byte" : " bytes") +
+                                       " behind the values that its header announces, which "
                                        "are not read; check the dimensions and the type");
         return bytes.substr(skip, size);
     }
@@ -303,7 +304,7 @@ std::filesystem::path data_file_path(const InputFile& file, std::string_view nam
     const auto refuse = [&](const std::string& message) {
         throw InputError(file.name() + ":" + std::to_string(line) + ": " + message);
     };
-    const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 127; };
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; };
     if (name.empty()) refuse("names no file for the data");
     if (name.size() > longest || std::ranges::any_of(name, is_control))
         refuse("the name of the data file, " + in_quotes(name) +

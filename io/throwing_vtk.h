@@ -44,7 +44,8 @@ class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
     }
 };
 
-/// Of a compressor of VTK. The name of its class stays VTK's, since files have it.
+/// Of a compressor of VTK, which has room enough: it fails only for lack of memory. The name of its
+/// class stays VTK's, since files have it.
 template <class VtkCompressor>
 class ThrowingCompressor final : public VtkCompressor {
   public:

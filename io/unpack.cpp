@@ -43,6 +43,8 @@ class Inflater {
             if (status == Z_STREAM_END) {
                 is_finished_ = !begins_as_gzip(rest_);
                 if (!is_finished_) has_failed_ = inflateReset(&stream_) != Z_OK;
+            } else if (status == Z_MEM_ERROR) {
+                throw std::bad_alloc();
             } else if (status != Z_OK) {
                 has_failed_ = true;  // damaged, or ended too early
             }

@@ -172,11 +172,13 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
         const Vec3& vector = cell_vectors.by_name.at(*array).at(label);
         fibres[i] = unit(vector);
         if (fibres[i].isZero(0.0))
-            throw InputError(cell_vectors.file + ": element " + std::to_string(label) +
-                             ", of region " + std::to_string(mesh.region(e)) + ", has " +
-                             text_of(vector) + " in the cell array '" + *array +
-                             "', which is no direction of fibres: its material needs one in each "
-                             "element; correct the array, or give the region a law without fibres");
+            throw BodyError(
+                specs[material].place,
+                cell_vectors.file + ": element " + std::to_string(label) + ", of region " +
+                    std::to_string(mesh.region(e)) + ", has " + text_of(vector) +
+                    " in the cell array '" + *array +
+                    "', which is no direction of fibres: its material needs one in each "
+                    "element; correct the array, or give the region a law without fibres");
     }
     return fibres;
 }
@@ -276,7 +278,7 @@ Body build_body(const Scenario& scenario) {
         return build_materials(scenario, source.mesh, source.cell_vectors, source.warnings);
     });
     physics::Surroundings surroundings = build_surroundings(scenario, source.mesh, problems);
-    if (problems.are_there())  // else tools are made for good, and tell their own
+    if (problems.are_there())  // else tools are made for good, and tell what is theirs
         for (const ToolSpec& spec : scenario.tools)
             problems.try_to(spec.place,
                             [&] { Tool(with_mode(spec, source.mesh), {}, source.warnings); });

@@ -32,8 +32,8 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
 
 /// Which region has which material, which element fibres of which direction, and the precision of
 /// the forces. Warns of regions that the mesh does not have.
-/// Throws InputError for a region of the mesh without material, and for an element whose material
-/// has fibres and whose vector in the file has no direction.
+/// Throws InputError for a region of the mesh without material, BodyError for an element whose
+/// material has fibres and whose vector in the file has no direction.
 physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
                                        const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);

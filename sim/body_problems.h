@@ -3,8 +3,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "topology/error.h"
 
@@ -13,21 +11,29 @@ namespace incise::sim {
 /// A line for each problem, complete in itself: "FILE:line:column: text".
 struct BodyError : InputError {
     using InputError::InputError;
+    /// @param place  "FILE:line:column", or empty for a scenario that comes from no file
+    BodyError(const std::string& place, const std::string& text)
+        : InputError(joined(place, place.empty() ? "" : ": ", text)) {}
+
+    static std::string joined(std::string first, const char* between, const std::string& second) {
+        return first.append(between).append(second);
+    }
 };
 
 class BodyProblems {
   public:
-    /// Returns build(); if it throws InputError, notes that what stands at `place` is at fault, and
-    /// returns an empty value.
+    /// Returns build(). If it throws InputError, notes that what stands at `place` is at fault, and
+    /// returns an empty value; a BodyError knows its own place.
     template <class Build>
     auto try_to(const std::string& place, Build build) -> decltype(build()) {
         try {
             return build();
+        } catch (const BodyError& error) {
+            add(error);
         } catch (const InputError& error) {
-            text_ +=
-                (text_.empty() ? "" : "\n") + (place.empty() ? "" : place + ": ") + error.what();
-            return decltype(build())();
+            add(BodyError(place, error.what()));
         }
+        return decltype(build())();
     }
 
     bool are_there() const { return !text_.empty(); }
@@ -37,6 +43,10 @@ class BodyProblems {
     }
 
   private:
+    void add(const BodyError& error) {
+        text_ = BodyError::joined(text_, text_.empty() ? "" : "\n", error.what());
+    }
+
     std::string text_;
 };
 

@@ -19,24 +19,26 @@ namespace {
 
 constexpr std::size_t max_file_size = 16u << 20;  // a mesh given by mistake, not a scenario
 
-/// Tables within tables: more, which dotted keys can make, would overrun the stack.
-constexpr std::size_t max_depth = 256;
+/// Parts of a dotted key: each makes a table within a table, of which many would overrun the stack.
+/// The TOML library has no limit for them, and one of 256 for tables that are written as such.
+constexpr std::size_t max_key_parts = 16;
 
 /// Behind the quoted text that begins at `i`; on its line unless it is a multi-line one.
 std::size_t end_of_quoted(std::string_view text, std::size_t i) {
     const char quote = text[i];
     const std::string triple(3, quote);
     if (text.substr(i, 3) == triple) {
-        const auto end = text.find(triple, i + 3);
-        return end == text.npos ? text.size() : end + 3;
+        for (i += 3; i < text.size() && text.substr(i, 3) != triple; ++i)
+            if (quote == '"' && text[i] == '\\') ++i;
+        return std::min(i + 3, text.size());
     }
     for (++i; i < text.size() && text[i] != quote && text[i] != '\n'; ++i)
         if (quote == '"' && text[i] == '\\') ++i;
     return std::min(i + (i < text.size() && text[i] == quote ? 1 : 0), text.size());
 }
 
-/// Throws DocumentError for a key of more than max_depth parts. The place is that of an override,
-/// or else the line.
+/// Throws DocumentError for a key of more than max_key_parts parts. The place is that of an
+/// override, or else the line.
 void require_flat_keys(std::string_view text, int override_number) {
     constexpr std::string_view parts_of_keys =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_- \t";
@@ -60,9 +62,9 @@ void require_flat_keys(std::string_view text, int override_number) {
             ++num_dots;
         else if (parts_of_keys.find(text[i]) == parts_of_keys.npos)
             num_dots = 0;
-        if (num_dots >= max_depth)
+        if (num_dots >= max_key_parts)
             throw DocumentError{{override_number < 0 ? line : 0, 1, override_number},
-                                "a key of more than " + std::to_string(max_depth) +
+                                "a key of more than " + std::to_string(max_key_parts) +
                                     " parts; no key of a scenario has more than six"};
         ++i;
     }

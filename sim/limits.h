@@ -26,6 +26,10 @@ struct Limits {
                high < std::numeric_limits<double>::infinity();
     }
 
+    constexpr bool contains_infinity() const {
+        return contains(std::numeric_limits<double>::infinity());
+    }
+
     /// Such as "above 0 and at most 1"; "a finite number" without ends.
     std::string text() const;
 };

@@ -250,10 +250,12 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
         return std::nullopt;
     }
     if (limits.contains(number)) return number;
-    diagnostics_.key_error(value.place, path,
-                           io::format_number(number) + " is not allowed: must be " +
-                               (std::isinf(number) && limits.is_bounded() ? "finite, " : "") +
-                               limits.text());
+    diagnostics_.key_error(
+        value.place, path,
+        io::format_number(number) + " is not allowed: must be " +
+            (std::isinf(number) && limits.is_bounded() && !limits.contains_infinity() ? "finite, "
+                                                                                      : "") +
+            limits.text());
     return std::nullopt;
 }
 

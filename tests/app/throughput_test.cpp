@@ -5,14 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include "support/num_cases.h"
+
 namespace incise::app {
 namespace {
 
 TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     ThroughputPlan plan;
-    plan.tetrahedra = {400, 3'000};
+    const std::size_t num_tetrahedra = test::is_sanitized ? 1'500 : 3'000;
+    plan.tetrahedra = {400, num_tetrahedra};
     plan.hexahedra = {64};
-    plan.edited = {3'000};
+    plan.edited = {num_tetrahedra};
     plan.seconds = 0.0;
     plan.num_threads = 2;
     double last = -1.0;

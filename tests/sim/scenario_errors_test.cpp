@@ -83,11 +83,13 @@ TEST(ScenarioErrors, OfKeysThatWouldOverrunTheStack) {
     std::string key;
     for (int i = 0; i < 100'000; ++i) key += "a.";
     const std::string text =
-        ": a key of more than 256 parts; no key of a scenario has more than six";
+        ": a key of more than 16 parts; no key of a scenario has more than six";
     EXPECT_EQ(ScenarioFile("title = 'a'\n" + key + "a = 1\n").errors(),
               Lines{"scene.toml:2:1" + text});
     EXPECT_EQ(ScenarioFile("[" + key + "a]\n").errors(), Lines{"scene.toml:1:1" + text});
     EXPECT_EQ(ScenarioFile(minimal).errors({key + "a=1"}), Lines{"--set " + key + "a=1" + text});
+    EXPECT_EQ(ScenarioFile("title = \"\"\"\\\"\"\"\"\"\"\n" + key + "a = 1\n").errors(),
+              Lines{"scene.toml:2:1" + text});
     // Text is no key.
     const std::string dots(1000, '.');
     for (const std::string& title :

@@ -69,7 +69,7 @@ end_time = 0.05
         std::istringstream lines(error.what());
         for (std::string line; std::getline(lines, line);) {
             ASSERT_EQ(line.find(file), 0u) << line;
-            places.push_back(line.substr(file.size(), line.find(' ') - file.size()));
+            places.push_back(line.substr(file.size(), line.find(' ', file.size()) - file.size()));
         }
     }
     EXPECT_EQ(places, (std::vector<std::string>{"3:1:", "9:9:", "12:9:", "15:9:", "17:1:"}));
