@@ -20,14 +20,10 @@ struct Limits {
                (includes_high ? value <= high : value < high);
     }
 
-    /// Whether it has an end at all.
-    constexpr bool is_bounded() const {
-        return low > -std::numeric_limits<double>::infinity() ||
-               high < std::numeric_limits<double>::infinity();
-    }
-
-    constexpr bool contains_infinity() const {
-        return contains(std::numeric_limits<double>::infinity());
+    /// Whether it has an end, and infinity is none.
+    constexpr bool excludes_infinity() const {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        return (low > -infinity || high < infinity) && !contains(infinity);
     }
 
     /// Such as "above 0 and at most 1"; "a finite number" without ends.

@@ -250,12 +250,10 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
         return std::nullopt;
     }
     if (limits.contains(number)) return number;
+    const char* finite = std::isinf(number) && limits.excludes_infinity() ? "finite, " : "";
     diagnostics_.key_error(
         value.place, path,
-        io::format_number(number) + " is not allowed: must be " +
-            (std::isinf(number) && limits.is_bounded() && !limits.contains_infinity() ? "finite, "
-                                                                                      : "") +
-            limits.text());
+        io::format_number(number) + " is not allowed: must be " + finite + limits.text());
     return std::nullopt;
 }
 
