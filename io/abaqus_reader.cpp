@@ -259,6 +259,7 @@ class AbaqusReader {
     void add_elements() {
         if (const auto twice = node_tags_.sort())
             throw InputError(file_.name() + ": number " + *twice);
+        result_.mesh.source_points = node_tags_.in_order();
         std::ranges::stable_sort(elements_, {}, &Element::number);
         const auto twin = std::ranges::adjacent_find(elements_, {}, &Element::number);
         if (twin != elements_.end()) {
@@ -288,7 +289,7 @@ class AbaqusReader {
                             " is not one of the " + std::to_string(node_tags_.size()) + " nodes");
             node = *found;
         }
-        collector_.keep(*element.form, nodes, region, result_.mesh);
+        collector_.keep(*element.form, element.number, nodes, region, result_.mesh);
     }
 
     const InputFile& file_;

@@ -13,8 +13,7 @@ void CellCollector::refuse(const CellForm& form, const std::string& place,
                      "pyramids)");
 }
 
-void CellCollector::finish(const topology::MeshData& mesh,
-                           std::vector<std::string>& warnings) const {
+void CellCollector::finish(topology::MeshData& mesh, std::vector<std::string>& warnings) const {
     std::string list;
     for (std::size_t i = 0; i < ignored_.size(); ++i) {
         const auto& [form, count] = ignored_[i];
@@ -30,6 +29,11 @@ void CellCollector::finish(const topology::MeshData& mesh,
     if (!list.empty())
         warnings.push_back("ignored " + list +
                            ": only volume cells are used, and counted from 0 in what follows");
+    bool are_counted_alike = true;
+    for (std::size_t c = 0; c < mesh.source_cells.size(); ++c)
+        are_counted_alike =
+            are_counted_alike && mesh.source_cells[c] == static_cast<std::int64_t>(c);
+    if (are_counted_alike) mesh.source_cells.clear();
 }
 
 }  // namespace incise::io

@@ -56,13 +56,14 @@ class CellCollector {
     [[noreturn]] void refuse(const CellForm& form, const std::string& place,
                              std::string_view code) const;
 
-    /// Appends a cell of a form that is kept.
+    /// Appends a cell of a form that is kept; `number` is what the file calls it.
     /// @pre nodes.size() == form.num_nodes, and they are points of the mesh
-    void keep(const CellForm& form, std::span<const std::int64_t> nodes, int region,
-              topology::MeshData& mesh) const {
+    void keep(const CellForm& form, std::int64_t number, std::span<const std::int64_t> nodes,
+              int region, topology::MeshData& mesh) const {
         std::array<std::int64_t, topology::max_corners> corners{};
         for (std::size_t i = 0; i < nodes.size(); ++i) corners[i] = nodes[form.corner_order[i]];
         mesh.add_cell(form.kind, std::span(corners).first(nodes.size()), region);
+        mesh.source_cells.push_back(number);
     }
 
     void ignore(const CellForm& form, std::size_t count = 1) {
@@ -72,8 +73,15 @@ class CellCollector {
         row->second += count;
     }
 
-    /// A warning about the cells left out, if any. Throws InputError if none was kept.
-    void finish(const topology::MeshData& mesh, std::vector<std::string>& warnings) const;
+    std::size_t num_ignored() const {
+        std::size_t sum = 0;
+        for (const auto& [form, count] : ignored_) sum += count;
+        return sum;
+    }
+
+    /// To be called when all are read. Adds a warning about the cells left out, if any. Throws
+    /// InputError if none was kept.
+    void finish(topology::MeshData& mesh, std::vector<std::string>& warnings) const;
 
   private:
     std::string file_;

@@ -184,6 +184,7 @@ class GmshReader {
         has_nodes_ = true;
         if (const auto twice = node_tags_.sort())
             throw InputError(file_.name() + ": node tag " + *twice);
+        result_.mesh.source_points = node_tags_.in_order();
     }
 
     void begin_nodes() {
@@ -220,7 +221,7 @@ class GmshReader {
                               " is not one of the " + std::to_string(node_tags_.size()) + " nodes");
             node = *found;
         }
-        collector_.keep(form, nodes, region, result_.mesh);
+        collector_.keep(form, tag, nodes, region, result_.mesh);
     }
 
     // --- version 2: n, then n times: tag x y z

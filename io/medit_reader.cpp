@@ -148,6 +148,7 @@ class MeditReader {
             const double z = scanner_.coordinate("a z coordinate");
             points.emplace_back(x, y, z);
             scanner_.number<double>("the reference of a vertex");
+            result_.mesh.source_points.push_back(std::ssize(points));
         }
     }
 
@@ -169,7 +170,7 @@ class MeditReader {
         for (std::size_t i = 0; i < num_cells; ++i) {
             for (auto& node : nodes) node = read_node(form, i);
             const auto region = scanner_.number<int>("a reference, a whole number of 32 bits");
-            collector_.keep(form, nodes, region, result_.mesh);
+            collector_.keep(form, static_cast<std::int64_t>(i) + 1, nodes, region, result_.mesh);
         }
     }
 

@@ -47,6 +47,18 @@ class NodeTags {
 
     std::size_t size() const { return sorted_.size(); }
 
+    /// The tags in the file's order; none if they are the numbers.
+    std::vector<std::int64_t> in_order() const {
+        std::vector<std::int64_t> tags(sorted_.size());
+        bool are_numbers = true;
+        for (const auto& [tag, number] : sorted_) {
+            tags[static_cast<std::size_t>(number)] = tag;
+            are_numbers = are_numbers && tag == number;
+        }
+        if (are_numbers) tags.clear();
+        return tags;
+    }
+
   private:
     std::vector<std::pair<std::int64_t, std::int64_t>> sorted_;  ///< tag, number
 };

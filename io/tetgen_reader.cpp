@@ -105,6 +105,7 @@ class TetgenReader {
         }
         nodes_.expect_end(std::to_string(num_nodes) + " nodes");
         if (const auto twice = tags_.sort()) throw InputError(nodes_name_ + ": index " + *twice);
+        result_.mesh.source_points = tags_.in_order();
     }
 
     double coordinate(std::size_t column, std::string_view what) const {
@@ -137,8 +138,8 @@ class TetgenReader {
             expect_columns(num_attributes);
             const auto index = elements_.number<std::int64_t>(0, "the index of an element");
             for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = corner(index, 1 + k);
-            collector_.keep(*form, corners, num_attributes > 0 ? region(1 + corners.size()) : 0,
-                            result_.mesh);
+            collector_.keep(*form, index, corners,
+                            num_attributes > 0 ? region(1 + corners.size()) : 0, result_.mesh);
         }
         elements_.expect_end(std::to_string(num_elements) + " elements");
     }

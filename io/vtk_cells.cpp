@@ -128,6 +128,7 @@ void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& fil
         mesh.points.emplace_back(piece.coordinates[i], piece.coordinates[i + 1],
                                  piece.coordinates[i + 2]);
 
+    const auto first_cell = static_cast<std::int64_t>(mesh.num_cells() + collector.num_ignored());
     std::array<std::int64_t, topology::max_corners> nodes{};
     for (std::size_t c = 0; c < piece.types.size(); ++c) {
         const auto here = [&] { return place + ": cell " + std::to_string(c); };
@@ -162,7 +163,8 @@ void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& fil
             throw InputError(here() + ": region " + shown(piece.regions[c]) +
                              " is not a whole number of 32 bits; name another array as the "
                              "region array");
-        collector.keep(*form, std::span(nodes).first(size), *region, mesh);
+        collector.keep(*form, first_cell + static_cast<std::int64_t>(c),
+                       std::span(nodes).first(size), *region, mesh);
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }

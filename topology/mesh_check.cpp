@@ -41,7 +41,10 @@ class Complaints {
 };
 
 std::string cell_name(const MeshData& data, std::size_t c) {
-    return "cell " + std::to_string(c) + " (" + traits(data.kinds[c]).name + ")";
+    std::string name = "cell " + std::to_string(c) + " (" + traits(data.kinds[c]).name;
+    if (c < data.source_cells.size())
+        name += ", number " + std::to_string(data.source_cells[c]) + " in the file";
+    return name + ")";
 }
 
 bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complaints) {
@@ -56,8 +59,9 @@ bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complai
         }
         for (std::size_t j = 0; j < k; ++j)
             if (corners[j] == corners[k]) {
-                complaints.add("cells with a repeated corner", cell_name(data, c), ": node ",
-                               corners[k], " stands at two of its corners; remove the cell");
+                complaints.add("cells with a repeated corner", cell_name(data, c), ": ",
+                               data.point_name(static_cast<std::size_t>(corners[k])),
+                               " stands at two of its corners; remove the cell");
                 return false;
             }
     }
@@ -115,9 +119,11 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
         const auto edge = [&](int to) -> Vec3 { return x[static_cast<std::size_t>(to)] - o; };
         const double corner_volume = edge(previous[0]).cross(edge(next[0])).dot(edge(third));
         if (!(corner_volume > 0.0)) {
-            complaints.add("cells with a corner turned inside out", cell_name(data, c),
-                           " is turned inside out or flat at its corner ", k, " (node ",
-                           corners[static_cast<std::size_t>(k)], "); remesh it");
+            complaints.add(
+                "cells with a corner turned inside out", cell_name(data, c),
+                " is turned inside out or flat at its corner ", k, ", ",
+                data.point_name(static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])),
+                "; remesh it");
             return;
         }
     }
@@ -159,15 +165,24 @@ std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::u
     return sorted;
 }
 
-/// The cells of at least two faces, the first few by number.
-std::string cell_numbers(std::span<const FaceKey> faces) {
+/// number_of(face) of at least two faces, the first few.
+template <class NumberOf>
+std::string number_list(std::span<const FaceKey> faces, NumberOf number_of) {
     constexpr std::size_t max_listed = 5;
     const std::size_t num_listed = faces.size() > max_listed + 1 ? max_listed : faces.size() - 1;
-    std::string text = std::to_string(faces[0].face.cell);
-    for (std::size_t k = 1; k < num_listed; ++k) text += ", " + std::to_string(faces[k].face.cell);
+    std::string text = std::to_string(number_of(faces[0]));
+    for (std::size_t k = 1; k < num_listed; ++k) text += ", " + std::to_string(number_of(faces[k]));
     return text + " and " +
-           (num_listed + 1 == faces.size() ? std::to_string(faces.back().face.cell)
+           (num_listed + 1 == faces.size() ? std::to_string(number_of(faces.back()))
                                            : std::to_string(faces.size() - num_listed) + " more");
+}
+
+std::string cell_numbers(const MeshData& data, std::span<const FaceKey> faces) {
+    const auto here = number_list(faces, [](const FaceKey& f) { return f.face.cell; });
+    if (data.source_cells.empty()) return here;
+    return here + " (in the file " +
+           number_list(faces, [&](const FaceKey& f) { return data.source_cells[f.face.cell]; }) +
+           ")";
 }
 
 std::int64_t face_point(const MeshData& data, SourceFace f, std::size_t position) {
@@ -236,10 +251,10 @@ MeshCheck check(const MeshData& data) {
     }
     for (std::size_t p = 0; p < data.points.size(); ++p) {
         if (used[p] && !data.points[p].allFinite())
-            errors.add("points that are not finite", "point ", p, " is not finite: (",
+            errors.add("points that are not finite", data.point_name(p), " is not finite: (",
                        data.points[p].x(), ", ", data.points[p].y(), ", ", data.points[p].z(), ")");
         if (!used[p])
-            warnings.add("points that no cell uses", "point ", p,
+            warnings.add("points that no cell uses", data.point_name(p),
                          " belongs to no cell and is left out");
     }
 
@@ -251,7 +266,7 @@ MeshCheck check(const MeshData& data) {
         if (end - i > 2)
             errors.add(
                 "faces shared by more than two cells", "cells ",
-                cell_numbers(std::span(faces).subspan(i, end - i)),
+                cell_numbers(data, std::span(faces).subspan(i, end - i)),
                 " all share one face; a face joins two cells at the most: remove the others");
         i = end;
     }

@@ -37,7 +37,8 @@ struct MeshCheck {
 /// or negative volume, or a corner of a hexahedron, wedge or pyramid that is turned inside out;
 /// duplicate cells; faces shared by three; neighbours on the same side of their face, or twisted
 /// against each other. Warns of points that no cell uses.
-/// Cells and points are named by their numbers from 0. Cost: O(n), some 0.3 us a cell.
+/// Cells and points are named by their numbers from 0, and as the source calls them. Cost: O(n),
+/// some 0.3 us a cell.
 MeshCheck check(const MeshData& data);
 
 }  // namespace incise::topology

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "topology/cell_kind.h"
@@ -20,6 +21,9 @@ struct MeshData {
         0};  ///< #cells + 1; cell c has corners [offsets[c], offsets[c+1])
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
+    /// For messages: what the source calls its cells and points, one each. Empty where that is
+    /// their number here.
+    std::vector<std::int64_t> source_cells, source_points;
 
     std::size_t num_cells() const { return kinds.size(); }
 
@@ -32,6 +36,13 @@ struct MeshData {
         corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
         offsets.push_back(corners.size());
         regions.push_back(region);
+    }
+
+    /// "point 3", with what the source calls it.
+    std::string point_name(std::size_t p) const {
+        const std::string name = "point " + std::to_string(p);
+        if (p >= source_points.size()) return name;
+        return name + " (number " + std::to_string(source_points[p]) + " in the file)";
     }
 };
 

@@ -138,7 +138,8 @@ class MeshImport {
                     ++mesh_.num_nodes_;
                     if (!is_pinched[n.index()] && ++num_pinched <= max_pinches_listed) {
                         std::ostringstream text;
-                        text << "point " << mesh_.node_labels_[n.index()]
+                        text << data_.point_name(
+                                    static_cast<std::size_t>(mesh_.node_labels_[n.index()]))
                              << " joins cells that share no face there; the cells get a node each";
                         check_.warnings.push_back(text.str());
                     }

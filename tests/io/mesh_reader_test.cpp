@@ -33,6 +33,28 @@ TEST(MeshReader, ReadsTheSameMeshFromEveryEncoding) {
     }
 }
 
+TEST(MeshReader, KeepsWhatTheFileCallsCellsAndPoints) {
+    for (const auto& sample : all_samples()) {
+        SCOPED_TRACE(sample.name);
+        const auto mesh = read_bytes(sample.name, sample.bytes).mesh;
+        const auto is_a = [&](const char* suffix) { return sample.name.ends_with(suffix); };
+        if (is_a(".vtu") || is_a(".vtk")) {
+            EXPECT_THAT(mesh.source_cells, ElementsAre(1, 3, 4, 6));
+            EXPECT_EQ(mesh.point_name(3), "point 3");
+        } else if (is_a(".msh")) {
+            EXPECT_THAT(mesh.source_cells, ElementsAre(4, 5, 6, 7));
+            EXPECT_EQ(mesh.point_name(3), "point 3 (number 979 in the file)");
+        } else if (is_a(".inp")) {
+            EXPECT_THAT(mesh.source_cells, ElementsAre(1, 6, 11, 16));
+            EXPECT_EQ(mesh.point_name(3), "point 3 (number 979 in the file)");
+        } else {
+            ASSERT_TRUE(is_a(".mesh"));
+            EXPECT_THAT(mesh.source_cells, ElementsAre(1, 1, 1, 1));  // each the first of its kind
+            EXPECT_EQ(mesh.point_name(3), "point 3 (number 4 in the file)");
+        }
+    }
+}
+
 TEST(MeshReader, TellsTheFormatByTheContentWhateverTheSuffix) {
     for (const auto& sample : all_samples()) {
         SCOPED_TRACE(sample.name);

@@ -46,7 +46,24 @@ TEST(MeshCheck, RefusesRepeatedCorners) {
     MeshData data = two_by_a_face();
     data.corners[7] = 3;
     expect_refused(data,
-                   "cell 1 (tetrahedron): node 3 stands at two of its corners; remove the cell");
+                   "cell 1 (tetrahedron): point 3 stands at two of its corners; remove the cell");
+}
+
+TEST(MeshCheck, NamesCellsAndPointsAsTheirSourceDoes) {
+    MeshData data = two_by_a_face();
+    data.source_cells = {17, 12};
+    data.source_points = {1, 2, 3, 4, 5};
+    data.corners[7] = 3;
+    expect_refused(data,
+                   "cell 1 (tetrahedron, number 12 in the file): point 3 (number 4 in the file) "
+                   "stands at two of its corners; remove the cell");
+    data = two_by_a_face();
+    data.points.emplace_back(2, 2, 2);
+    data.add_cell(CellKind::tetrahedron, std::vector<std::int64_t>{3, 1, 2, 5});
+    data.source_cells = {17, 12, 14};
+    expect_refused(data,
+                   "cells 0, 1 and 2 (in the file 17, 12 and 14) all share one face; a face joins "
+                   "two cells at the most: remove the others");
 }
 
 TEST(MeshCheck, RefusesZeroAndNegativeVolume) {
@@ -67,7 +84,7 @@ TEST(MeshCheck, RefusesCornersTurnedInsideOut) {
     data.points[0] = {0.7, 0.7, 0.7};  // the volume stays positive
     expect_refused(
         data,
-        "cell 0 (hexahedron) is turned inside out or flat at its corner 0 (node 0); remesh it");
+        "cell 0 (hexahedron) is turned inside out or flat at its corner 0, point 0; remesh it");
 }
 
 TEST(MeshCheck, RefusesDuplicateElements) {
