@@ -220,20 +220,25 @@ EditRate measure_removal(topology::Mesh mesh, const physics::Material& material)
 }
 
 HalvedRate measure_halved(topology::Mesh mesh, const physics::Material& material, double seconds) {
-    physics::Model model(mesh, table_of(material));
-    const auto time_forces = [&] {
+    const auto time_forces = [&](physics::Model& model) {
         model.compute_forces(0.0);  // numbers nodes
         const double best = best_time(seconds, [&] { model.compute_forces(0.0); });
-        return 1e9 * best / static_cast<double>(mesh.num_elements());
+        return 1e9 * best / static_cast<double>(model.mesh().num_elements());
     };
-    HalvedRate rate{.elements = mesh.num_elements(), .forces = time_forces()};
+    physics::Model model(mesh, table_of(material));
+    HalvedRate rate{
+        .elements = mesh.num_elements(), .nodes = mesh.num_nodes(), .forces = time_forces(model)};
     std::mt19937_64 random(1);
     topology::MeshEdit edit(mesh);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
         if (random() % 2 == 0) edit.remove(topology::ElementId(i));
     model.apply(edit.commit());
     rate.elements_left = mesh.num_elements();
-    rate.forces_left = time_forces();
+    rate.nodes_left = mesh.num_nodes();
+    rate.forces_left = time_forces(model);
+    const auto anew = topology::Mesh::build(topology::to_mesh_data(mesh, mesh.rest_positions()));
+    physics::Model built_anew(anew.mesh, table_of(material));
+    rate.forces_built_anew = time_forces(built_anew);
     return rate;
 }
 

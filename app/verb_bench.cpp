@@ -53,8 +53,11 @@ ordered_json as_json(const Throughput& throughput) {
     for (const HalvedRate& rate : throughput.halved)
         json["halved"].push_back({{"elements", rate.elements},
                                   {"elements_left", rate.elements_left},
+                                  {"nodes", rate.nodes},
+                                  {"nodes_left", rate.nodes_left},
                                   {"forces_ns_per_element", rate.forces},
-                                  {"forces_left_ns_per_element", rate.forces_left}});
+                                  {"forces_left_ns_per_element", rate.forces_left},
+                                  {"forces_built_anew_ns_per_element", rate.forces_built_anew}});
     return json;
 }
 
@@ -85,12 +88,13 @@ void print_text(const Throughput& throughput) {
     for (const EditRate& rate : throughput.edits)
         std::printf("%-22s %8zu %7zu | %9.2f\n", std::string(rate.kind).c_str(), rate.elements,
                     rate.items, rate.microseconds);
-    std::printf("\n%-22s %8s %7s | %9s %9s\n", "a random half removed", "elements", "left",
-                "forces", "of these");
-    std::printf("%-22s %8s %7s | %9s %9s\n", "", "", "", "ns/elem.", "ns/elem.");
+    std::printf("\n%-22s %8s %7s | %9s %9s %11s | %8s %8s\n", "a random half removed", "elements",
+                "left", "forces", "of these", "built anew", "nodes", "left");
+    std::printf("%-22s %8s %7s | %9s %9s %11s |\n", "", "", "", "ns/elem.", "ns/elem.", "ns/elem.");
     for (const HalvedRate& rate : throughput.halved)
-        std::printf("%-22s %8zu %7zu | %9.2f %9.2f\n", "", rate.elements, rate.elements_left,
-                    rate.forces, rate.forces_left);
+        std::printf("%-22s %8zu %7zu | %9.2f %9.2f %11.2f | %8zu %8zu\n", "", rate.elements,
+                    rate.elements_left, rate.forces, rate.forces_left, rate.forces_built_anew,
+                    rate.nodes, rate.nodes_left);
 }
 
 }  // namespace

@@ -8,8 +8,9 @@ namespace incise::cutting {
 using topology::NodeId;
 
 void CutFront::put_on(NodeId n, bool is_exact, double reach) {
-    Node& node = nodes_.try_emplace(n.value, Node{is_exact, reach}).first->second;
-    node.reach = std::max(node.reach, reach);
+    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach});
+    place->second.reach = std::max(place->second.reach, reach);
+    num_new_ += is_new;
 }
 
 bool CutFront::is_crossed(NodeId a, NodeId b) const {
@@ -48,7 +49,7 @@ void CutFront::follow(const topology::ChangeSet& changes) {
         if (record.num_sources != 1) continue;
         const NodeId source = record.sources[0].node;
         if (const auto place = nodes_.find(source.value); place != nodes_.end())
-            nodes_.emplace(record.id.value, Node(place->second));
+            num_new_ += nodes_.emplace(record.id.value, Node(place->second)).second;
         const auto place = crossed_.find(source.value);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) toggle(record.id, other);

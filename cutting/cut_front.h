@@ -64,7 +64,11 @@ class CutFront {
     /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
     void forget(const std::vector<topology::NodeId>& nodes);
 
-    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.crossed_); }
+    /// Of the nodes on the cut, how many are so since the last call of set_reviewed().
+    std::size_t num_new() const { return num_new_; }
+    void set_reviewed() { num_new_ = 0; }
+
+    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.crossed_, self.num_new_); }
 
   private:
     struct Node {
@@ -75,6 +79,7 @@ class CutFront {
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
+    std::size_t num_new_ = 0;
 };
 
 template <class Keep>

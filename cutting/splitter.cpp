@@ -43,6 +43,9 @@ constexpr double bend = 0.25;
 /// are cut in part hang on nodes nearer than that.
 constexpr double reach_of_front = 4.0;
 
+/// The share of its nodes by which a front may be larger than it has to be.
+constexpr double growth_before_review = 0.25;
+
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
 
@@ -120,9 +123,16 @@ class Splitter {
     }
 
     /// Where the cut is finished, or the sweep has gone far away, a later passage is another cut.
+    /// To find out where it is finished takes a look at the whole front. So that is done when the
+    /// front has grown by a share of its size, and when the sweep crosses nothing any more.
     void leave_behind(const topology::ChangeSet& changes) {
-        std::vector<std::uint8_t> beside;  // all as they were, if nothing has been crossed
-        if (!touched_.empty()) beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
+        std::vector<std::uint8_t> beside;
+        const double growth_allowed = touched_.empty() ? 0.0 : growth_before_review;
+        if (static_cast<double>(front_.num_new()) >
+            growth_allowed * static_cast<double>(front_.size())) {
+            beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
+            front_.set_reviewed();
+        }
         const auto done = front_.nodes_unless([&](NodeId n, double reach) {
             return mesh_.is_alive(n) &&
                    surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&

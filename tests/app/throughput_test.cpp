@@ -50,6 +50,8 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
                 0.1 * static_cast<double>(halved.elements));
     EXPECT_GT(halved.forces, 0.0);
     EXPECT_GT(halved.forces_left, 0.0);
+    EXPECT_GT(halved.forces_built_anew, 0.0);
+    EXPECT_GT(halved.nodes_left, halved.nodes);  // fewer elements share them
 }
 
 }  // namespace
