@@ -13,24 +13,34 @@ using topology::NodeId;
 
 namespace {
 
-/// The elements that have a node on the cut. Those round a node hang together through faces at it.
-std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
-    std::vector<std::uint8_t> is_on_cut(mesh.node_capacity());
+/// What is known of nodes, by id: a bit each.
+using Marks = std::vector<std::uint8_t>;
+constexpr std::uint8_t on_cut = 1, of_border = 2, beside = 4, of_wide_border = 8, beside_wide = 16;
+
+/// Whether one of its corners has all of the bits.
+bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t bits) {
+    const auto corners = mesh.corners(e);
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](NodeId n) { return (marks[n.index()] & bits) == bits; });
+}
+
+void mark_corners(const Mesh& mesh, ElementId e, Marks& marks, std::uint8_t bit) {
+    for (const NodeId n : mesh.corners(e)) marks[n.index()] |= bit;
+}
+
+/// The elements that have a node on the cut, which is marked. Those round a node hang together
+/// through faces at it.
+std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front, Marks& marks) {
     std::vector<bool> is_known(mesh.element_capacity());
     std::vector<ElementId> elements;
-    const auto is_at_cut = [&](ElementId e) {
-        const auto corners = mesh.corners(e);
-        return std::any_of(corners.begin(), corners.end(),
-                           [&](NodeId n) { return is_on_cut[n.index()] != 0; });
-    };
     const auto add = [&](ElementId e) {
-        if (is_known[e.index()] || !is_at_cut(e)) return;
+        if (is_known[e.index()] || !has_corner(mesh, e, marks, on_cut)) return;
         is_known[e.index()] = true;
         elements.push_back(e);
     };
     front.for_each([&](NodeId n) {
         if (!mesh.is_alive(n)) return;
-        is_on_cut[n.index()] = 1;
+        marks[n.index()] |= on_cut;
         add(mesh.anchor(n));
     });
     for (std::size_t next = 0; next < elements.size(); ++next)
@@ -40,8 +50,30 @@ std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
     return elements;
 }
 
+/// The crossed edges of a front, by node id: every edge of every element at the front is asked for.
+class CrossedEdges {
+  public:
+    CrossedEdges(const Mesh& mesh, const CutFront& front) : places_(mesh.node_capacity()) {
+        front.for_each_crossed([&](NodeId n, const std::vector<NodeId>& others) {
+            if (n.index() >= places_.size()) return;
+            others_.push_back(&others);
+            places_[n.index()] = static_cast<std::uint32_t>(others_.size());
+        });
+    }
+
+    bool contains(NodeId a, NodeId b) const {
+        if (places_[a.index()] == 0 || places_[b.index()] == 0) return false;
+        const std::vector<NodeId>& others = *others_[places_[a.index()] - 1];
+        return std::find(others.begin(), others.end(), b) != others.end();
+    }
+
+  private:
+    std::vector<const std::vector<NodeId>*> others_;
+    std::vector<std::uint32_t> places_;  // by node id: 0 for none, else one more than in others_
+};
+
 /// Whether crossings round one of the element's faces are odd in number.
-bool has_odd_face(const Mesh& mesh, const CutFront& front, ElementId e) {
+bool has_odd_face(const Mesh& mesh, const CrossedEdges& edges, ElementId e) {
     const topology::CellTraits& t = traits(mesh.kind(e));
     const auto corners = mesh.corners(e);
     // By corner, a bit for each other to which the edge is crossed.
@@ -50,7 +82,7 @@ bool has_odd_face(const Mesh& mesh, const CutFront& front, ElementId e) {
     for (int k = 0; k < t.num_edges; ++k) {
         const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
         const auto i = static_cast<std::size_t>(p), j = static_cast<std::size_t>(q);
-        if (!front.is_crossed(corners[i], corners[j])) continue;
+        if (!edges.contains(corners[i], corners[j])) continue;
         crossed[i] |= 1u << q;
         crossed[j] |= 1u << p;
         is_any = true;
@@ -69,27 +101,24 @@ bool has_odd_face(const Mesh& mesh, const CutFront& front, ElementId e) {
 }  // namespace
 
 std::vector<std::uint8_t> nodes_beside_border(const Mesh& mesh, const CutFront& front, bool snaps) {
-    const std::vector<ElementId> elements = elements_at(mesh, front);
-    const auto corners_of_those = [&](auto is_one) {
-        std::vector<std::uint8_t> nodes(mesh.node_capacity());
+    Marks marks(mesh.node_capacity());
+    const std::vector<ElementId> elements = elements_at(mesh, front, marks);
+    const CrossedEdges edges(mesh, front);
+    for (const ElementId e : elements)
+        if (has_odd_face(mesh, edges, e)) mark_corners(mesh, e, marks, of_border);
+    const auto spread = [&](std::uint8_t from, std::uint8_t to) {
         for (const ElementId e : elements)
-            if (is_one(e))
-                for (const NodeId n : mesh.corners(e)) nodes[n.index()] = 1;
-        return nodes;
+            if (has_corner(mesh, e, marks, from)) mark_corners(mesh, e, marks, to);
     };
-    const auto corners_of_those_with = [&](auto is_one) {
-        return corners_of_those([&](ElementId e) {
-            const auto corners = mesh.corners(e);
-            return std::any_of(corners.begin(), corners.end(), is_one);
-        });
-    };
-    const auto of_border =
-        corners_of_those([&](ElementId e) { return has_odd_face(mesh, front, e); });
-    const auto beside = corners_of_those_with([&](NodeId n) { return of_border[n.index()] != 0; });
-    if (!snaps) return beside;
-    const auto of_wide_border =
-        corners_of_those_with([&](NodeId n) { return beside[n.index()] != 0 && front.is_on(n); });
-    return corners_of_those_with([&](NodeId n) { return of_wide_border[n.index()] != 0; });
+    spread(of_border, beside);
+    std::uint8_t result = beside;
+    if (snaps) {
+        spread(on_cut | beside, of_wide_border);
+        spread(of_wide_border, beside_wide);
+        result = beside_wide;
+    }
+    for (std::uint8_t& mark : marks) mark &= result;
+    return marks;
 }
 
 void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front) {

@@ -56,6 +56,13 @@ class CutFront {
             visit(topology::NodeId(static_cast<std::size_t>(value)));
     }
 
+    /// Calls visit(node, others) for each node with crossed edges, in no order.
+    template <class Visit>
+    void for_each_crossed(Visit visit) const {
+        for (const auto& [value, others] : crossed_)
+            visit(topology::NodeId(static_cast<std::size_t>(value)), others);
+    }
+
     /// Copies of a node are what it is.
     void follow(const topology::ChangeSet& changes);
     /// The nodes for which keep(node, reach) is false, in ascending order.
