@@ -15,7 +15,8 @@ namespace {
 
 /// What is known of nodes, by id: a bit each.
 using Marks = std::vector<std::uint8_t>;
-constexpr std::uint8_t on_cut = 1, of_border = 2, beside = 4, of_wide_border = 8, beside_wide = 16;
+constexpr std::uint8_t on_cut_mark = 1, border_mark = 2, beside_mark = 4, wide_border_mark = 8,
+                       beside_wide_mark = 16;
 
 /// Whether one of its corners has all of the bits.
 bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t bits) {
@@ -34,13 +35,13 @@ std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front, Mark
     std::vector<bool> is_known(mesh.element_capacity());
     std::vector<ElementId> elements;
     const auto add = [&](ElementId e) {
-        if (is_known[e.index()] || !has_corner(mesh, e, marks, on_cut)) return;
+        if (is_known[e.index()] || !has_corner(mesh, e, marks, on_cut_mark)) return;
         is_known[e.index()] = true;
         elements.push_back(e);
     };
     front.for_each([&](NodeId n) {
         if (!mesh.is_alive(n)) return;
-        marks[n.index()] |= on_cut;
+        marks[n.index()] |= on_cut_mark;
         add(mesh.anchor(n));
     });
     for (std::size_t next = 0; next < elements.size(); ++next)
@@ -105,17 +106,17 @@ std::vector<std::uint8_t> nodes_beside_border(const Mesh& mesh, const CutFront& 
     const std::vector<ElementId> elements = elements_at(mesh, front, marks);
     const CrossedEdges edges(mesh, front);
     for (const ElementId e : elements)
-        if (has_odd_face(mesh, edges, e)) mark_corners(mesh, e, marks, of_border);
+        if (has_odd_face(mesh, edges, e)) mark_corners(mesh, e, marks, border_mark);
     const auto spread = [&](std::uint8_t from, std::uint8_t to) {
         for (const ElementId e : elements)
             if (has_corner(mesh, e, marks, from)) mark_corners(mesh, e, marks, to);
     };
-    spread(of_border, beside);
-    std::uint8_t result = beside;
+    spread(border_mark, beside_mark);
+    std::uint8_t result = beside_mark;
     if (snaps) {
-        spread(on_cut | beside, of_wide_border);
-        spread(of_wide_border, beside_wide);
-        result = beside_wide;
+        spread(on_cut_mark | beside_mark, wide_border_mark);
+        spread(wide_border_mark, beside_wide_mark);
+        result = beside_wide_mark;
     }
     for (std::uint8_t& mark : marks) mark &= result;
     return marks;

@@ -14,6 +14,7 @@
 #include "physics/descent.h"
 #include "physics/model_snapshot.h"
 #include "support/mesh_snapshot.h"
+#include "support/num_cases.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -202,7 +203,7 @@ class RandomEdits : public testing::TestWithParam<EditProgram> {};
 
 TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
     const std::string name(GetParam().family);
-    const int num_edits = GetParam().num_edits;
+    const int num_edits = test::is_sanitized ? GetParam().num_edits / 50 : GetParam().num_edits;
     for (const auto& of_all : test::mesh_families()) {
         const auto* family = &of_all;
         if (family->name != name) continue;

@@ -14,7 +14,7 @@ namespace incise::physics {
 struct ModelSnapshot {
     BodyState state;
     std::vector<Vec3> forces, outer_forces;
-    std::vector<double> masses, energies;
+    std::vector<double> masses, volumes, energies;
     std::vector<double> history;
     std::vector<Vec3> fibres;
     double stable_step;
@@ -25,8 +25,11 @@ struct ModelSnapshot {
         forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
         outer_forces.assign(model.outer_forces().begin(), model.outer_forces().end());
         masses.assign(model.masses().begin(), model.masses().end());
-        for (const ElementId e : living_elements(model.mesh()))
-            energies.push_back(model.element_result(e).energy);
+        for (const ElementId e : living_elements(model.mesh())) {
+            const ElementResult result = model.element_result(e);
+            volumes.push_back(result.volume);
+            energies.push_back(result.energy);
+        }
         history.assign(model.history().values().begin(), model.history().values().end());
         fibres.assign(model.fibres().begin(), model.fibres().end());
         stable_step = model.stable_step();
@@ -39,6 +42,7 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.masses, b.masses);
     EXPECT_EQ(a.forces, b.forces);
     EXPECT_EQ(a.outer_forces, b.outer_forces);
+    EXPECT_EQ(a.volumes, b.volumes);
     EXPECT_EQ(a.energies, b.energies);
     EXPECT_EQ(a.history, b.history);
     EXPECT_EQ(a.fibres, b.fibres);

@@ -1,5 +1,5 @@
-// The code that docs/adding-a-law.md shows is the program's own.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// What the pages on laws say of the code is so: docs/adding-a-law.md and the laws of
+// docs/theory.md. SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/material_catalog.h"
 #include "support/temporary_folder.h"
 
 namespace incise::sim {
@@ -85,6 +86,20 @@ TEST(AddingALaw, PromisesTestsThatThereAre) {
         EXPECT_NE(tests.find("TEST" + head), tests.npos) << name;
     }
     EXPECT_GE(num_promised, 15);
+}
+
+TEST(Theory, HasTheFormulaOfEachLaw) {
+    std::istringstream page(support::read_text(root / "docs/theory.md"));
+    std::string line, table;
+    while (std::getline(page, line) && line != "## Laws") continue;
+    while (std::getline(page, line) && !line.starts_with("|")) continue;
+    for (; line.starts_with("|"); std::getline(page, line)) table += line + "\n";
+    for (const MaterialModel& model : laws()) {
+        const auto name = table.find("`" + std::string(model.key) + "`");
+        ASSERT_NE(name, table.npos) << model.key;
+        const auto formula = table.find(" | $", name);
+        EXPECT_LT(formula, table.find('\n', name)) << model.key << " has no energy";
+    }
 }
 
 }  // namespace
