@@ -19,6 +19,11 @@ struct CrossableEdge {
 struct Passage {
     double place, from_a, from_b, near;
     Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
+
+    /// Whether the end is so near that it counts as on the surface. Of an edge that lies all but in
+    /// the surface both might be; only the nearer one is, or whole layers of elements would.
+    bool is_near_a() const { return from_a < near && place < 0.5; }
+    bool is_near_b() const { return from_b < near && place > 0.5; }
 };
 using Passages = std::vector<Passage>;  // in ascending order of places
 

@@ -163,7 +163,7 @@ class Splitter {
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
     Scar scar_at(NodeId n, const Passage& passage) const;
-    bool is_near(NodeId n, double share, const Passage& passage) const;
+    bool is_at(NodeId n, bool is_near, const Passage& passage) const;
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
     void divide_next();
@@ -268,8 +268,8 @@ void Splitter::find_crossed_edges() {
     for (const Found& f : found) {
         const double length = rest_length(f.edge);
         const Passage &first = f.passages.front(), &last = f.passages.back();
-        if (is_near(f.edge.a, first.from_a, first)) snap_to(f.edge.a, length);
-        if (is_near(f.edge.b, last.from_b, last)) snap_to(f.edge.b, length);
+        if (is_at(f.edge.a, first.is_near_a(), first)) snap_to(f.edge.a, length);
+        if (is_at(f.edge.b, last.is_near_b(), last)) snap_to(f.edge.b, length);
     }
     for (const Found& f : found)
         if (f.passages.size() % 2 == 1) front_.toggle(f.edge.a, f.edge.b);
@@ -316,9 +316,9 @@ Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
     return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n)};
 }
 
-/// Whether a passage at this share of an edge from the node counts as at the node.
-bool Splitter::is_near(NodeId n, double share, const Passage& passage) const {
-    if (share < passage.near) return true;
+/// Whether a passage through an edge at the node counts as at the node.
+bool Splitter::is_at(NodeId n, bool is_near, const Passage& passage) const {
+    if (is_near) return true;
     const double size = (point(n)[1] - passage.point).norm();
     return scars_.has(n, scar_at(n, passage), size);
 }
@@ -331,9 +331,9 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
     const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
     if (is_on_a && is_on_b) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
-    for (; begin != end && is_near(edge.a, begin->from_a, *begin); ++begin)
+    for (; begin != end && is_at(edge.a, begin->is_near_a(), *begin); ++begin)
         if (!is_on_a) snap_to(edge.a, length);
-    for (; begin != end && is_near(edge.b, (end - 1)->from_b, *(end - 1)); --end)
+    for (; begin != end && is_at(edge.b, (end - 1)->is_near_b(), *(end - 1)); --end)
         if (!is_on_b) snap_to(edge.b, length);
     while (begin != end && is_on_a && begin->place < bend) ++begin;
     while (begin != end && is_on_b && (end - 1)->place > 1.0 - bend) --end;
@@ -356,12 +356,9 @@ void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
 void Splitter::settle(const Edge& edge, const Passages& passages) {
     for (const Passage& passage : passages) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
-        const auto is_of = [&](double share, bool is_at_other, double other_share) {
-            return share < passage.near || !is_at_other || share <= other_share;
-        };
-        if (is_at_a && is_of(passage.from_a, is_at_b, passage.from_b))
+        if (is_at_a && (passage.is_near_a() || !is_at_b || passage.from_a <= passage.from_b))
             scars_.add(edge.a, scar_at(edge.a, passage));
-        if (is_at_b && is_of(passage.from_b, is_at_a, passage.from_a))
+        if (is_at_b && (passage.is_near_b() || !is_at_a || passage.from_b <= passage.from_a))
             scars_.add(edge.b, scar_at(edge.b, passage));
     }
 }
