@@ -52,9 +52,14 @@ Json to_json(const EditRecord& edit) {
             {"after", to_json(edit.after)}};
 }
 
+/// What is no UTF-8 in it, as names in files can be, is replaced.
+std::string text_of(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string line_of(const EditRecord& edit) {
     // A name that is no text can only come from a checkpoint that somebody has made up.
-    return to_json(edit).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return text_of(to_json(edit), -1);
 }
 
 /// Throws InputError unless the files of the run are those that it had written.
@@ -200,7 +205,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
         summary["real_time_factor"] = (simulation.time() - first_time_) / outcome.wall_time;
     }
     summary["warnings"] = simulation.warnings();
-    io::write_file(folder() / "summary.json", summary.dump(2) + "\n");
+    io::write_file(folder() / "summary.json", text_of(summary, 2) + "\n");
 }
 
 }  // namespace incise::sim
