@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
+#include "io/number_text.h"
 #include "sim/measured_quantities.h"
 #include "topology/archive.h"
 #include "topology/error.h"
@@ -22,28 +24,40 @@ constexpr std::string_view prefix = "step_", suffix = ".checkpoint";
 
 fs::path folder_of_checkpoints(const fs::path& folder) { return folder / "checkpoints"; }
 
-/// In the order of their steps.
-std::vector<fs::path> checkpoints(const fs::path& folder) {
-    std::vector<fs::path> found;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder_of_checkpoints(folder), error), end;
-         !error && entry != end; entry.increment(error)) {
-        const auto name = entry->path().filename().string();
-        if (name.starts_with(prefix) && name.ends_with(suffix)) found.push_back(entry->path());
-    }
-    // The numbers have leading zeros; only a longer one has more digits.
-    std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
-        const auto x = a.filename().string(), y = b.filename().string();
-        return x.size() != y.size() ? x.size() < y.size() : x < y;
-    });
-    return found;
-}
-
-fs::path path_of(const fs::path& folder, std::uint64_t step) {
-    constexpr std::size_t num_digits = 12;
+std::string file_name(std::uint64_t step) {
+    constexpr std::size_t num_digits = 12;  // at least
     std::string digits = std::to_string(step);
     digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
-    return folder_of_checkpoints(folder) / (std::string(prefix) + digits + std::string(suffix));
+    return std::string(prefix) + digits + std::string(suffix);
+}
+
+struct CheckpointFile {
+    fs::path path;
+    std::uint64_t step;
+};
+
+/// What its name says, if it is that of a checkpoint.
+std::optional<CheckpointFile> as_checkpoint(const fs::path& path) {
+    const std::string name = path.filename().string();
+    std::string_view digits = name;
+    if (!digits.starts_with(prefix) || !digits.ends_with(suffix)) return std::nullopt;
+    digits.remove_prefix(prefix.size());
+    digits.remove_suffix(std::min(digits.size(), suffix.size()));
+    const auto step = io::parse_number<std::uint64_t>(digits);
+    if (!step || name != file_name(*step)) return std::nullopt;
+    return CheckpointFile{path, *step};
+}
+
+/// In the order of their steps.
+std::vector<CheckpointFile> checkpoints(const fs::path& folder) {
+    std::vector<CheckpointFile> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_of_checkpoints(folder), error), end;
+         !error && entry != end; entry.increment(error))
+        if (auto file = as_checkpoint(entry->path())) found.push_back(std::move(*file));
+    std::sort(found.begin(), found.end(),
+              [](const auto& a, const auto& b) { return a.step < b.step; });
+    return found;
 }
 
 /// "KEY was A and is B" of the first few values that are not the same.
@@ -81,14 +95,21 @@ void write_checkpoint(const fs::path& folder, const Simulation& simulation,
     simulation.save(state);
     ar(std::string(INCISE_VERSION), simulation.scenario().contents, simulation.fingerprint(),
        written, state.bytes());
-    io::write_checked_file(path_of(folder, simulation.num_steps()), ar.bytes());
+    const std::uint64_t step = simulation.num_steps();
+    io::write_checked_file(folder_of_checkpoints(folder) / file_name(step), ar.bytes());
+    remove_checkpoints_after(folder, step);
     constexpr std::size_t num_kept = 2;
     const auto all = checkpoints(folder);
-    for (std::size_t i = 0; i + num_kept < all.size(); ++i) io::remove_output_file(all[i]);
+    for (std::size_t i = 0; i + num_kept < all.size(); ++i) io::remove_output_file(all[i].path);
 }
 
 void remove_checkpoints(const fs::path& folder) {
-    for (const fs::path& path : checkpoints(folder)) io::remove_output_file(path);
+    for (const auto& file : checkpoints(folder)) io::remove_output_file(file.path);
+}
+
+void remove_checkpoints_after(const fs::path& folder, std::uint64_t step) {
+    for (const auto& file : checkpoints(folder))
+        if (file.step > step) io::remove_output_file(file.path);
 }
 
 Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
@@ -108,12 +129,15 @@ Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)
 Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& warnings) {
     auto all = checkpoints(folder);
     std::reverse(all.begin(), all.end());
-    for (const fs::path& path : all) {
+    for (const auto& [path, step] : all) {
         std::string bytes;
         try {
             bytes = io::read_checked_file(path);
         } catch (const InputError& damage) {
-            warnings.push_back(std::string(damage.what()) + "; trying the checkpoint before it");
+            warnings.push_back(
+                std::string(damage.what()) +
+                "; trying the checkpoint before it; if the run goes on from there, this one "
+                "is removed");
             continue;
         }
         return Checkpoint(path, std::move(bytes));
@@ -151,7 +175,7 @@ void Checkpoint::restore(Simulation& simulation) const {
         if (written_.last_row.size() != history_row(simulation).size())
             throw InputError("its row of the history has " +
                              std::to_string(written_.last_row.size()) + " columns");
-        if (path_of({}, simulation.num_steps()).filename() != path_.filename())
+        if (path_.filename() != file_name(simulation.num_steps()))
             throw InputError("it is of step " + std::to_string(simulation.num_steps()));
     });
 }

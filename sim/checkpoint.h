@@ -26,12 +26,16 @@ struct Written {
 };
 
 /// Writes a checkpoint, which is whole or not there (io/checked_file.h), and removes all but it and
-/// the one before. Everything that `written` speaks of must be on the disk. Throws OutputError.
+/// the one before; any of later steps are not of this run. Everything that `written` speaks of must
+/// be on the disk. Throws OutputError.
 void write_checkpoint(const std::filesystem::path& folder, const Simulation& simulation,
                       const Written& written);
 
 /// Throws OutputError.
 void remove_checkpoints(const std::filesystem::path& folder);
+/// Those of later steps, which a run that goes on from this one has found damaged, or will write
+/// again. Throws OutputError.
+void remove_checkpoints_after(const std::filesystem::path& folder, std::uint64_t step);
 
 /// A checkpoint that has been read: whole, and of this version of the program.
 class Checkpoint {

@@ -80,10 +80,12 @@ void require_files(const std::filesystem::path& folder, const Simulation& simula
 /// The folder, prepared for a new run or to go on with one.
 io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
                           const Written* written) {
-    if (written)
+    if (written) {
         require_files(folder.path(), simulation, *written);
-    else
+        remove_checkpoints_after(folder.path(), simulation.num_steps());
+    } else {
         remove_checkpoints(folder.path());
+    }
     // A summary speaks of a whole run: that of a former one must not outlive its frames.
     io::remove_output_file(folder.path() / "summary.json");
     return folder;

@@ -312,6 +312,35 @@ TEST_F(Resume, TakesTheCheckpointBeforeADamagedOne) {
               std::string::npos);
 }
 
+TEST_F(Resume, RemovesDamagedCheckpointsThatItSkipsAndNeverAWholeOneForThem) {
+    stop();
+    for (const char* stray : {"step_999999999998.checkpoint", "step_999999999999.checkpoint"})
+        io::write_file(folder_ / "out/checkpoints" / stray, "");
+    io::write_file(folder_ / "out/checkpoints/step_x.checkpoint", "not ours");
+    const std::string good = read_text(checkpoint(5));
+    io::write_file(checkpoint(8), good.substr(1));
+    io::OutputFolder ours(folder_ / "out");
+    std::vector<std::string> warnings;
+    const Checkpoint five = Checkpoint::newest(folder_ / "out", warnings);
+    ASSERT_EQ(warnings.size(), 3u);
+    for (const auto& warning : warnings)
+        EXPECT_TRUE(warning.ends_with("; if the run goes on from there, this one is removed"));
+    EXPECT_EQ(support::count_entries(folder_ / "out/checkpoints"), 5u);  // nothing is changed yet
+    Simulation simulation(scenario_);
+    five.restore(simulation);
+    RunWriter writer(simulation, std::move(ours), five.written());
+    EXPECT_EQ(support::count_entries(folder_ / "out/checkpoints"), 2u);
+    simulation.add_observer(writer);
+    simulation.step();
+    // Of later steps they are none of this run.
+    for (const char* stray : {"step_999999999998.checkpoint", "step_999999999999.checkpoint"})
+        io::write_file(folder_ / "out/checkpoints" / stray, "");
+    writer.take_checkpoint(simulation);
+    EXPECT_EQ(support::count_entries(folder_ / "out/checkpoints"), 3u);
+    EXPECT_TRUE(read_text(checkpoint(5)) == good);
+    EXPECT_TRUE(fs::exists(checkpoint(6)));
+}
+
 TEST_F(Resume, RefusesAnotherScenarioAndNamesWhatDiffers) {
     stop();
     const auto before = read_text(folder_ / "out/history.csv");
