@@ -171,7 +171,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         throw PhysicsError(text.str());
     }
     if (!simulation.is_finished()) {
-        writer.take_checkpoint(simulation);
+        writer.take_checkpoint(simulation, sim::CheckpointKind::of_a_stop);
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
                     " s; what was written so far is in " + writer.main_result().string() +
@@ -203,6 +203,7 @@ int run(const RunOptions& options) {
     std::optional<StoppedRun> stopped;
     if (options.resume) {
         if (const auto quantities = sim::finished_quantities(folder, scenario)) {
+            sim::remove_checkpoints_of_stops(folder);  // if it was killed when all else was done
             if (!options.quiet)
                 std::cerr << scenario.name << ": the run in " << folder.string()
                           << " is finished; there is nothing to resume\n";

@@ -82,7 +82,7 @@ io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
                           const Written* written) {
     if (written) {
         require_files(folder.path(), simulation, *written);
-        remove_checkpoints_after(folder.path(), simulation.num_steps());
+        tidy_checkpoints(folder.path(), simulation.num_steps());
     } else {
         remove_checkpoints(folder.path());
     }
@@ -104,7 +104,6 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
       first_time_(simulation.time()),
       first_step_(simulation.num_steps()),
       next_checkpoint_(0.0),
-      has_checkpoint_(written != nullptr),
       num_frames_(series_.frames().size()) {
     if (written) {
         for (std::size_t i = 0; i < last_row_.size(); ++i)
@@ -155,25 +154,31 @@ void RunWriter::wait_for_frame() {
 void RunWriter::on_pause(const Simulation& simulation) {
     const double interval = simulation.scenario().output.checkpoint_interval;
     const bool is_due = interval > 0.0 && simulation.time() >= next_checkpoint_ * interval;
-    if (is_due && !simulation.is_finished()) take_checkpoint(simulation);
+    if (is_due && !simulation.is_finished()) take_checkpoint(simulation, CheckpointKind::regular);
 }
 
-void RunWriter::take_checkpoint(const Simulation& simulation) {
+void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kind) {
+    if (last_checkpoint_ == simulation.num_steps()) return;
     wait_for_frame();
     history_.sync();
     edits_.sync();
     Written written{history_.written(), edits_.written(), {}, {}};
     written.frames.assign(series_.frames().begin(), series_.frames().end());
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
-    write_checkpoint(folder(), simulation, written);
-    has_checkpoint_ = true;
+    write_checkpoint(folder(), simulation, written, kind);
     note_checkpoint(simulation);
 }
 
 /// The next is due after the interval that has begun, wherever in it this one was taken.
 void RunWriter::note_checkpoint(const Simulation& simulation) {
+    last_checkpoint_ = simulation.num_steps();
     const double interval = simulation.scenario().output.checkpoint_interval;
-    if (interval > 0.0) next_checkpoint_ = std::floor(simulation.time() / interval) + 1.0;
+    if (interval == 0.0) return;
+    // By the products that on_pause() compares with, or the quotient's rounding could let a resumed
+    // run leave out a checkpoint.
+    next_checkpoint_ = std::floor(simulation.time() / interval);
+    for (int i = 0; i < 2 && next_checkpoint_ * interval <= simulation.time(); ++i)
+        next_checkpoint_ += 1.0;
 }
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
@@ -208,6 +213,8 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     }
     summary["warnings"] = simulation.warnings();
     io::write_file(folder() / "summary.json", text_of(summary, 2) + "\n");
+    // Last, as what a kill just before would have to go on from.
+    if (outcome.status != "interrupted") remove_checkpoints_of_stops(folder());
 }
 
 }  // namespace incise::sim
