@@ -156,6 +156,12 @@ Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)
 Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& warnings) {
     auto all = checkpoints(folder);
     std::reverse(all.begin(), all.end());
+    std::error_code error;
+    for (const auto& [path, name] : all)
+        if (fs::is_directory(path, error))
+            throw InputError(path.string() +
+                             ": is a directory in the place of a checkpoint; remove it, and "
+                             "resume then");
     for (const auto& [path, name] : all) {
         std::string bytes;
         try {

@@ -46,8 +46,9 @@ void remove_checkpoints_of_stops(const std::filesystem::path& folder);
 class Checkpoint {
   public:
     /// The newest of the run in `folder` that is whole; for each that is not, and is newer, a
-    /// warning. Changes nothing. Throws InputError if there is none, or if another version of the
-    /// program, which might not go on to the same bits, has written it.
+    /// warning. Changes nothing. Throws InputError if there is none, if a folder is in the place of
+    /// one, or if another version of the program, which might not go on to the same bits, has
+    /// written it.
     static Checkpoint newest(const std::filesystem::path& folder,
                              std::vector<std::string>& warnings);
 

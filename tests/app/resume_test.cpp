@@ -246,6 +246,19 @@ TEST_F(ResumedProcess, RefusesASummaryThatNoRunHasWritten) {
               "file to go on from the last checkpoint, or begin anew without --resume\n");
 }
 
+TEST_F(ResumedProcess, RefusesFoldersInThePlaceOfItsFiles) {
+    write("scene.toml", scene);
+    const auto refusal = [&](const std::string& path, const std::string& of) {
+        fs::create_directories(folder_ / path);
+        const auto outcome = run({"scene.toml", "--resume"});
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_EQ(outcome.err, "incise: " + path + ": is a directory in the place of " + of +
+                                   "; remove it, and resume then\n");
+    };
+    refusal("scene.out/checkpoints/step_000000000003.checkpoint", "a checkpoint");
+    refusal("scene.out/summary.json", "the summary of a run");
+}
+
 TEST_F(ResumedProcess, NeedsARunToResume) {
     write("scene.toml", scene);
     auto outcome = run({"scene.toml", "--resume"});
