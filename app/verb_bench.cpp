@@ -112,7 +112,8 @@ int bench(const BenchOptions& options) {
         print_text(throughput);
         return done;
     }
-    const auto text = as_json(throughput).dump(2) + '\n';
+    const auto text =
+        as_json(throughput).dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
     if (*options.json == "-")
         std::cout << text;
     else

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "app/messages.h"
 #include "app/progress.h"
+#include "app/stop_signals.h"
 #include "app/stopped_run.h"
 #include "app/verbs.h"
 #include "io/number_format.h"
@@ -24,21 +24,6 @@
 namespace incise::app {
 
 namespace {
-
-volatile std::sig_atomic_t stop_signal = 0;
-
-/// Lets SIGINT and SIGTERM end the loop between two steps, so that the files are closed properly.
-class StopOnSignals {
-  public:
-    StopOnSignals() {
-        stop_signal = 0;
-        for (const int signal : {SIGINT, SIGTERM})
-            std::signal(signal, [](int received) { stop_signal = received; });
-    }
-    ~StopOnSignals() {
-        for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-    }
-};
 
 class Stopwatch {
   public:
@@ -145,14 +130,14 @@ int tell_expectations(const sim::Scenario& scenario, const sim::Quantities& quan
 }
 
 /// From where the simulation is to its end, or to a signal.
-int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptions& options) {
+int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptions& options,
+             const StopSignals& signals) {
     const sim::Scenario& scenario = simulation.scenario();
     const std::size_t num_told = simulation.warnings().size();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
     simulation.add_observer(progress);
 
-    const StopOnSignals signals;
     const Stopwatch watch;
     const auto finish = [&](sim::Outcome outcome) {
         outcome.wall_time = watch.seconds();
@@ -161,7 +146,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
     };
     try {
         if (!options.resume) simulation.start();
-        while (!simulation.is_finished() && stop_signal == 0) simulation.step();
+        while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
     } catch (const PhysicsError& error) {
         std::ostringstream text;
         text << scenario.name << ": step " << simulation.num_steps() + 1
@@ -171,12 +156,12 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         throw PhysicsError(text.str());
     }
     if (!simulation.is_finished()) {
-        writer.take_checkpoint(simulation);
+        writer.take_checkpoint(simulation, sim::CheckpointKind::of_a_stop);
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
                     " s; what was written so far is in " + writer.main_result().string() +
                     "; to go on: " + resuming_command(options));
-        return 128 + stop_signal;
+        return 128 + signals.noted();
     }
     finish({});
     for (std::size_t i = num_told; i < simulation.warnings().size(); ++i)  // what it has shown
@@ -194,6 +179,9 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
 }  // namespace
 
 int run(const RunOptions& options) {
+    const StopSignals signals(options.scenario.string() + ": stopped before its first step; " +
+                              (options.resume ? "to go on: " + resuming_command(options)
+                                              : std::string("nothing has been written")));
     auto overrides = options.overrides;
     if (options.end_time)
         overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
@@ -203,6 +191,7 @@ int run(const RunOptions& options) {
     std::optional<StoppedRun> stopped;
     if (options.resume) {
         if (const auto quantities = sim::finished_quantities(folder, scenario)) {
+            sim::remove_checkpoints_of_stops(folder);  // if it was killed when all else was done
             if (!options.quiet)
                 std::cerr << scenario.name << ": the run in " << folder.string()
                           << " is finished; there is nothing to resume\n";
@@ -228,11 +217,12 @@ int run(const RunOptions& options) {
     }
     if (options.dry_run) return done;
 
+    signals.note_only();
     sim::RunWriter writer = stopped ? sim::RunWriter(simulation, std::move(stopped->folder),
                                                      stopped->checkpoint.written())
                                     : sim::RunWriter(simulation, folder);
     try {
-        return simulate(simulation, writer, options);
+        return simulate(simulation, writer, options, signals);
     } catch (const OutputError& error) {
         if (!writer.has_checkpoint()) throw;
         throw OutputError(std::string(error.what()) +

@@ -19,12 +19,11 @@ std::vector<std::string_view> split(std::string_view line) {
     }
 }
 
-std::optional<double> parse_real(std::string_view text) {
-    const auto exponent = text.find_first_of("dD");
-    if (exponent == text.npos) return parse_number<double>(text);
-    auto as_c = std::string(text);
-    as_c[exponent] = 'e';
-    return parse_number<double>(as_c);
+/// Its exponent as in C.
+std::string as_in_c(std::string_view real) {
+    std::string text(real);
+    if (const auto exponent = text.find_first_of("dD"); exponent != text.npos) text[exponent] = 'e';
+    return text;
 }
 
 }  // namespace
@@ -71,13 +70,17 @@ std::vector<std::string_view> AbaqusLines::fields() const { return split(line_);
 std::int64_t AbaqusLines::number(std::string_view field, std::string_view what) const {
     const auto parsed = parse_number<std::int64_t>(field);
     if (!parsed || *parsed < 1)
-        fail("expected " + std::string(what) + ", from 1 on, found " + in_quotes(field));
+        fail("expected " + std::string(what) + ", from 1 on, found " + in_quotes(field) +
+             range_remark<std::int64_t>(field));
     return *parsed;
 }
 
 double AbaqusLines::real(std::string_view field, std::string_view what) const {
-    const auto parsed = parse_real(field);
-    if (!parsed) fail("expected " + std::string(what) + ", found " + in_quotes(field));
+    const std::string text = as_in_c(field);
+    const auto parsed = parse_number<double>(text);
+    if (!parsed)
+        fail("expected " + std::string(what) + ", found " + in_quotes(field) +
+             range_remark<double>(text));
     if (!std::isfinite(*parsed))
         fail(std::string(what) + " is " + shown(*parsed) + "; it must be finite");
     return *parsed;

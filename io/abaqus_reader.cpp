@@ -225,6 +225,8 @@ class AbaqusReader {
             if (field.empty()) continue;
             if (const auto element = parse_number<std::int64_t>(field))
                 sets_.add(set_, range(*element, *element, 1));
+            else if (const auto remark = range_remark<std::int64_t>(field); !remark.empty())
+                lines_.fail("expected an element, found " + in_quotes(field) + remark);
             else
                 sets_.add_subset(set_, sets_.refer(abaqus_word(field), lines_.byte()));
         }

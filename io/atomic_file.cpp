@@ -41,7 +41,7 @@ const char* remedy(int error_number) {
         case EEXIST:
             return "a file is in the place of a folder; choose another path";
         case EISDIR:
-            return "name a file in that folder";
+            return "name a file in that folder, or remove the folder";
         case ENAMETOOLONG:
             return "choose a shorter name";
         case EMFILE:

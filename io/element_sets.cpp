@@ -163,9 +163,52 @@ std::vector<int> ElementSets::number_sets(const Owners& owners,
     return number_of;
 }
 
+std::vector<std::size_t> ElementSets::find_circle() const {
+    enum class State : std::uint8_t { not_seen, on_path, done };
+    struct Step {
+        std::size_t set, num_followed;  // of its subsets
+    };
+    std::vector<State> states(sets_.size(), State::not_seen);
+    std::vector<Step> path;
+    const auto enter = [&](std::size_t set) {
+        states[set] = State::on_path;
+        path.push_back({set, 0});
+    };
+    for (std::size_t first = 0; first < sets_.size(); ++first) {
+        if (states[first] == State::not_seen) enter(first);
+        while (!path.empty()) {
+            auto& [set, num_followed] = path.back();
+            if (num_followed == sets_[set].subsets.size()) {
+                states[set] = State::done;
+                path.pop_back();
+                continue;
+            }
+            const auto subset = sets_[set].subsets[num_followed++];
+            if (states[subset] == State::on_path) {
+                std::vector<std::size_t> circle;
+                for (auto step = std::ranges::find(path, subset, &Step::set); step != path.end();
+                     ++step)
+                    circle.push_back(step->set);
+                return circle;
+            }
+            if (states[subset] == State::not_seen) enter(subset);
+        }
+    }
+    return {};
+}
+
 ElementSets::Regions ElementSets::regions(std::span<const std::int64_t> elements) const {
     const auto owners = find_owners(elements);
     Regions result{std::vector<int>(elements.size(), 0), {}};
+    if (const auto circle = find_circle(); !circle.empty()) {
+        constexpr std::size_t most_listed = 5;
+        std::string list;
+        for (std::size_t i = 0; i < std::min(circle.size(), most_listed); ++i)
+            list += (list.empty() ? "" : ", ") + in_quotes(sets_[circle[i]].name);
+        result.warnings.push_back("element sets hold themselves, each the next one: " + list +
+                                  (circle.size() > most_listed ? ", ..." : "") +
+                                  "; all of them hold the same elements");
+    }
     const auto number_of = number_sets(owners, result.warnings);
     for (std::size_t e = 0; e < elements.size(); ++e)
         if (owners.of_element[e] != nobody) result.of_element[e] = number_of[owners.of_element[e]];

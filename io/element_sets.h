@@ -48,7 +48,7 @@ class ElementSets {
     /// The regions of the elements with these numbers, which ascend. Of the sets of the best role
     /// that there is, an element belongs to the first that holds it. Sets named REGION_<n> are
     /// region n, others are numbered from 1 in the order of the file, which a warning tells;
-    /// elements in no set have region 0.
+    /// elements in no set have region 0. Sets that hold themselves through others are warned of.
     Regions regions(std::span<const std::int64_t> elements) const;
 
   private:
@@ -70,6 +70,8 @@ class ElementSets {
     Owners find_owners(std::span<const std::int64_t> elements) const;
     std::vector<int> number_sets(const Owners& owners, std::vector<std::string>& warnings) const;
     std::size_t find_or_add(const std::string& name);
+    /// Sets of which each holds the next, and the last one the first; none if there are no such.
+    std::vector<std::size_t> find_circle() const;
 
     std::vector<Set> sets_;
     std::map<std::string, std::size_t> index_of_;

@@ -27,7 +27,7 @@ InputFile load_input_file(const std::filesystem::path& path) {
                          (is_missing ? "no such file; check the path" : error.message()));
     }
     if (std::filesystem::is_directory(status))
-        throw InputError(file.name() + ": is a directory; name a mesh file in it");
+        throw InputError(file.name() + ": is a directory; name a file in it");
     if (!std::filesystem::is_regular_file(status))
         throw InputError(file.name() + ": is not a regular file; copy its contents into one");
 

@@ -38,19 +38,39 @@ requires std::integral<T> || std::floating_point<T> std::optional<T> parse_numbe
     return std::nullopt;
 }
 
+/// The shortest text that parses to the same value.
+inline std::string shown(double value) {
+    std::array<char, 32> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+/// Behind a text that parse_number refuses, in a message: that it is a number beyond those of T, if
+/// it is one, and which there are.
+template <class T>
+requires std::integral<T> || std::floating_point<T> std::string range_remark(
+    std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc::result_out_of_range || end != text.data() + text.size()) return {};
+    using Limits = std::numeric_limits<T>;
+    const auto in_words = [](T limit) {
+        if constexpr (std::integral<T>)
+            return std::to_string(limit);
+        else
+            return shown(limit);
+    };
+    return ", which is out of range: " + in_words(Limits::lowest()) + " to " +
+           in_words(Limits::max()) + " are allowed";
+}
+
 /// The value, if it is a whole number of 32 bits.
 inline std::optional<int> whole_number(double value) {
     constexpr double lowest = std::numeric_limits<int>::min();
     constexpr double highest = std::numeric_limits<int>::max();
     if (!(value >= lowest && value <= highest) || value != std::floor(value)) return std::nullopt;
     return static_cast<int>(value);
-}
-
-/// The shortest text that parses to the same value.
-inline std::string shown(double value) {
-    std::array<char, 32> buffer;
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-    return {buffer.data(), end};
 }
 
 }  // namespace incise::io

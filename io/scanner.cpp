@@ -72,6 +72,18 @@ bool Scanner::skip_past(std::string_view mark) {
     return found != bytes_.npos;
 }
 
+bool Scanner::skip_past_line(std::string_view mark) {
+    const auto item_begin = item_begin_;
+    bool is_found = false;
+    while (!is_found && remaining() > 0) {
+        const auto line = trimmed(rest_of_line());
+        is_found =
+            line.starts_with(mark) && (line.size() == mark.size() || is_blank(line[mark.size()]));
+    }
+    item_begin_ = item_begin;
+    return is_found;
+}
+
 std::string_view Scanner::take(std::size_t count, std::string_view what) {
     item_begin_ = position_;
     if (count > remaining())
@@ -110,8 +122,9 @@ std::string Scanner::place() const {
 
 void Scanner::fail(const std::string& message) const { throw InputError(place() + ": " + message); }
 
-void Scanner::fail_expected(std::string_view what, std::string_view found) const {
-    fail("expected " + std::string(what) + ", found " + in_quotes(found));
+void Scanner::fail_expected(std::string_view what, std::string_view found,
+                            const std::string& remark) const {
+    fail("expected " + std::string(what) + ", found " + in_quotes(found) + remark);
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -46,6 +46,9 @@ class Scanner {
     std::string_view rest_of_line();
     /// Goes to just behind the next `mark`; false, and to the end, if there is none.
     bool skip_past(std::string_view mark);
+    /// Goes to behind the next line whose first word is `mark`; false, and to the end, if there is
+    /// none.
+    bool skip_past_line(std::string_view mark);
     /// The next `count` bytes.
     std::string_view take(std::size_t count, std::string_view what);
 
@@ -60,7 +63,7 @@ class Scanner {
     T number(std::string_view what) {
         const auto text = token(what);
         const auto parsed = parse_number<T>(text);
-        if (!parsed) fail_expected(what, text);
+        if (!parsed) fail_expected(what, text, range_remark<T>(text));
         return *parsed;
     }
     /// The next number, refused if it is not finite.
@@ -75,7 +78,9 @@ class Scanner {
     std::string place() const;
     /// Throws InputError with that place.
     [[noreturn]] void fail(const std::string& message) const;
-    [[noreturn]] void fail_expected(std::string_view what, std::string_view found) const;
+    /// @param remark  about what was found
+    [[noreturn]] void fail_expected(std::string_view what, std::string_view found,
+                                    const std::string& remark = {}) const;
 
   private:
     void skip_blanks();

@@ -2,13 +2,16 @@
 #include "io/series.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/number_format.h"
 #include "io/number_text.h"
 #include "io/vtu_writer.h"
@@ -52,15 +55,26 @@ std::string escape_json(std::string_view text) {
     return out;
 }
 
-/// Control characters have no place in XML, and a slash none in a name.
-void check_name(const std::string& name) {
-    const bool is_fit = !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
-        return c == '/' || static_cast<unsigned char>(c) < ' ' || c == '\x7f';
-    });
-    if (!is_fit)
-        throw InputError("'" + name +
-                         "' cannot name the files of a run: give a name without "
-                         "slashes and control characters");
+/// The character that the text begins with, which is taken off it; nothing if it is no UTF-8.
+std::optional<char32_t> next_character(std::string_view& text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t size = byte(0) < 0x80   ? 1
+                             : byte(0) < 0xC2 ? 0
+                             : byte(0) < 0xE0 ? 2
+                             : byte(0) < 0xF0 ? 3
+                             : byte(0) < 0xF5 ? 4
+                                              : 0;
+    if (size == 0 || size > text.size()) return std::nullopt;
+    char32_t character = size == 1 ? byte(0) : byte(0) & (0xFFu >> (size + 1));
+    for (std::size_t i = 1; i < size; ++i) {
+        if ((byte(i) & 0xC0u) != 0x80u) return std::nullopt;
+        character = character << 6 | (byte(i) & 0x3Fu);
+    }
+    constexpr std::array<char32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+    const bool is_surrogate = 0xD800 <= character && character < 0xE000;
+    if (character < least[size] || is_surrogate || character > 0x10FFFF) return std::nullopt;
+    text.remove_prefix(size);
+    return character;
 }
 
 /// In the folder of the run.
@@ -72,6 +86,20 @@ std::string frame_name(const std::string& series, std::size_t index) {
 }
 
 }  // namespace
+
+// What is no UTF-8, control characters and the last two of the first plane have no place in XML,
+// a slash has none in a name.
+void require_series_name(std::string_view name) {
+    bool is_fit = !name.empty();
+    for (std::string_view rest = name; is_fit && !rest.empty();) {
+        const auto c = next_character(rest);
+        is_fit = c && *c >= ' ' && *c != '/' && *c != 0x7F && *c != 0xFFFE && *c != 0xFFFF;
+    }
+    if (!is_fit)
+        throw InputError(in_quotes(name) +
+                         " cannot name the files of a run: rename it, in UTF-8 and without "
+                         "slashes and control characters");
+}
 
 void require_frames(const fs::path& folder, const std::string& name,
                     std::span<const FrameWritten> frames) {
@@ -85,7 +113,7 @@ Series::Series(fs::path folder, std::string name, Compression compression,
       name_(std::move(name)),
       compression_(compression),
       frames_(kept.begin(), kept.end()) {
-    check_name(name_);
+    require_series_name(name_);
     make_output_folder(folder_);
     make_output_folder(folder_ / "frames");
     remove_unfinished_files(folder_ / "frames");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/frame.h"
@@ -19,6 +20,9 @@ struct FrameWritten {
     BytesWritten file;
     static void archive(auto& ar, auto& self) { ar(self.time, self.file); }
 };
+
+/// Throws InputError unless files can be called so, and an index in XML can name them.
+void require_series_name(std::string_view name);
 
 /// Throws InputError, naming the file, what has become of it and what to do, unless these are the
 /// first frames of the series of that name. Cost: that of reading them, which is small beside what
@@ -35,7 +39,7 @@ class Series {
   public:
     /// Makes the folders. `kept` are the first frames of a former run that goes on here, which
     /// require_frames() has found; all other frames and indexes of that name are removed, so that
-    /// no stale frame mixes in. Throws InputError if the name does not do as the name of a file.
+    /// no stale frame mixes in. Throws InputError if the name does not do.
     Series(std::filesystem::path folder, std::string name,
            Compression compression = Compression::zlib, std::span<const FrameWritten> kept = {});
 

@@ -47,7 +47,7 @@ class NumberLines {
             fail(std::string(what) + " is missing: the line has " + std::to_string(words_.size()) +
                  " numbers");
         const auto parsed = parse_number<T>(words_[column]);
-        if (!parsed) scanner_.fail_expected(what, words_[column]);
+        if (!parsed) scanner_.fail_expected(what, words_[column], range_remark<T>(words_[column]));
         return *parsed;
     }
     /// The number of lines that follow, each of at least `bytes_each` bytes.
@@ -55,6 +55,12 @@ class NumberLines {
         const auto count = number<std::uint64_t>(0, what);
         scanner_.require_room(count, bytes_each, what);
         return count;
+    }
+    /// @param columns  in words
+    void expect_columns(std::size_t number, std::string_view columns) const {
+        if (num_columns() != number)
+            fail("expected " + std::string(columns) + ", as the first line has it, found " +
+                 std::to_string(num_columns()) + " columns");
     }
     void expect_end(std::string_view rows) {
         if (!scanner_.at_end())
@@ -93,6 +99,13 @@ class TetgenReader {
         const auto dimension = nodes_.number<int>(1, "the dimension");
         if (dimension != 3)
             nodes_.fail("the dimension is " + std::to_string(dimension) + "; it must be 3");
+        const auto num_attributes = count_or_0(nodes_, 2, "the number of attributes");
+        const auto num_markers = count_or_0(nodes_, 3, "the number of boundary markers, 0 or 1");
+        if (num_markers > 1)
+            nodes_.fail("the number of boundary markers is " + std::to_string(num_markers) +
+                        "; it must be 0 or 1");
+        const auto columns = "an index, 3 coordinates, " + std::to_string(num_attributes) +
+                             " attributes and " + std::to_string(num_markers) + " markers";
         auto& points = result_.mesh.points;
         points.reserve(static_cast<std::size_t>(num_nodes));
         for (std::uint64_t i = 0; i < num_nodes; ++i) {
@@ -102,10 +115,17 @@ class TetgenReader {
             const double y = coordinate(2, "coordinate y");
             const double z = coordinate(3, "coordinate z");
             points.emplace_back(x, y, z);
+            nodes_.expect_columns(4 + std::size_t{num_attributes} + num_markers, columns);
         }
         nodes_.expect_end(std::to_string(num_nodes) + " nodes");
         if (const auto twice = tags_.sort()) throw InputError(nodes_name_ + ": index " + *twice);
         result_.mesh.source_points = tags_.in_order();
+    }
+
+    /// Of the first line, which may leave it out.
+    static std::uint32_t count_or_0(const NumberLines& lines, std::size_t column,
+                                    std::string_view what) {
+        return column < lines.num_columns() ? lines.number<std::uint32_t>(column, what) : 0;
     }
 
     double coordinate(std::size_t column, std::string_view what) const {
@@ -121,9 +141,9 @@ class TetgenReader {
         elements_.next("the number of elements");
         const auto num_elements = elements_.num_rows("the number of elements", bytes_of_row);
         const auto num_corners = elements_.number<int>(1, "the number of nodes of an element");
-        const auto num_attributes = elements_.num_columns() > 2 ? elements_.number<std::uint32_t>(
-                                                                      2, "the number of attributes")
-                                                                : 0;
+        const auto num_attributes = count_or_0(elements_, 2, "the number of attributes");
+        const auto columns =
+            "an index, 4 nodes and " + std::to_string(num_attributes) + " attributes";
         const auto* form = find_form(tetrahedra_forms, num_corners);
         if (form == nullptr)
             elements_.fail("elements have " + std::to_string(num_corners) +
@@ -135,21 +155,13 @@ class TetgenReader {
         std::array<std::int64_t, 4> corners{};
         for (std::uint64_t i = 0; i < num_elements; ++i) {
             elements_.next("an element");
-            expect_columns(num_attributes);
+            elements_.expect_columns(5 + std::size_t{num_attributes}, columns);
             const auto index = elements_.number<std::int64_t>(0, "the index of an element");
             for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = corner(index, 1 + k);
             collector_.keep(*form, index, corners,
                             num_attributes > 0 ? region(1 + corners.size()) : 0, result_.mesh);
         }
         elements_.expect_end(std::to_string(num_elements) + " elements");
-    }
-
-    void expect_columns(std::size_t num_attributes) const {
-        const auto expected = 1 + std::size_t{4} + num_attributes;
-        if (elements_.num_columns() != expected)
-            elements_.fail("expected an index, 4 nodes and " + std::to_string(num_attributes) +
-                           " attributes, as the first line has it, found " +
-                           std::to_string(elements_.num_columns()) + " columns");
     }
 
     std::int64_t corner(std::int64_t element, std::size_t column) const {

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
+#include "io/number_text.h"
 #include "sim/measured_quantities.h"
 #include "topology/archive.h"
 #include "topology/error.h"
@@ -18,32 +20,61 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view prefix = "step_", suffix = ".checkpoint";
+constexpr std::string_view suffix = ".checkpoint";
+
+constexpr std::string_view prefix_of(CheckpointKind kind) {
+    return kind == CheckpointKind::regular ? "step_" : "stop_";
+}
 
 fs::path folder_of_checkpoints(const fs::path& folder) { return folder / "checkpoints"; }
 
+struct CheckpointName {
+    CheckpointKind kind;
+    std::uint64_t step;
+
+    std::string text() const {
+        constexpr std::size_t num_digits = 12;  // at least
+        std::string digits = std::to_string(step);
+        digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
+        return std::string(prefix_of(kind)) + digits + std::string(suffix);
+    }
+};
+
+struct CheckpointFile {
+    fs::path path;
+    CheckpointName name;
+};
+
+/// What the name of the file says, if it is that of a checkpoint.
+std::optional<CheckpointName> checkpoint_name(const std::string& text) {
+    for (const auto kind : {CheckpointKind::regular, CheckpointKind::of_a_stop}) {
+        std::string_view digits = text;
+        if (!digits.starts_with(prefix_of(kind)) || !digits.ends_with(suffix)) continue;
+        digits.remove_prefix(prefix_of(kind).size());
+        digits.remove_suffix(std::min(digits.size(), suffix.size()));
+        if (const auto step = io::parse_number<std::uint64_t>(digits))
+            if (const CheckpointName name{kind, *step}; name.text() == text) return name;
+    }
+    return std::nullopt;
+}
+
 /// In the order of their steps.
-std::vector<fs::path> checkpoints(const fs::path& folder) {
-    std::vector<fs::path> found;
+std::vector<CheckpointFile> checkpoints(const fs::path& folder) {
+    std::vector<CheckpointFile> found;
     std::error_code error;
     for (fs::directory_iterator entry(folder_of_checkpoints(folder), error), end;
-         !error && entry != end; entry.increment(error)) {
-        const auto name = entry->path().filename().string();
-        if (name.starts_with(prefix) && name.ends_with(suffix)) found.push_back(entry->path());
-    }
-    // The numbers have leading zeros; only a longer one has more digits.
-    std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
-        const auto x = a.filename().string(), y = b.filename().string();
-        return x.size() != y.size() ? x.size() < y.size() : x < y;
-    });
+         !error && entry != end; entry.increment(error))
+        if (const auto name = checkpoint_name(entry->path().filename().string()))
+            found.push_back({entry->path(), *name});
+    std::sort(found.begin(), found.end(),
+              [](const auto& a, const auto& b) { return a.name.step < b.name.step; });
     return found;
 }
 
-fs::path path_of(const fs::path& folder, std::uint64_t step) {
-    constexpr std::size_t num_digits = 12;
-    std::string digits = std::to_string(step);
-    digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
-    return folder_of_checkpoints(folder) / (std::string(prefix) + digits + std::string(suffix));
+template <class Condition>
+void remove_checkpoints_if(const fs::path& folder, const Condition& condition) {
+    for (const auto& [path, name] : checkpoints(folder))
+        if (condition(name)) io::remove_output_file(path);
 }
 
 /// "KEY was A and is B" of the first few values that are not the same.
@@ -72,23 +103,40 @@ std::string differences(const std::vector<std::pair<std::string, std::string>>& 
 
 }  // namespace
 
-void write_checkpoint(const fs::path& folder, const Simulation& simulation,
-                      const Written& written) {
+void write_checkpoint(const fs::path& folder, const Simulation& simulation, const Written& written,
+                      CheckpointKind kind) {
     if (!fs::is_directory(folder_of_checkpoints(folder)))
         io::make_output_folder(folder_of_checkpoints(folder));
-    io::remove_unfinished_files(folder_of_checkpoints(folder));
     topology::ArchiveWriter state, ar;
     simulation.save(state);
     ar(std::string(INCISE_VERSION), simulation.scenario().contents, simulation.fingerprint(),
        written, state.bytes());
-    io::write_checked_file(path_of(folder, simulation.num_steps()), ar.bytes());
-    constexpr std::size_t num_kept = 2;
-    const auto all = checkpoints(folder);
-    for (std::size_t i = 0; i + num_kept < all.size(); ++i) io::remove_output_file(all[i]);
+    const CheckpointName name{kind, simulation.num_steps()};
+    io::write_checked_file(folder_of_checkpoints(folder) / name.text(), ar.bytes());
+    tidy_checkpoints(folder, name.step);
 }
 
 void remove_checkpoints(const fs::path& folder) {
-    for (const fs::path& path : checkpoints(folder)) io::remove_output_file(path);
+    io::remove_unfinished_files(folder_of_checkpoints(folder));
+    remove_checkpoints_if(folder, [](const CheckpointName&) { return true; });
+}
+
+void tidy_checkpoints(const fs::path& folder, std::uint64_t step) {
+    io::remove_unfinished_files(folder_of_checkpoints(folder));
+    std::size_t num_regular = 0;  // from here on
+    for (const auto& [path, name] : checkpoints(folder))
+        if (name.kind == CheckpointKind::regular && name.step <= step) ++num_regular;
+    constexpr std::size_t num_kept = 2;
+    remove_checkpoints_if(folder, [&](const CheckpointName& name) {
+        if (name.step > step) return true;
+        if (name.kind == CheckpointKind::of_a_stop) return name.step < step;
+        return num_regular-- > num_kept;
+    });
+}
+
+void remove_checkpoints_of_stops(const fs::path& folder) {
+    remove_checkpoints_if(
+        folder, [](const CheckpointName& name) { return name.kind == CheckpointKind::of_a_stop; });
 }
 
 Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
@@ -108,12 +156,21 @@ Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)
 Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& warnings) {
     auto all = checkpoints(folder);
     std::reverse(all.begin(), all.end());
-    for (const fs::path& path : all) {
+    std::error_code error;
+    for (const auto& [path, name] : all)
+        if (fs::is_directory(path, error))
+            throw InputError(path.string() +
+                             ": is a directory in the place of a checkpoint; remove it, and "
+                             "resume then");
+    for (const auto& [path, name] : all) {
         std::string bytes;
         try {
             bytes = io::read_checked_file(path);
         } catch (const InputError& damage) {
-            warnings.push_back(std::string(damage.what()) + "; trying the checkpoint before it");
+            warnings.push_back(
+                std::string(damage.what()) +
+                "; trying the checkpoint before it; if the run goes on from there, this one "
+                "is removed");
             continue;
         }
         return Checkpoint(path, std::move(bytes));
@@ -151,7 +208,7 @@ void Checkpoint::restore(Simulation& simulation) const {
         if (written_.last_row.size() != history_row(simulation).size())
             throw InputError("its row of the history has " +
                              std::to_string(written_.last_row.size()) + " columns");
-        if (path_of({}, simulation.num_steps()).filename() != path_.filename())
+        if (checkpoint_name(path_.filename().string())->step != simulation.num_steps())
             throw InputError("it is of step " + std::to_string(simulation.num_steps()));
     });
 }

@@ -25,20 +25,30 @@ struct Written {
     }
 };
 
-/// Writes a checkpoint, which is whole or not there (io/checked_file.h), and removes all but it and
-/// the one before. Everything that `written` speaks of must be on the disk. Throws OutputError.
+/// A run that was stopped leaves those of its rhythm and one of the moment of the stop, which goes
+/// when the run has gone on: in the end there is what a run without the stop leaves.
+enum class CheckpointKind { regular, of_a_stop };
+
+/// Writes a checkpoint, which is whole or not there (io/checked_file.h), and tidies up. Everything
+/// that `written` speaks of must be on the disk. Throws OutputError.
 void write_checkpoint(const std::filesystem::path& folder, const Simulation& simulation,
-                      const Written& written);
+                      const Written& written, CheckpointKind kind);
 
 /// Throws OutputError.
 void remove_checkpoints(const std::filesystem::path& folder);
+/// For a run that has a whole checkpoint of this step: it stays, and the last two regular ones up
+/// to then. Those of later steps are damaged, or will be written again. Throws OutputError.
+void tidy_checkpoints(const std::filesystem::path& folder, std::uint64_t step);
+/// For a run that has ended. Throws OutputError.
+void remove_checkpoints_of_stops(const std::filesystem::path& folder);
 
 /// A checkpoint that has been read: whole, and of this version of the program.
 class Checkpoint {
   public:
     /// The newest of the run in `folder` that is whole; for each that is not, and is newer, a
-    /// warning. Changes nothing. Throws InputError if there is none, or if another version of the
-    /// program, which might not go on to the same bits, has written it.
+    /// warning. Changes nothing. Throws InputError if there is none, if a folder is in the place of
+    /// one, or if another version of the program, which might not go on to the same bits, has
+    /// written it.
     static Checkpoint newest(const std::filesystem::path& folder,
                              std::vector<std::string>& warnings);
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "io/input_file.h"
 #include "io/number_format.h"
@@ -110,6 +111,11 @@ std::optional<Quantities> finished_quantities(const std::filesystem::path& folde
                                               const Scenario& scenario) {
     const auto path = folder / "summary.json";
     if (!std::filesystem::exists(path)) return std::nullopt;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError(path.string() +
+                         ": is a directory in the place of the summary of a run; remove it, and "
+                         "resume then");
     const std::string remedy =
         "; remove the file to go on from the last checkpoint, or begin anew without --resume";
     const auto refuse = [&](const std::string& why) {

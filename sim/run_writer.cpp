@@ -52,9 +52,14 @@ Json to_json(const EditRecord& edit) {
             {"after", to_json(edit.after)}};
 }
 
+/// What is no UTF-8 in it, as names in files can be, is replaced.
+std::string text_of(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string line_of(const EditRecord& edit) {
     // A name that is no text can only come from a checkpoint that somebody has made up.
-    return to_json(edit).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return text_of(to_json(edit), -1);
 }
 
 /// Throws InputError unless the files of the run are those that it had written.
@@ -75,10 +80,12 @@ void require_files(const std::filesystem::path& folder, const Simulation& simula
 /// The folder, prepared for a new run or to go on with one.
 io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
                           const Written* written) {
-    if (written)
+    if (written) {
         require_files(folder.path(), simulation, *written);
-    else
+        tidy_checkpoints(folder.path(), simulation.num_steps());
+    } else {
         remove_checkpoints(folder.path());
+    }
     // A summary speaks of a whole run: that of a former one must not outlive its frames.
     io::remove_output_file(folder.path() / "summary.json");
     return folder;
@@ -97,7 +104,6 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
       first_time_(simulation.time()),
       first_step_(simulation.num_steps()),
       next_checkpoint_(0.0),
-      has_checkpoint_(written != nullptr),
       num_frames_(series_.frames().size()) {
     if (written) {
         for (std::size_t i = 0; i < last_row_.size(); ++i)
@@ -148,25 +154,31 @@ void RunWriter::wait_for_frame() {
 void RunWriter::on_pause(const Simulation& simulation) {
     const double interval = simulation.scenario().output.checkpoint_interval;
     const bool is_due = interval > 0.0 && simulation.time() >= next_checkpoint_ * interval;
-    if (is_due && !simulation.is_finished()) take_checkpoint(simulation);
+    if (is_due && !simulation.is_finished()) take_checkpoint(simulation, CheckpointKind::regular);
 }
 
-void RunWriter::take_checkpoint(const Simulation& simulation) {
+void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kind) {
+    if (last_checkpoint_ == simulation.num_steps()) return;
     wait_for_frame();
     history_.sync();
     edits_.sync();
     Written written{history_.written(), edits_.written(), {}, {}};
     written.frames.assign(series_.frames().begin(), series_.frames().end());
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
-    write_checkpoint(folder(), simulation, written);
-    has_checkpoint_ = true;
+    write_checkpoint(folder(), simulation, written, kind);
     note_checkpoint(simulation);
 }
 
 /// The next is due after the interval that has begun, wherever in it this one was taken.
 void RunWriter::note_checkpoint(const Simulation& simulation) {
+    last_checkpoint_ = simulation.num_steps();
     const double interval = simulation.scenario().output.checkpoint_interval;
-    if (interval > 0.0) next_checkpoint_ = std::floor(simulation.time() / interval) + 1.0;
+    if (interval == 0.0) return;
+    // By the products that on_pause() compares with, or the quotient's rounding could let a resumed
+    // run leave out a checkpoint.
+    next_checkpoint_ = std::floor(simulation.time() / interval);
+    for (int i = 0; i < 2 && next_checkpoint_ * interval <= simulation.time(); ++i)
+        next_checkpoint_ += 1.0;
 }
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
@@ -200,7 +212,9 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
         summary["real_time_factor"] = (simulation.time() - first_time_) / outcome.wall_time;
     }
     summary["warnings"] = simulation.warnings();
-    io::write_file(folder() / "summary.json", summary.dump(2) + "\n");
+    io::write_file(folder() / "summary.json", text_of(summary, 2) + "\n");
+    // Last, as what a kill just before would have to go on from.
+    if (outcome.status != "interrupted") remove_checkpoints_of_stops(folder());
 }
 
 }  // namespace incise::sim

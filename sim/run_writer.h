@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <future>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -42,8 +43,9 @@ class RunWriter : public Observer {
     void on_edit(const Simulation& simulation, const EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
     void on_pause(const Simulation& simulation) override;  ///< takes a checkpoint when one is due
-    void take_checkpoint(const Simulation& simulation);
-    bool has_checkpoint() const { return has_checkpoint_; }
+    /// Unless one has been taken after this step.
+    void take_checkpoint(const Simulation& simulation, CheckpointKind kind);
+    bool has_checkpoint() const { return last_checkpoint_.has_value(); }
     void finish(const Simulation& simulation, const Outcome& outcome);
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
@@ -66,8 +68,8 @@ class RunWriter : public Observer {
     Quantities last_row_;  // of the history
     double first_time_;    // s, where this process took up the run, which its wall time is of
     std::uint64_t first_step_;
-    double next_checkpoint_;  // in intervals
-    bool has_checkpoint_;
+    double next_checkpoint_;                        // in intervals
+    std::optional<std::uint64_t> last_checkpoint_;  // its step
     std::size_t num_frames_;
     std::future<void> frame_;  // which is being written; the last member, as its thread uses others
 };

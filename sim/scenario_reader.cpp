@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "io/number_format.h"
+#include "io/series.h"
 #include "sim/quantities.h"
 #include "sim/scenario_sections.h"
 #include "topology/error.h"
@@ -292,6 +293,11 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
                              std::span<const std::string> overrides) {
     ScenarioReport report;
     Diagnostics diagnostics(file.string(), overrides);
+    try {
+        io::require_series_name(file.stem().string());
+    } catch (const InputError& failure) {
+        diagnostics.error(Place{}, failure.what());
+    }
     try {
         Value document = read_document(file);
         for (std::size_t i = 0; i < overrides.size(); ++i)

@@ -216,7 +216,8 @@ TEST_F(ResumedProcess, TakesAnEarlierCheckpointWithAWarning) {
               std::string::npos);
     expect_same(files_of(folder_ / "scene.out"), files);
 
-    // Finished: there is nothing more to do.
+    // Finished: there is nothing more to do but what a kill at the very end has left undone.
+    write("scene.out/checkpoints/stop_000000000001.checkpoint", "");
     outcome = run({"scene.toml", "--resume"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.out, "scene.out/scene.pvd\n");
@@ -243,6 +244,19 @@ TEST_F(ResumedProcess, RefusesASummaryThatNoRunHasWritten) {
     EXPECT_EQ(outcome.err,
               "incise: scene.out/summary.json: 'status' is '7', and should be a text; remove the "
               "file to go on from the last checkpoint, or begin anew without --resume\n");
+}
+
+TEST_F(ResumedProcess, RefusesFoldersInThePlaceOfItsFiles) {
+    write("scene.toml", scene);
+    const auto refusal = [&](const std::string& path, const std::string& of) {
+        fs::create_directories(folder_ / path);
+        const auto outcome = run({"scene.toml", "--resume"});
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_EQ(outcome.err, "incise: " + path + ": is a directory in the place of " + of +
+                                   "; remove it, and resume then\n");
+    };
+    refusal("scene.out/checkpoints/step_000000000003.checkpoint", "a checkpoint");
+    refusal("scene.out/summary.json", "the summary of a run");
 }
 
 TEST_F(ResumedProcess, NeedsARunToResume) {

@@ -102,6 +102,20 @@ class Run : public testing::Test {
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
 
+    /// Until the process has a handler for the signal, or has ended.
+    static void wait_until_caught(pid_t child, int signal) {
+        const auto is_caught = [&] {
+            std::ifstream status("/proc/" + std::to_string(child) + "/status");
+            const std::string key = "SigCgt:";
+            for (std::string line; std::getline(status, line);)
+                if (line.starts_with(key))
+                    return ((std::stoull(line.substr(key.size()), nullptr, 16) >> (signal - 1)) &
+                            1u) != 0;
+            return true;
+        };
+        while (!is_caught()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+
     json summary() { return json::parse(read_text(folder_ / "scene.out/summary.json")); }
 
     /// Everything that is there can be read and fits together; the number of frames in the index.

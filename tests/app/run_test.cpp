@@ -40,6 +40,44 @@ TEST_F(Run, DryRunWritesNothing) {
     EXPECT_EQ(support::count_entries(folder_.path()), 3u);
 }
 
+TEST_F(Run, StoppedBeforeItsFirstStepSaysSoAndLeavesNothing) {
+    // Far from its first step for a second or more.
+    write("scene.toml", scene + "[output]\ninterval = 0.01\n");
+    const std::vector<std::string> arguments{"scene.toml", "--quiet", "--set",
+                                             "mesh.box.cells=[40, 40, 40]"};
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const pid_t child = start(arguments);
+        wait_until_caught(child, signal);
+        ::kill(child, signal);
+        const auto outcome = finish(child);
+        EXPECT_EQ(outcome.status, 128 + signal);
+        EXPECT_EQ(outcome.err,
+                  "incise: scene.toml: stopped before its first step; nothing has been written\n");
+        EXPECT_EQ(support::count_entries(folder_.path()), 3u);  // the scenario and the two streams
+    }
+}
+
+TEST_F(Run, StoppedWhileItReadsItsCheckpointsTellsHowToGoOn) {
+    write("scene.toml", scene);
+    // Of holes, to be read one after another.
+    const fs::path checkpoints = folder_ / "scene.out/checkpoints";
+    fs::create_directories(checkpoints);
+    for (int i = 100; i < 200; ++i) {
+        const auto path = checkpoints / ("step_000000000" + std::to_string(i) + ".checkpoint");
+        std::ofstream(path).flush();
+        fs::resize_file(path, 100'000'000);
+    }
+    const pid_t child = start({"scene.toml", "--resume", "--threads", "2"});
+    wait_until_caught(child, SIGINT);
+    ::kill(child, SIGINT);
+    const auto outcome = finish(child);
+    EXPECT_EQ(outcome.status, 130);
+    EXPECT_EQ(outcome.err,
+              "incise: scene.toml: stopped before its first step; to go on: incise run scene.toml "
+              "--threads 2 --resume\n");
+    EXPECT_EQ(support::count_entries(checkpoints), 100u);
+}
+
 TEST_F(Run, TakesValuesFromTheCommandLine) {
     write("scene.toml", scene);
     EXPECT_EQ(run({"scene.toml", "--end-time", "0.02"}).status, 0);

@@ -161,6 +161,21 @@ TEST(AbaqusReader, ReadsSetsThatHoldOneAnother) {
     const auto file = read_bytes("a.inp", text + "*SOLID SECTION, ELSET=S40\n");
     EXPECT_EQ(file.mesh.regions[0], 1);
     EXPECT_EQ(file.mesh.regions[1], 0);
+    EXPECT_THAT(file.warnings, testing::Contains(StartsWith(
+                                   "element sets hold themselves, each the next one: 'S0', 'S40', "
+                                   "'S39', 'S38', 'S37', ...; all of them")));
+    const auto warnings = [](const std::string& sets) {
+        return read_bytes("a.inp", abaqus_tetrahedra + sets).warnings;
+    };
+    const std::string section = "*SOLID SECTION, ELSET=A\n";
+    EXPECT_THAT(warnings("*ELSET, ELSET=A\nB\n*ELSET, ELSET=B\nA\n" + section),
+                testing::Contains("element sets hold themselves, each the next one: 'A', 'B'; all "
+                                  "of them hold the same elements"));
+    EXPECT_THAT(warnings("*ELSET, ELSET=A\n3, A\n" + section),
+                testing::Contains(HasSubstr("each the next one: 'A'; all")));
+    EXPECT_THAT(
+        warnings("*ELSET, ELSET=C\n3\n*ELSET, ELSET=B\nC\n*ELSET, ELSET=A\nB, C\n" + section),
+        testing::Not(testing::Contains(HasSubstr("hold themselves"))));
 }
 
 TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
@@ -241,12 +256,17 @@ TEST(AbaqusReader, RefusesRowsOfTheWrongLength) {
 TEST(AbaqusReader, RefusesWhatIsNoNumber) {
     EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, nan"),
               "liver.inp:9: coordinate x is nan; it must be finite");
-    EXPECT_THAT(abaqus_refusal_with("40, 1.", "40, 1.D999"), HasSubstr("found '1.D999'"));
+    EXPECT_THAT(abaqus_refusal_with("40, 1.", "40, 1.D999"),
+                HasSubstr("found '1.D999', which is out of range: -1.79"));
     EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, one"),
               "liver.inp:9: expected coordinate x, found 'one'");
     EXPECT_THAT(abaqus_refusal_with(" 40, 1.", " 4e1, 1."), HasSubstr("the number of a node"));
     EXPECT_THAT(abaqus_refusal_with("50, 40", "50, 99999999999999999999"),
-                HasSubstr("expected a node"));
+                HasSubstr("expected a node, from 1 on, found '99999999999999999999', which is out "
+                          "of range: -9223372036854775808 to 9223372036854775807 are allowed"));
+    EXPECT_THAT(
+        abaqus_refusal_behind("*ELSET, ELSET=A\n3, 99999999999999999999\n"),
+        StartsWith("liver.inp:14: expected an element, found '99999999999999999999', which"));
 }
 
 TEST(AbaqusReader, RefusesSetsThatAreNone) {

@@ -176,7 +176,7 @@ TEST(WriteFile, NamesTheReasonWhereThereCanBeNoFile) {
     };
     EXPECT_THAT(error_at("missing/file"), HasSubstr("no such file or directory; make the folder"));
     EXPECT_THAT(error_at("file/below"), HasSubstr("not a directory"));
-    EXPECT_THAT(error_at("."), HasSubstr("is a directory; name a file in that folder"));
+    EXPECT_THAT(error_at("."), HasSubstr("is a directory; name a file in that folder, or remove"));
     EXPECT_THAT(output_error([] { write_file("", "x"); }), HasSubstr("cannot be written"));
 }
 

@@ -159,6 +159,26 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
                 HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
 }
 
+TEST(GmshReader, EndsSectionsThatItSkipsAtTheLineThatSaysSo) {
+    const std::string names =
+        "$PhysicalNames\n1\n3 5 \"liver $EndPhysicalNames\"\n$EndPhysicalNames \r\n";
+    for (const std::string& text :
+         {replaced(version_2, "$Nodes", names + "$Nodes"),
+          replaced(version_2, "$Nodes", "$Comments\nnot $EndComments\n  $EndComments\n$Nodes")})
+        EXPECT_EQ(read_bytes("liver.msh", text).mesh.num_cells(),
+                  read_bytes("liver.msh", version_2).mesh.num_cells());
+    EXPECT_THAT(refusal("liver.msh", "$Comments\nnot $EndComments\n$EndCommentsAll\n"),
+                StartsWith("liver.msh:1: section 'Comments' has no '$EndComments'"));
+}
+
+TEST(GmshReader, NamesTheRangeOfNumbersBeyondIt) {
+    EXPECT_EQ(refusal_2("10 1 0 0", "4000000000 1 0 0"),
+              "liver.msh:7: expected a node tag, found '4000000000', which is out of range: "
+              "-2147483648 to 2147483647 are allowed");
+    EXPECT_THAT(refusal_2("10 1 0 0", "10 1e999 0 0"),
+                HasSubstr("found '1e999', which is out of range: -1.79"));
+}
+
 TEST(GmshReader, QuotesAndShortensNamesOfSections) {
     const auto message =
         refusal("liver.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$\x1b[31m" +

@@ -138,7 +138,12 @@ TEST(MeditReader, RefusesWhatIsNoNumber) {
     EXPECT_THAT(medit_refusal_with("0  1  0    0", "0  1,5  0    0"), HasSubstr("found '1,5'"));
     EXPECT_EQ(medit_refusal_with("4  10", "4  1e10"),
               "liver.mesh:18: expected a reference, a whole number of 32 bits, found '1e10'");
-    EXPECT_THAT(medit_refusal_with("4  10", "4  3000000000"), HasSubstr("of 32 bits"));
+    EXPECT_THAT(
+        medit_refusal_with("4  10", "4  3000000000"),
+        HasSubstr("of 32 bits, found '3000000000', which is out of range: -2147483648 to "));
+    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n18446744073709551617"),
+                HasSubstr("expected the number of vertices, found '18446744073709551617', which is "
+                          "out of range: 0 to 18446744073709551615 are allowed"));
 }
 
 TEST(MeditReader, RefusesWhatItCannotRead) {

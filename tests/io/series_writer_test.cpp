@@ -172,6 +172,15 @@ TEST(Series, RefusesNamesThatAreNoFileNames) {
     const TemporaryFolder folder;
     for (const std::string name : {"", "a/b", "a\nb", "\x7f"})
         EXPECT_THROW(Series(folder.path(), name), InputError) << name;
+    // What is no UTF-8: a byte too few or too many, too long a form, beyond the last character.
+    for (const std::string name :
+         {"sc\xff"
+          "en",
+          "M\xfcnze", "a\xc3", "\xe2\x82", "\x80", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80",
+          "\xf4\x90\x80\x80", "\xf8\x88", "\xef\xbf\xbf"})
+        EXPECT_THROW(require_series_name(name), InputError) << name;
+    for (const std::string name : {"Münze", "\xe2\x82\xac", "\xf0\x9f\x94\xaa", "\xf4\x8f\xbf\xbd"})
+        EXPECT_NO_THROW(require_series_name(name)) << name;
 }
 
 TEST(Series, SaysWhyItCannotWrite) {

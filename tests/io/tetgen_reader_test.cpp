@@ -165,6 +165,33 @@ TEST(TetgenReader, RefusesElementsOfOtherThanTheAnnouncedColumns) {
                 HasSubstr("4294967295 attributes, as the first line has it, found 6 columns"));
 }
 
+TEST(TetgenReader, RefusesNodesOfOtherThanTheAnnouncedColumns) {
+    const std::string element = "1 4 0\n0 0 1 2 3\n";
+    const auto nodes = [](const std::string& header, const std::string& more) {
+        return "4 3" + header + "\n0 0 0 0" + more + "\n1 1 0 0" + more + "\n2 0 1 0" + more +
+               "\n3 0 0 1" + more + "\n";
+    };
+    for (const auto& [header, more] :
+         {std::pair{"", ""}, std::pair{" 0", ""}, std::pair{" 0 0", ""}, std::pair{" 0 1", " -1"},
+          std::pair{" 2", " 0.5 1e3"}, std::pair{" 2 1", " 0.5 1e3 7"}})
+        EXPECT_EQ(read_pair(nodes(header, more), element).mesh.points.size(), 4u) << header;
+    for (const auto& [header, more] :
+         {std::pair{"", " 1"}, std::pair{" 0 0", " 1"}, std::pair{" 0 1", ""},
+          std::pair{" 0 1", " 1 1"}, std::pair{" 1 1", " 1"}, std::pair{" 1 0", ""}})
+        EXPECT_THAT(refusal_of(nodes(header, more), element),
+                    AllOf(StartsWith("liver.node:2: expected an index, 3 coordinates, "),
+                          HasSubstr(" columns")))
+            << header;
+    EXPECT_EQ(refusal_of(nodes(" 3 1", ""), element),
+              "liver.node:2: expected an index, 3 coordinates, 3 attributes and 1 markers, as the "
+              "first line has it, found 4 columns");
+    EXPECT_EQ(refusal_of(nodes(" 999999999999 0", ""), element),
+              "liver.node:1: expected the number of attributes, found '999999999999', which is out "
+              "of range: 0 to 4294967295 are allowed");
+    EXPECT_EQ(refusal_of(nodes(" 0 2", ""), element),
+              "liver.node:1: the number of boundary markers is 2; it must be 0 or 1");
+}
+
 TEST(TetgenReader, RefusesEveryFileThatIsCutShort) {
     // Up to the last number; then only a comment follows.
     for (std::size_t size = 0; size + 1 < node_file.find("\n#"); ++size)

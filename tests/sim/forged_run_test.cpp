@@ -42,7 +42,7 @@ class ForgedRun : public testing::Test {
         simulation.start();
         while (simulation.num_steps() < num_steps) simulation.step();
         ASSERT_GE(simulation.ledger().edits().size(), 2u);
-        writer.take_checkpoint(simulation);
+        writer.take_checkpoint(simulation, CheckpointKind::of_a_stop);
         for (const auto& entry : fs::directory_iterator(out_ / "checkpoints"))
             checkpoint_ = entry.path();
         good_ = io::read_checked_file(checkpoint_);

@@ -36,7 +36,7 @@ void run_to(const Scenario& scenario, const fs::path& folder, std::uint64_t stop
     simulation.add_observer(writer);
     simulation.start();
     while (simulation.num_steps() < stop) simulation.step();
-    writer.take_checkpoint(simulation);
+    writer.take_checkpoint(simulation, CheckpointKind::of_a_stop);
 }
 
 /// Goes on to the end; returns what it has at the end.
@@ -241,22 +241,21 @@ TEST(ResumedRun, EqualsOneNeverStoppedWithoutFrames) {
 
 class Resume : public testing::Test {
   protected:
-    /// Leaves three checkpoints in turn, of which two stay: after steps 5 and 8.
+    /// Leaves after step 10, with the last two of several checkpoints.
     void stop() {
         Simulation simulation(scenario_);
         RunWriter writer(simulation, folder_ / "out");
         simulation.add_observer(writer);
         simulation.start();
-        while (simulation.num_steps() < 10) {
-            simulation.step();
-            if (simulation.num_steps() == 2 || simulation.num_steps() == 5 ||
-                simulation.num_steps() == 8)
-                writer.take_checkpoint(simulation);
-        }
+        while (simulation.num_steps() < 10) simulation.step();
     }
-    fs::path checkpoint(int step) {
-        return folder_ /
-               ("out/checkpoints/step_00000000000" + std::to_string(step) + ".checkpoint");
+    /// In the order of their steps.
+    std::vector<fs::path> checkpoints() {
+        std::vector<fs::path> found;
+        for (const auto& entry : fs::directory_iterator(folder_ / "out/checkpoints"))
+            found.push_back(entry.path());
+        std::sort(found.begin(), found.end());
+        return found;
     }
     std::string error_of(const std::function<void()>& function) {
         try {
@@ -267,7 +266,8 @@ class Resume : public testing::Test {
         return "no error";
     }
 
-    const std::string text_ = soft_cube + splitting_blade + output + "checkpoint_interval = 0\n" +
+    const std::string text_ = soft_cube + splitting_blade + output +
+                              "checkpoint_interval = 0.007\n" +
                               dynamics(0.05, "gravity = [0, 0, -9.81]\n");
     RunFolder folder_;
     Scenario scenario_ = folder_.scenario(text_);
@@ -275,18 +275,23 @@ class Resume : public testing::Test {
 
 TEST_F(Resume, KeepsTheLastTwoCheckpointsWhichAreTheSameForTheSameRun) {
     stop();
-    EXPECT_EQ(support::count_entries(folder_ / "out/checkpoints"), 2u);
-    const std::string five = read_text(checkpoint(5)), eight = read_text(checkpoint(8));
+    const auto kept = checkpoints();
+    ASSERT_EQ(kept.size(), 2u);
+    EXPECT_FALSE(kept[0].filename().string().ends_with("_000000000000.checkpoint"));
+    const std::string before = read_text(kept[0]), last = read_text(kept[1]);
     stop();
-    EXPECT_TRUE(read_text(checkpoint(5)) == five);
-    EXPECT_TRUE(read_text(checkpoint(8)) == eight);
+    EXPECT_EQ(checkpoints(), kept);
+    EXPECT_TRUE(read_text(kept[0]) == before);
+    EXPECT_TRUE(read_text(kept[1]) == last);
 }
 
 TEST_F(Resume, TakesTheCheckpointBeforeADamagedOne) {
     run(scenario_, folder_ / "whole");
     const auto whole = files_of(folder_ / "whole");
     stop();
-    const std::string good = read_text(checkpoint(8));
+    const auto kept = checkpoints();
+    ASSERT_EQ(kept.size(), 2u);
+    const std::string good = read_text(kept[1]);
     std::vector<std::string> damages{"", good.substr(0, good.size() / 2),
                                      good.substr(0, good.size() - 1)};
     test::Random random(7);
@@ -297,19 +302,89 @@ TEST_F(Resume, TakesTheCheckpointBeforeADamagedOne) {
     for (std::size_t i = 0; i < damages.size(); ++i) {
         SCOPED_TRACE(i);
         stop();
-        io::write_file(checkpoint(8), damages[i]);
+        io::write_file(kept[1], damages[i]);
         std::vector<std::string> warnings;
         resume(scenario_, folder_ / "out", &warnings);
         ASSERT_EQ(warnings.size(), 1u);
-        EXPECT_EQ(warnings[0].find(checkpoint(8).string() + ": "), 0u) << warnings[0];
+        EXPECT_EQ(warnings[0].find(kept[1].string() + ": "), 0u) << warnings[0];
         EXPECT_NE(warnings[0].find("trying the checkpoint before it"), std::string::npos);
         expect_same(files_of(folder_ / "out"), whole);
     }
     stop();
-    io::write_file(checkpoint(8), "");
-    io::write_file(checkpoint(5), good.substr(1));
+    io::write_file(kept[1], "");
+    io::write_file(kept[0], good.substr(1));
     EXPECT_NE(error_of([&] { resume(scenario_, folder_ / "out"); }).find("no whole checkpoint"),
               std::string::npos);
+}
+
+TEST_F(Resume, RemovesDamagedCheckpointsThatItSkipsAndNeverAWholeOneForThem) {
+    stop();
+    const auto kept = checkpoints();
+    ASSERT_EQ(kept.size(), 2u);
+    const auto add_strays = [&] {
+        for (const char* name : {"step_999999999999.checkpoint", "stop_999999999999.checkpoint"})
+            io::write_file(folder_ / "out/checkpoints" / name, "");
+    };
+    add_strays();
+    const auto not_ours = folder_ / "out/checkpoints/step_x.checkpoint";
+    io::write_file(not_ours, "");
+    const std::string good = read_text(kept[0]);
+    io::write_file(kept[1], good.substr(1));
+    io::OutputFolder ours(folder_ / "out");
+    std::vector<std::string> warnings;
+    const Checkpoint checkpoint = Checkpoint::newest(folder_ / "out", warnings);
+    ASSERT_EQ(warnings.size(), 3u);
+    for (const auto& warning : warnings)
+        EXPECT_TRUE(warning.ends_with("; if the run goes on from there, this one is removed"));
+    EXPECT_EQ(checkpoints().size(), 5u);  // nothing is changed yet
+    Simulation simulation(scenario_);
+    checkpoint.restore(simulation);
+    RunWriter writer(simulation, std::move(ours), checkpoint.written());
+    EXPECT_EQ(checkpoints(), (std::vector{kept[0], not_ours}));
+    simulation.add_observer(writer);
+    simulation.step();
+    add_strays();
+    writer.take_checkpoint(simulation, CheckpointKind::regular);
+    EXPECT_EQ(checkpoints().size(), 3u);
+    EXPECT_TRUE(read_text(kept[0]) == good);
+}
+
+TEST_F(Resume, LeavesTheCheckpointsOfARunThatNoSignalStopped) {
+    run(scenario_, folder_ / "whole");
+    const auto whole = files_of(folder_ / "whole");
+    Simulation counted(scenario_);
+    run(counted);
+    const auto num_regular = [&] {
+        const auto all = checkpoints();
+        return std::count_if(all.begin(), all.end(), [](const fs::path& path) {
+            return path.filename().string().starts_with("step_");
+        });
+    };
+    // At every step, also in the last intervals, and right after a regular one.
+    for (std::uint64_t step = 0; step < counted.num_steps(); ++step) {
+        SCOPED_TRACE(step);
+        run_to(scenario_, folder_ / "out", step);
+        const auto regular = num_regular();
+        EXPECT_GE(regular, 1);
+        EXPECT_LE(checkpoints().size(), 3u);
+        // Stopped once more, before it has gone on and one step later.
+        for (int steps = 0; steps < 2; ++steps) {
+            io::OutputFolder ours(folder_ / "out");
+            std::vector<std::string> warnings;
+            const Checkpoint checkpoint = Checkpoint::newest(folder_ / "out", warnings);
+            Simulation simulation(scenario_);
+            checkpoint.restore(simulation);
+            ASSERT_EQ(simulation.num_steps(), step);
+            RunWriter writer(simulation, std::move(ours), checkpoint.written());
+            simulation.add_observer(writer);
+            for (int i = 0; i < steps; ++i) simulation.step();
+            if (!simulation.is_finished())
+                writer.take_checkpoint(simulation, CheckpointKind::of_a_stop);
+            EXPECT_GE(num_regular(), regular);
+        }
+        resume(scenario_, folder_ / "out");
+        expect_same(files_of(folder_ / "out"), whole);
+    }
 }
 
 TEST_F(Resume, RefusesAnotherScenarioAndNamesWhatDiffers) {

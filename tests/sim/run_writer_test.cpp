@@ -394,6 +394,15 @@ TEST(Expectations, AreHeldAgainstTheEndOfTheRun) {
     EXPECT_EQ(failures("time = { max = 0 }\nelements = { min = 163 }").size(), 2u);
 }
 
+// Names in files may be of any encoding, and warnings quote them.
+TEST(Summary, IsJsonWhateverItsTextsAre) {
+    const RunFolder folder;
+    Scenario scenario = folder.scenario(soft_cube + dynamics(0.01));
+    scenario.title = "a \xff";
+    run(scenario, folder / "out");
+    EXPECT_EQ(json::parse(read_text(folder / "out/summary.json")).at("title"), "a \uFFFD");
+}
+
 // So that what the scenario reader lets through is there at the end of the run.
 TEST(Expectations, CanNameExactlyTheQuantitiesOfTheSummary) {
     const Simulation simulation(scenario_of(soft_cube + dynamics(0.2)));

@@ -297,5 +297,17 @@ TEST(ScenarioReader, WarnsWhereHybridSpringsAreOnShakyGround) {
               std::string::npos);
 }
 
+TEST(ScenarioReader, RefusesAFileNameThatCannotNameFilesOfARun) {
+    EXPECT_EQ(ScenarioFile(minimal + "unknown = 1\n",
+                           "sc\xff"
+                           "en.toml")
+                  .errors()[0],
+              "sc\xff"
+              "en.toml: 'sc?en' cannot name the files of a run: rename it, in UTF-8 and without "
+              "slashes and control characters");
+    EXPECT_EQ(ScenarioFile(minimal, "sc\n.toml").errors().size(), 1u);
+    EXPECT_EQ(ScenarioFile(minimal, "Münze & Co.toml").errors(), Lines{});
+}
+
 }  // namespace
 }  // namespace incise::sim

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "app/stop_signals.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstddef>
+
+#include "app/messages.h"
+
+namespace incise::app {
+
+namespace {
+
+// Handlers have no other way to know.
+volatile std::sig_atomic_t noted_signal = 0;
+std::string last_words;
+
+constexpr int stop_signals[] = {SIGINT, SIGTERM};
+
+void handle_by(void (*handler)(int)) {
+    for (const int signal : stop_signals) std::signal(signal, handler);
+}
+
+/// With calls only that a handler may make.
+void end(int signal) {
+    const auto written = ::write(STDERR_FILENO, last_words.data(), last_words.size());
+    static_cast<void>(written);
+    ::_exit(128 + signal);
+}
+
+}  // namespace
+
+StopSignals::StopSignals(const std::string& farewell) {
+    noted_signal = 0;
+    last_words = prefixed("incise: ", farewell) + '\n';
+    handle_by(end);
+}
+
+StopSignals::~StopSignals() { handle_by(SIG_DFL); }
+
+void StopSignals::note_only() const {
+    handle_by([](int signal) { noted_signal = signal; });
+}
+
+int StopSignals::noted() const { return noted_signal; }
+
+}  // namespace incise::app
