@@ -29,29 +29,33 @@ struct StepRate {
     double step = 0.0;           ///< forces and integration
     double single_forces = 0.0;  ///< both in single precision
     double single_step = 0.0;
-    std::optional<double> reference;  ///< forces by the plain formulas, one thread
+    std::optional<double> reference;        ///< forces by the plain formulas, one thread
+    std::optional<double> reference_ratio;  ///< a step with those over a step
     double steps_per_second = 0.0;
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
     double gigaflops = 0.0;             ///< of the forces
     double gigabytes_per_second = 0.0;  ///< that the elements' own data take, of the forces
 };
 
-/// An edit with the physics following, microseconds an element that it crosses or removes.
+/// An edit with the search for what it takes, and body and boxes following: microseconds of one
+/// thread for each item, the best of some passes through bodies that are new.
 struct EditRate {
-    std::string_view kind;     ///< "split" or "remove"
+    std::string_view kind;     ///< split, separate, carve; or remove, where nothing is searched for
+    std::string_view item;     ///< element crossed, face opened, element removed
     std::size_t elements = 0;  ///< of the body
-    std::size_t items = 0;     ///< crossed or removed
+    std::size_t items = 0;
     double microseconds = 0.0;
 };
 
-/// One evaluation of forces of a body, of what is left when each of its elements has been removed
-/// with a chance of one half, and of a body built anew of just that; on one thread, ns per element
-/// that is there. The last two differ by what the holes cost; both have more nodes an element than
-/// the first, as elements that share no face any more share no node.
-struct HalvedRate {
-    std::size_t elements = 0, elements_left = 0;
-    std::size_t nodes = 0, nodes_left = 0;
-    double forces = 0.0, forces_left = 0.0, forces_built_anew = 0.0;
+/// One evaluation of forces of a body before edits, after them, and of a body built anew as it is
+/// then; on one thread, ns per element that is there. The last two differ by what the edits have
+/// left of disorder. Where elements are removed at random there are more nodes to each: those that
+/// share no face any more share no node.
+struct EditedRate {
+    std::string_view edits;  ///< "half removed": each element with a chance of one half; "split"
+    std::size_t elements_before = 0, elements = 0;
+    std::size_t nodes_before = 0, nodes = 0;
+    double forces_before = 0.0, forces = 0.0, forces_built_anew = 0.0;
 };
 
 struct Throughput {
@@ -59,7 +63,7 @@ struct Throughput {
     std::string_view tissue;  ///< the stiffness of the bodies; cubes of 10 cm
     std::vector<StepRate> steps;
     std::vector<EditRate> edits;
-    std::vector<HalvedRate> halved;
+    std::vector<EditedRate> edited;
 };
 
 /// What to measure; numbers of elements are met approximately.

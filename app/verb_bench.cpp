@@ -36,27 +36,32 @@ ordered_json as_json(const Throughput& throughput) {
                             {"single_forces_ns_per_element", rate.single_forces},
                             {"single_step_ns_per_element", rate.single_step},
                             {"reference_ns_per_element", nullptr},
+                            {"reference_step_over_step", nullptr},
+                            {"microseconds_per_step", 1e6 / rate.steps_per_second},
                             {"steps_per_second", rate.steps_per_second},
                             {"real_time_factor", rate.real_time_factor},
                             {"gflops", rate.gigaflops},
                             {"gbytes_per_second", rate.gigabytes_per_second}};
         if (rate.reference) row["reference_ns_per_element"] = *rate.reference;
+        if (rate.reference_ratio) row["reference_step_over_step"] = *rate.reference_ratio;
         json["steps"].push_back(std::move(row));
     }
     json["edits"] = ordered_json::array();
     for (const EditRate& rate : throughput.edits)
         json["edits"].push_back({{"kind", rate.kind},
+                                 {"item", rate.item},
                                  {"elements", rate.elements},
                                  {"items", rate.items},
                                  {"microseconds_per_item", rate.microseconds}});
-    json["halved"] = ordered_json::array();
-    for (const HalvedRate& rate : throughput.halved)
-        json["halved"].push_back({{"elements", rate.elements},
-                                  {"elements_left", rate.elements_left},
+    json["edited"] = ordered_json::array();
+    for (const EditedRate& rate : throughput.edited)
+        json["edited"].push_back({{"edits", rate.edits},
+                                  {"elements_before", rate.elements_before},
+                                  {"elements", rate.elements},
+                                  {"nodes_before", rate.nodes_before},
                                   {"nodes", rate.nodes},
-                                  {"nodes_left", rate.nodes_left},
+                                  {"forces_before_ns_per_element", rate.forces_before},
                                   {"forces_ns_per_element", rate.forces},
-                                  {"forces_left_ns_per_element", rate.forces_left},
                                   {"forces_built_anew_ns_per_element", rate.forces_built_anew}});
     return json;
 }
@@ -70,31 +75,38 @@ void print_text(const Throughput& throughput) {
         machine.gigaflops, machine.gigabytes_per_second);
     std::printf("bodies      cubes of 10 cm with the stiffness of %s\n\n",
                 std::string(throughput.tissue).c_str());
-    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s | %9s %9s\n", "law", "elements",
-                "threads", "forces", "step", "reference", "steps/s", "real time", "GFLOP/s", "GB/s",
-                "forces in", "step in");
-    std::printf("%-22s %8s %7s | %9s %9s %11s | %8s %9s | %7s %6s | %9s %9s\n", "", "", "",
-                "ns/elem.", "ns/elem.", "forces, ns", "", "factor", "", "", "single", "single");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s | %9s %8s %9s | %7s %6s | %9s %9s\n", "law",
+                "elements", "threads", "forces", "step", "reference", "step", "step", "steps/s",
+                "real time", "GFLOP/s", "GB/s", "forces in", "step in");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s | %9s %8s %9s | %7s %6s | %9s %9s\n", "", "", "",
+                "ns/elem.", "ns/elem.", "forces, ns", "over", "us", "", "factor", "", "", "single",
+                "single");
+    const auto text = [](const std::optional<double>& value) {
+        char digits[32] = "";
+        if (value) std::snprintf(digits, sizeof digits, "%.1f", *value);
+        return std::string(digits);
+    };
     for (const StepRate& rate : throughput.steps) {
-        char reference[16] = "";
-        if (rate.reference) std::snprintf(reference, sizeof reference, "%.1f", *rate.reference);
         const auto name = std::string(rate.law.empty() ? rate.method : rate.law);
-        std::printf("%-22s %8zu %7d | %9.2f %9.2f %11s | %8.0f %9.3g | %7.1f %6.1f | %9.2f %9.2f\n",
-                    name.c_str(), rate.elements, rate.num_threads, rate.forces, rate.step,
-                    reference, rate.steps_per_second, rate.real_time_factor, rate.gigaflops,
-                    rate.gigabytes_per_second, rate.single_forces, rate.single_step);
+        std::printf(
+            "%-22s %8zu %7d | %9.2f %9.2f %11s %7s | %9.0f %8.0f %9.3g | %7.1f %6.1f | %9.2f "
+            "%9.2f\n",
+            name.c_str(), rate.elements, rate.num_threads, rate.forces, rate.step,
+            text(rate.reference).c_str(), text(rate.reference_ratio).c_str(),
+            1e6 / rate.steps_per_second, rate.steps_per_second, rate.real_time_factor,
+            rate.gigaflops, rate.gigabytes_per_second, rate.single_forces, rate.single_step);
     }
-    std::printf("\n%-22s %8s %7s | %9s\n", "edit", "elements", "items", "us/item");
+    std::printf("\n%-10s %-16s %8s %7s | %9s\n", "edit", "item", "elements", "items", "us/item");
     for (const EditRate& rate : throughput.edits)
-        std::printf("%-22s %8zu %7zu | %9.2f\n", std::string(rate.kind).c_str(), rate.elements,
-                    rate.items, rate.microseconds);
-    std::printf("\n%-22s %8s %7s | %9s %9s %11s | %8s %8s\n", "a random half removed", "elements",
-                "left", "forces", "of these", "built anew", "nodes", "left");
-    std::printf("%-22s %8s %7s | %9s %9s %11s |\n", "", "", "", "ns/elem.", "ns/elem.", "ns/elem.");
-    for (const HalvedRate& rate : throughput.halved)
-        std::printf("%-22s %8zu %7zu | %9.2f %9.2f %11.2f | %8zu %8zu\n", "", rate.elements,
-                    rate.elements_left, rate.forces, rate.forces_left, rate.forces_built_anew,
-                    rate.nodes, rate.nodes_left);
+        std::printf("%-10s %-16s %8zu %7zu | %9.2f\n", std::string(rate.kind).c_str(),
+                    std::string(rate.item).c_str(), rate.elements, rate.items, rate.microseconds);
+    std::printf("\n%-13s %8s %8s | %8s %8s | %13s %9s %11s\n", "forces after", "elements", "then",
+                "nodes", "then", "before, ns/e.", "then", "built anew");
+    for (const EditedRate& rate : throughput.edited)
+        std::printf("%-13s %8zu %8zu | %8zu %8zu | %13.2f %9.2f %11.2f\n",
+                    std::string(rate.edits).c_str(), rate.elements_before, rate.elements,
+                    rate.nodes_before, rate.nodes, rate.forces_before, rate.forces,
+                    rate.forces_built_anew);
 }
 
 }  // namespace

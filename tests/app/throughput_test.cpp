@@ -40,18 +40,23 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     }
     EXPECT_EQ(throughput.steps.back().method, "hybmss");
     EXPECT_EQ(throughput.steps.back().elements, 64u);
-    ASSERT_EQ(throughput.edits.size(), 2u);
-    EXPECT_GT(throughput.edits[0].items, 50u);
-    EXPECT_EQ(throughput.edits[1].items, 1000u);
-    ASSERT_EQ(throughput.halved.size(), 1u);
-    const HalvedRate& halved = throughput.halved[0];
-    EXPECT_NEAR(static_cast<double>(halved.elements_left),
-                0.5 * static_cast<double>(halved.elements),
-                0.1 * static_cast<double>(halved.elements));
-    EXPECT_GT(halved.forces, 0.0);
-    EXPECT_GT(halved.forces_left, 0.0);
-    EXPECT_GT(halved.forces_built_anew, 0.0);
-    EXPECT_GT(halved.nodes_left, halved.nodes);  // fewer elements share them
+    ASSERT_EQ(throughput.edits.size(), 4u);
+    EXPECT_EQ(throughput.edits[0].kind, "split");
+    EXPECT_EQ(throughput.edits[3].kind, "remove");
+    EXPECT_EQ(throughput.edits[3].items, 1000u);
+    for (const EditRate& rate : throughput.edits) EXPECT_GT(rate.items, 20u) << rate.kind;
+    ASSERT_EQ(throughput.edited.size(), 2u);
+    EXPECT_GT(throughput.edited[0].elements, throughput.edited[0].elements_before);
+    const EditedRate& halved = throughput.edited[1];
+    EXPECT_NEAR(static_cast<double>(halved.elements),
+                0.5 * static_cast<double>(halved.elements_before),
+                0.1 * static_cast<double>(halved.elements_before));
+    EXPECT_GT(halved.nodes, halved.nodes_before);  // fewer elements share them
+    for (const EditedRate& rate : throughput.edited) {
+        EXPECT_GT(rate.forces_before, 0.0);
+        EXPECT_GT(rate.forces, 0.0);
+        EXPECT_GT(rate.forces_built_anew, 0.0);
+    }
 }
 
 }  // namespace
