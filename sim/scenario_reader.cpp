@@ -38,6 +38,8 @@ constexpr double max_box_elements = 1e8;
 constexpr int most_load_steps = 1000000;
 /// More frames than this are more likely a slip than a wish.
 constexpr double many_frames = 1e5;
+/// More would fill any disk: the names of so many files alone take a gigabyte.
+constexpr double max_frames = 1e7;
 
 BoxMeshSpec read_box_mesh(const TableReader& box) {
     BoxMeshSpec spec;
@@ -116,6 +118,20 @@ void check_precision(const TableReader& dynamics, const DynamicsSpec& spec,
                                std::to_string(i) +
                                "], which has forces in double precision only: leave it "
                                "out, or use method = \"heml\"");
+}
+
+/// @param key  to blame
+void check_number_of_frames(const TableReader& table, std::string_view key, double interval,
+                            double end_time) {
+    const double frames = interval > 0.0 ? std::floor(end_time / interval) : 0.0;
+    if (frames > max_frames)
+        table.error(
+            key, "an interval of " + format_number(interval) + " s makes " + format_number(frames) +
+                     " frames of a run of " + format_number(end_time) + " s, more than the " +
+                     format_number(max_frames) + " allowed: use a longer one, or 0 for no frames");
+    else if (frames > many_frames)
+        table.warning(key, "the output interval of " + format_number(interval) + " s makes " +
+                               format_number(frames) + " frames");
 }
 
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
@@ -215,18 +231,16 @@ OutputSpec read_output(const TableReader& root, double end_time) {
     };
     const auto output = root.table("output", {output_keys});
     if (!output) {
+        check_number_of_frames(root, "output", spec.interval, end_time);
         all_fields();
         return spec;
     }
     spec.interval = output->number("interval", spec.interval, limits::non_negative);
+    check_number_of_frames(*output, "interval", spec.interval, end_time);
     if (end_time > 0.0 && spec.interval > end_time)
         output->warning("interval", "the output interval of " + format_number(spec.interval) +
                                         " s is longer than the run of " + format_number(end_time) +
                                         " s: only the first and last state are written");
-    if (spec.interval > 0.0 && end_time / spec.interval > many_frames)
-        output->warning("interval",
-                        "the output interval of " + format_number(spec.interval) + " s makes " +
-                            format_number(std::floor(end_time / spec.interval)) + " frames");
     if (output->has("fields"))
         for (const auto index : output->choices("fields", {field_names}))
             spec.fields.push_back(static_cast<Field>(index));
