@@ -108,12 +108,12 @@ void read_motion(const TableReader& constraint, double end_time, ConstraintSpec&
 
 }  // namespace
 
-std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time) {
+std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
+                                             std::vector<std::string>& names) {
     std::vector<ConstraintSpec> specs;
-    std::vector<std::string> names;
     for (const auto& constraint : root.tables("constraint", {constraint_keys})) {
         ConstraintSpec spec;
-        spec.name = read_name(constraint, "constraint_" + std::to_string(specs.size() + 1), names);
+        spec.name = read_name(constraint, "constraint_" + std::to_string(names.size() + 1), names);
         spec.place = constraint.place_text("where");
         constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
         spec.where = read_selection(constraint);
@@ -123,7 +123,7 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
         if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
         if (!constraint.has("fix") && !moves)
             constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
-        specs.push_back(std::move(spec));
+        if (constraint.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }
@@ -133,7 +133,7 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
     std::vector<std::string> names;
     for (const auto& load : root.tables("load", {load_keys})) {
         LoadSpec spec;
-        spec.name = read_name(load, "load_" + std::to_string(specs.size() + 1), names);
+        spec.name = read_name(load, "load_" + std::to_string(names.size() + 1), names);
         spec.place = load.place_text("where");
         spec.where = read_selection(load);
         const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
@@ -146,7 +146,7 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
                                                  row.require("value", "as in value = 1.0");
                                                  return row.number("value", 1.0);
                                              });
-        specs.push_back(std::move(spec));
+        if (load.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }

@@ -213,6 +213,7 @@ constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
     spec.place = material.place_text();
+    spec.regions_place = material.place_text("regions");
     if (material.has("regions")) {
         const auto regions = material.integers("regions", region_limits);
         spec.regions.emplace(regions.begin(), regions.end());

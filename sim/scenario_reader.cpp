@@ -143,11 +143,15 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root, scenario.materials);
     const double end_time = scenario.dynamics.end_time;
-    scenario.constraints = read_constraints(root, end_time);
+    std::vector<std::string> held;
+    scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
     scenario.tools = read_tools(root, scenario.folder, end_time);
     scenario.output = read_output(root, end_time);
-    scenario.expect = read_expectations(root, scenario.constraints);
+    scenario.expect = read_expectations(root, held);
+    if (!root.is_sound("mesh")) scenario.mesh = {};
+    if (!root.is_sound("material")) scenario.materials.clear();
+    if (!root.is_sound("dynamics")) scenario.dynamics = {};
     return scenario;
 }
 
@@ -182,6 +186,8 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     } else if (const auto box = mesh->table("box", {mesh_box_keys}); source == "box" && box) {
         spec.source = read_box_mesh(*box);
     }
+    spec.place = mesh->place_text(mesh->has("file") ? "file" : "box");
+    spec.scale_place = mesh->place_text("scale");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
     return spec;
@@ -193,6 +199,8 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     const auto dynamics = root.table("dynamics", {dynamics_keys});
     if (!dynamics) return spec;
     dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
+    spec.end_time_place = dynamics->place_text("end_time");
+    spec.time_step_place = dynamics->place_text("time_step");
     spec.end_time = dynamics->number("end_time", spec.end_time, limits::positive);
     if (dynamics->is_text("time_step")) {
         if (const auto text = dynamics->text("time_step"); text != "auto")
@@ -254,11 +262,9 @@ OutputSpec read_output(const TableReader& root, double end_time) {
 }
 
 std::vector<Expectation> read_expectations(const TableReader& root,
-                                           std::span<const ConstraintSpec> constraints) {
+                                           const std::vector<std::string>& constraints) {
     std::vector<Expectation> expectations;
-    std::vector<std::string> held;
-    for (const ConstraintSpec& constraint : constraints) held.push_back(constraint.name);
-    const std::vector<std::string> quantities = all_quantities(held);
+    const std::vector<std::string> quantities = all_quantities(constraints);
     const std::vector<std::string_view> names(quantities.begin(), quantities.end());
     const auto expect = root.table("expect", {names});
     if (!expect) return expectations;

@@ -79,6 +79,10 @@ class TableReader {
     /// The same for messages: "FILE:line:column".
     std::string place_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
+    /// Whether nothing has been reported of the key, or of the table without key.
+    bool is_sound(std::string_view key = {}) const {
+        return !diagnostics_.has_errors_at(path_of(key));
+    }
 
     /// Reports "key 'PATH': TEXT" at the key, or at the table without key.
     void error(std::string_view key, const std::string& text) const;

@@ -90,6 +90,7 @@ Cut read_cut(const TableReader& tool, const std::filesystem::path& folder) {
         plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
         cut.along = PlaneSpec{plane->vector("point"), plane->direction("normal", Vec3::UnitZ())};
     }
+    cut.place = tool.place_text("surface");
     if (along == "surface")
         cut.along = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
     cut.scale = tool.number("scale", 1.0, limits::positive);
@@ -156,7 +157,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
         }
         check_path(tool, spec, end_time);
-        specs.push_back(std::move(spec));
+        if (tool.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }
