@@ -1,7 +1,6 @@
 // The [[constraint]] and [[load]] sections, and the selections in them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
-#include <limits>
 
 #include "sim/scenario_sections.h"
 
@@ -55,8 +54,7 @@ Selection read_selection(const TableReader& owner) {
         selection.half_space = read_half_space(*half_space);
     if (where->has("nodes")) selection.nodes = where->integers("nodes", {.low = 0});
     if (where->has("region")) {
-        const auto regions = where->integers(
-            "region", {std::numeric_limits<int>::min(), std::numeric_limits<int>::max()});
+        const auto regions = where->integers("region", region_limits, Repeats::refused);
         selection.regions.emplace(regions.begin(), regions.end());
     }
     selection.surface = where->flag("surface", false);
@@ -136,11 +134,11 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
         spec.name = read_name(load, "load_" + std::to_string(names.size() + 1), names);
         spec.place = load.place_text("where");
         spec.where = read_selection(load);
-        const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
-        if (kind == "nodal_force") spec.load = NodalForce{load.vector("nodal_force")};
-        if (kind == "traction") spec.load = Traction{load.vector("traction")};
-        if (kind == "pressure") spec.load = Pressure{load.number("pressure", 0.0)};
-        if (kind == "body_force") spec.load = BodyForce{load.vector("body_force")};
+        load.one_of({"nodal_force", "traction", "pressure", "body_force"});
+        if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};
+        if (load.has("traction")) spec.load = Traction{load.vector("traction")};
+        if (load.has("pressure")) spec.load = Pressure{load.number("pressure", 0.0)};
+        if (load.has("body_force")) spec.load = BodyForce{load.vector("body_force")};
         spec.factor = read_time_keys<double>(load, "factor", {factor_keys}, end_time,
                                              [](const TableReader& row) {
                                                  row.require("value", "as in value = 1.0");

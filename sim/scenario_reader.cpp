@@ -180,12 +180,9 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     root.require("mesh", "add a section [mesh] with file = \"...\" or box = { ... }");
     const auto mesh = root.table("mesh", {mesh_keys});
     if (!mesh) return spec;
-    const auto source = mesh->one_of({"file", "box"});
-    if (source == "file") {
-        spec.source = read_file_name(*mesh, "file", folder, "mesh file");
-    } else if (const auto box = mesh->table("box", {mesh_box_keys}); source == "box" && box) {
-        spec.source = read_box_mesh(*box);
-    }
+    mesh->one_of({"file", "box"});
+    if (const auto box = mesh->table("box", {mesh_box_keys})) spec.source = read_box_mesh(*box);
+    if (mesh->has("file")) spec.source = read_file_name(*mesh, "file", folder, "mesh file");
     spec.place = mesh->place_text(mesh->has("file") ? "file" : "box");
     spec.scale_place = mesh->place_text("scale");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,9 @@
 #include "sim/table_reader.h"
 
 namespace incise::sim {
+
+inline constexpr IntegerLimits region_limits{std::numeric_limits<int>::min(),
+                                             std::numeric_limits<int>::max()};
 
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
 /// @param mesh  that is made of them

@@ -127,6 +127,84 @@ TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {
               "small to compute with: use smaller units of length");
 }
 
+TEST(AllProblems, OfKeysThatExcludeEachOtherHideNoneOfTheirValues) {
+    EXPECT_EQ(places_of(ScenarioFile("[mesh]\nfile = 'none.vtu'\nbox = { size = [1, 0, 1], cells = "
+                                     "[1, 1, 1.5] }\n" +
+                                     minimal_rest)
+                            .errors()),
+              (Lines{"1:1", "2:8", "3:16", "3:35"}));
+    EXPECT_EQ(
+        places_of(ScenarioFile(minimal + R"([[tool]]
+kind = "carver"
+shape = { sphere = { radius = -1 }, box = { size = [1, 0, 1] } }
+path = [{ time = 0, at = [0, 0, 0] }]
+[[tool]]
+kind = "cut"
+time = 0
+plane = { point = [0, 0, 0], normal = [0, 0, 0] }
+surface = "none.stl"
+[[load]]
+pressure = "a"
+traction = [1, 2]
+)")
+                      .errors()),
+        (Lines{"11:9", "11:31", "11:52", "13:1", "16:39", "17:11", "18:1", "19:12", "20:12"}));
+}
+
+TEST(AllProblems, OfBothKeysForFibresAreThoseOfEach) {
+    const auto errors = ScenarioFile(minimal_mesh + R"([[material]]
+law = "holzapfel-gasser-ogden"
+density = 1
+c1 = 1
+k1 = 1
+k2 = 1
+bulk_modulus = 1
+fibre = [0, 0, 0]
+fibre_array = "a"
+[dynamics]
+end_time = 1
+)")
+                            .errors();
+    EXPECT_EQ(places_of(errors), (Lines{"3:1", "10:9", "11:15"}));
+    EXPECT_EQ(errors[0],
+              "scene.toml:3:1: key 'material[0]': has fibre, fibre_array, but only one of fibre, "
+              "fibre_array is allowed");
+}
+
+TEST(AllProblems, OfRegionsAreThoseNamedTwice) {
+    const auto errors = [](const std::string& regions) {
+        return ScenarioFile(
+                   minimal_mesh + "[[material]]\nregions = " + regions +
+                   "\npreset = 'fat'\n[dynamics]\nend_time = 1\n[[load]]\nwhere = { region = " +
+                   regions + " }\npressure = 1\n")
+            .errors();
+    };
+    EXPECT_EQ(errors("[0, 1]"), Lines{});
+    EXPECT_EQ(errors("[0, 0]"),
+              (Lines{"scene.toml:4:15: key 'material[0].regions[1]': 0 is there twice",
+                     "scene.toml:9:24: key 'load[0].where.region[1]': 0 is there twice"}));
+    EXPECT_EQ(places_of(errors("[1, 1, 'a']")), (Lines{"4:15", "4:18", "9:24", "9:27"}));
+}
+
+TEST(AllProblems, OfAMaterialsValuesHideNoneOfItsKeys) {
+    const auto errors = [](const std::string& young, const std::string& terms) {
+        return ScenarioFile(minimal_mesh + "[[material]]\nlaw = 'ogden'\ndensity = 1\nyoung = " +
+                            young + "\nshear_modulus = 1\nterms = " + terms +
+                            "\nfibre = [0, 0, 1]\nmethod = 'hybmss'\n[dynamics]\nend_time = 1\n")
+            .errors();
+    };
+    const auto keys = errors("1", "[{ mu = 5, alpha = 2 }]");
+    EXPECT_EQ(places_of(keys), (Lines{"3:1", "4:7", "9:9"}));
+    const auto all = errors("-1", "[]");
+    EXPECT_EQ(places_of(all), (Lines{"3:1", "4:7", "6:9", "8:9", "9:9"}));
+    EXPECT_EQ(all[0], keys[0]);
+    // Values that depend on the one at fault are not spoken of.
+    EXPECT_EQ(places_of(ScenarioFile(minimal_mesh + "[[material]]\ndensity = 1\nlame_mu = 'a'\n"
+                                                    "lame_lambda = -3\n[dynamics]\nend_time = 1\n")
+                            .errors()),
+              Lines{"5:11"});
+}
+
 TEST(AllProblems, OfAMaterialThatDoesNotSuitItsElementsHaveItsPlace) {
     EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\n[[material]]\nregions = 0\n"
                                                "method = 'hybmss'\ndensity = 1\nyoung = 1\n"
