@@ -61,6 +61,28 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
     return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
 }
 
+bool can_load(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        load_mesh(spec, materials, 1.0);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+/// The same at the scale of the scenario. Throws BodyError if the file is sound but for the array
+/// that the regions are to be taken from.
+io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        return load_mesh(spec, materials, spec.scale);
+    } catch (const InputError& error) {
+        MeshSpec usual = spec;
+        usual.region_array = io::ReadOptions::usual_region_array;
+        if (spec.region_array == usual.region_array || !can_load(usual, materials)) throw;
+        throw BodyError(spec.region_array_place, error.what());
+    }
+}
+
 /// Why a box is refused, whose cells are sound but for rounding.
 std::string what_is_wrong_with(const BoxMeshSpec& box, double scale) {
     const Vec3 size = scale * box.size, origin = scale * box.origin;
@@ -213,7 +235,7 @@ std::string list(const std::set<int>& regions) {
 }  // namespace
 
 SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
-    io::MeshFile file = load_mesh(spec, materials, spec.scale);
+    io::MeshFile file = load_mesh(spec, materials);
     const auto* path = std::get_if<std::filesystem::path>(&spec.source);
     const std::string prefix = path ? path->string() + ": " : "";
     try {

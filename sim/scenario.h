@@ -36,7 +36,8 @@ struct MeshSpec {
     std::variant<std::filesystem::path, BoxMeshSpec> source;
     double scale = 1.0;  ///< all coordinates of the source are multiplied by it
     std::string region_array = "region";
-    std::string place = {}, scale_place = {};  ///< for messages, of source and scale
+    /// For messages: those of the source and of the others.
+    std::string place = {}, scale_place = {}, region_array_place = {};
 };
 
 struct MaterialSpec {

@@ -125,10 +125,11 @@ void check_number_of_frames(const TableReader& table, std::string_view key, doub
                             double end_time) {
     const double frames = interval > 0.0 ? std::floor(end_time / interval) : 0.0;
     if (frames > max_frames)
-        table.error(
-            key, "an interval of " + format_number(interval) + " s makes " + format_number(frames) +
-                     " frames of a run of " + format_number(end_time) + " s, more than the " +
-                     format_number(max_frames) + " allowed: use a longer one, or 0 for no frames");
+        table.error(key, "an output interval of " + format_number(interval) + " s makes " +
+                             format_number(frames) + " frames of a run of " +
+                             format_number(end_time) + " s, more than the " +
+                             format_number(max_frames) +
+                             " allowed: use a longer one, or 0 for no frames");
     else if (frames > many_frames)
         table.warning(key, "the output interval of " + format_number(interval) + " s makes " +
                                format_number(frames) + " frames");
@@ -142,6 +143,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.mesh = read_mesh_spec(root, scenario.folder);
     scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root, scenario.materials);
+    const bool knows_dynamics = root.is_sound("dynamics");
     const double end_time = scenario.dynamics.end_time;
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
@@ -151,7 +153,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.expect = read_expectations(root, held);
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();
-    if (!root.is_sound("dynamics")) scenario.dynamics = {};
+    if (!knows_dynamics) scenario.dynamics = {};
     return scenario;
 }
 
@@ -185,6 +187,7 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     if (mesh->has("file")) spec.source = read_file_name(*mesh, "file", folder, "mesh file");
     spec.place = mesh->place_text(mesh->has("file") ? "file" : "box");
     spec.scale_place = mesh->place_text("scale");
+    spec.region_array_place = mesh->place_text("region_array");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
     return spec;
@@ -236,7 +239,7 @@ OutputSpec read_output(const TableReader& root, double end_time) {
     };
     const auto output = root.table("output", {output_keys});
     if (!output) {
-        check_number_of_frames(root, "output", spec.interval, end_time);
+        check_number_of_frames(root, "dynamics", spec.interval, end_time);
         all_fields();
         return spec;
     }

@@ -211,6 +211,20 @@ TEST_F(Command, ChecksEveryFileAndCountsProblems) {
               "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
 }
 
+TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
+    write("two.msh", mesh());
+    ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
+    const auto check = [&](const std::string& file) {
+        write("scene.toml", "[mesh]\nfile = \"" + file + "\"\nregion_array = \"nope\"\n" +
+                                scenario.substr(scenario.find("[[")));
+        return run("check scene.toml").err;
+    };
+    EXPECT_EQ(check("two.vtu").find("incise: scene.toml:3:16: two.vtu: has no cell array 'nope'"),
+              0u);
+    write("bad.vtu", "<VTKFile");
+    EXPECT_EQ(check("bad.vtu").find("incise: scene.toml:2:8: bad.vtu:"), 0u);
+}
+
 TEST_F(Command, ChecksTheMeshOfAScenario) {
     write("flat.msh", mesh("0 0 1"));
     write("scene.toml", "[mesh]\nfile = \"flat.msh\"\n" + scenario.substr(scenario.find("[[")));
