@@ -2,8 +2,10 @@
 #include "app/messages.h"
 
 #include <iostream>
+#include <new>
 #include <utility>
 
+#include "sim/body.h"
 #include "sim/scenario_reader.h"
 #include "topology/error.h"
 
@@ -30,9 +32,21 @@ std::string joined(std::span<const std::string> lines) {
     return text;
 }
 
+void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& errors,
+                       std::vector<std::string>& warnings) {
+    try {
+        const sim::BodyFindings body = sim::check_body(scenario);
+        errors.insert(errors.end(), body.errors.begin(), body.errors.end());
+        warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
+    } catch (const std::bad_alloc&) {
+        if (errors.empty()) throw;
+    }
+}
+
 sim::Scenario load_scenario(const std::filesystem::path& file,
                             std::span<const std::string> overrides) {
     auto report = sim::read_scenario(file, overrides);
+    if (!report.errors.empty()) add_body_findings(report.scenario, report.errors, report.warnings);
     for (const auto& warning : report.warnings) print_warning(warning);
     if (!report.errors.empty()) throw InputError(joined(report.errors));
     return std::move(report.scenario);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/scenario.h"
 
@@ -22,7 +23,13 @@ std::string joined(std::span<const std::string> lines);
 /// The text with `prefix` before each of its lines.
 std::string prefixed(std::string_view prefix, std::string_view text);
 
-/// The scenario, its warnings printed. Throws InputError with every problem, one a line.
+/// Appends what is at fault or odd with the body that the scenario describes. Memory that does not
+/// suffice for it is of interest only if there are no errors before it.
+void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& errors,
+                       std::vector<std::string>& warnings);
+
+/// The scenario, its warnings printed. If there are errors, throws InputError with them and those
+/// of the body that it describes, one a line.
 sim::Scenario load_scenario(const std::filesystem::path& file,
                             std::span<const std::string> overrides = {});
 

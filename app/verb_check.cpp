@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <iostream>
 #include <set>
-#include <sstream>
 
 #include "app/messages.h"
 #include "app/verbs.h"
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
-#include "sim/body_problems.h"
 #include "sim/scenario_reader.h"
-#include "sim/simulation.h"
 #include "topology/error.h"
 #include "topology/mesh.h"
 #include "topology/mesh_check.h"
@@ -49,38 +46,11 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
     return findings;
 }
 
-/// The scenario and, if it names one that is there, its mesh.
+/// The scenario and what it describes, as far as it can be read.
 Findings check_scenario(const std::filesystem::path& path) {
     auto [scenario, errors, warnings] = sim::read_scenario(path);
     Findings findings{std::move(errors), std::move(warnings), {}};
-    const auto* mesh = std::get_if<std::filesystem::path>(&scenario.mesh.source);
-    std::error_code ignored;  // the scenario's reader has told it
-    if (mesh != nullptr && std::filesystem::is_regular_file(*mesh, ignored)) {
-        const auto of_mesh = check_mesh(*mesh, scenario.mesh.region_array);
-        findings.errors.insert(findings.errors.end(), of_mesh.errors.begin(), of_mesh.errors.end());
-        findings.warnings.insert(findings.warnings.end(), of_mesh.warnings.begin(),
-                                 of_mesh.warnings.end());
-    }
-    if (findings.errors.empty()) {
-        // What only the body can tell: empty selections, regions without material, kinds of cells
-        // without a force law, too large a step.
-        try {
-            const sim::Simulation simulation(scenario);
-            const std::set<std::string> known(findings.warnings.begin(), findings.warnings.end());
-            for (const auto& warning : simulation.warnings()) {
-                // Those of the mesh's file are told already, with its name.
-                const bool is_of_file =
-                    mesh != nullptr && known.contains(mesh->string() + ": " + warning);
-                if (!is_of_file && !known.contains(warning))
-                    findings.warnings.push_back(path.string() + ": " + warning);
-            }
-        } catch (const sim::BodyError& error) {
-            std::istringstream lines(error.what());
-            for (std::string line; std::getline(lines, line);) findings.errors.push_back(line);
-        } catch (const std::runtime_error& error) {
-            findings.errors.push_back(path.string() + ": " + error.what());
-        }
-    }
+    add_body_findings(scenario, findings.errors, findings.warnings);
     findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +
                        count_of(scenario.materials.size(), "material") + ", " +
                        count_of(scenario.constraints.size(), "constraint") + ", " +

@@ -60,17 +60,13 @@ int num_threads(const RunOptions& options) {
 /// Its errors name the scenario.
 std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
                                        const std::filesystem::path& file) {
-    const auto named = [&](const std::exception& error) {
-        return prefixed(file.string() + ": ", error.what());
-    };
     try {
         return std::make_unique<sim::Simulation>(scenario);
-    } catch (const sim::BodyError&) {
+    } catch (const sim::BodyError& error) {
+        for (const std::string& warning : error.warnings) print_warning(warning);
         throw;
     } catch (const InputError& error) {
-        throw InputError(named(error));
-    } catch (const PhysicsError& error) {
-        throw PhysicsError(named(error));
+        throw InputError(prefixed(file.string() + ": ", error.what()));
     }
 }
 

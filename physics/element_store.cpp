@@ -87,26 +87,30 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
 }
 
 void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
+    const int region = mesh.region(e);
     const std::string name = "element " + std::to_string(mesh.label(e));
-    if (!table_.of_region.contains(mesh.region(e)))
-        throw InputError(name + " has region " + std::to_string(mesh.region(e)) +
-                         ", for which there is no material; add one, or one without regions");
-    const Material& material = table_.materials[table_.of_region.at(mesh.region(e))];
+    if (!table_.of_region.contains(region))
+        throw UnsuitableMaterial(
+            region, name + " has region " + std::to_string(region) +
+                        ", for which there is no material; add one, or one without regions");
+    const Material& material = table_.materials[table_.of_region.at(region)];
     const auto* hybrid = std::get_if<HybridSprings>(&material.method);
     const CellKind kind = mesh.kind(e),
                    wanted = hybrid ? CellKind::hexahedron : CellKind::tetrahedron;
     if (kind != wanted)
-        throw InputError(name + ", of region " + std::to_string(mesh.region(e)) + ", is a " +
-                         traits(kind).name + remedy(kind));
+        throw UnsuitableMaterial(region, name + ", of region " + std::to_string(region) +
+                                             ", is a " + traits(kind).name + remedy(kind));
     constexpr double rounding = 1e-12;
     if (material.has_fibres() && !(std::abs(fibre_of(e).norm() - 1.0) <= rounding))
-        throw InputError(name + ", of region " + std::to_string(mesh.region(e)) +
-                         ", has no direction of fibres of unit length, which its material needs");
+        throw UnsuitableMaterial(
+            region, name + ", of region " + std::to_string(region) +
+                        ", has no direction of fibres of unit length, which its material needs");
     if (!hybrid) return;
     std::array<Vec3, 8> corners;
     for (std::size_t k = 0; k < corners.size(); ++k)
         corners[k] = mesh.rest_position(mesh.corners(e)[k]);
-    if (const auto reason = why_no_cell(*hybrid, corners)) throw InputError(name + " " + *reason);
+    if (const auto reason = why_no_cell(*hybrid, corners))
+        throw UnsuitableMaterial(region, name + " " + *reason);
 }
 
 std::size_t ElementStore::block_index(ElementId e, int region) const {

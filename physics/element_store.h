@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "physics/element_block.h"
@@ -12,6 +13,7 @@
 #include "physics/precision.h"
 #include "physics/workers.h"
 #include "topology/change_set.h"
+#include "topology/error.h"
 #include "topology/mesh.h"
 
 namespace incise::physics {
@@ -28,14 +30,21 @@ struct MaterialTable {
     Precision precision = Precision::double_precision;
 };
 
+/// The material of a region has no forces for one of its elements.
+struct UnsuitableMaterial : InputError {
+    UnsuitableMaterial(int of_region, const std::string& text)
+        : InputError(text), region(of_region) {}
+    int region;
+};
+
 /// Elements whose ids share all but their lowest bits and that have the same material form a
 /// block. The division is a function of the ids alone: a body that has been edited is divided,
 /// and so summed, exactly as one built afresh from the same mesh.
 class ElementStore {
   public:
-    /// Throws InputError for a region without material, for a kind of element for which the
-    /// material has no force law, for an element without the fibres that its material has, and for
-    /// mass springs in single precision, which they have no forces in.
+    /// Throws UnsuitableMaterial for a region without material, for a kind of element for which the
+    /// material has no force law and for an element without the fibres that its material has;
+    /// InputError for mass springs in single precision, which they have no forces in.
     ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
 
     /// What elements keep by their ids follows an edit: parts of a divided element inherit its

@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "topology/error.h"
 
@@ -15,6 +17,37 @@ Vec3 Support::target(const Vec3& X, double time) const {
     if (!angle.is_empty()) x = point + Eigen::AngleAxisd(angle.at(time), axis) * (X - point);
     if (!displacement.is_empty()) x += displacement.at(time);
     return x;
+}
+
+std::vector<SupportConflict> find_conflicts(const topology::Mesh& mesh,
+                                            std::span<const Support> supports) {
+    std::vector<std::pair<NodeId, std::size_t>> holders;
+    for (std::size_t s = 0; s < supports.size(); ++s)
+        for (const NodeSet::Member& member : supports[s].nodes.members())
+            if (mesh.is_alive(member.node)) holders.emplace_back(member.node, s);
+    std::sort(holders.begin(), holders.end());
+
+    std::map<std::pair<std::size_t, std::size_t>, SupportConflict> found;
+    for (auto b = holders.begin(); b != holders.end(); ++b)
+        for (auto a = b; a != holders.begin() && (a - 1)->first == b->first;) {
+            --a;
+            const auto &of_a = supports[a->second].components,
+                       &of_b = supports[b->second].components;
+            for (std::size_t c = 0; c < 3; ++c)
+                if (of_a[c] && of_b[c])
+                    found.try_emplace({b->second, a->second},
+                                      SupportConflict{b->first, c, a->second, b->second});
+        }
+    std::vector<SupportConflict> conflicts;
+    for (const auto& [pair, conflict] : found) conflicts.push_back(conflict);
+    return conflicts;
+}
+
+std::string describe(const SupportConflict& conflict, const topology::Mesh& mesh,
+                     std::span<const Support> supports) {
+    return "node " + std::to_string(mesh.label(conflict.node)) + " is held in " +
+           "xyz"[conflict.component] + " by both '" + supports[conflict.first].name + "' and '" +
+           supports[conflict.second].name + "'; make their selections disjoint";
 }
 
 Supports::Supports(const topology::Mesh& mesh, std::vector<Support> supports)
@@ -32,10 +65,8 @@ void Supports::index(const topology::Mesh& mesh, NodeId n) {
         for (std::size_t c = 0; c < 3; ++c) {
             if (!supports_[s].components[c]) continue;
             if (row[c] >= 0)
-                throw InputError("node " + std::to_string(mesh.label(n)) + " is held in " +
-                                 "xyz"[c] + " by both '" +
-                                 supports_[static_cast<std::size_t>(row[c])].name + "' and '" +
-                                 supports_[s].name + "'; make their selections disjoint");
+                throw InputError(
+                    describe({n, c, static_cast<std::size_t>(row[c]), s}, mesh, supports_));
             row[c] = static_cast<int>(s);
         }
     }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,23 @@ struct Support {
     /// Where the node with rest position X is to be at `time`.
     Vec3 target(const Vec3& X, double time) const;
 };
+
+/// Two supports that prescribe the same component of a node.
+struct SupportConflict {
+    topology::NodeId node;
+    std::size_t component;
+    std::size_t first, second;  ///< indices of the supports, in ascending order
+};
+
+/// Each pair of supports that have a node and a component in common once, with the first of these;
+/// in the order of the second supports.
+/// Cost: O(n log n) in the nodes of all supports, and the pairs at each of them.
+std::vector<SupportConflict> find_conflicts(const topology::Mesh& mesh,
+                                            std::span<const Support> supports);
+
+/// "node 3 is held in x by both 'floor' and 'clamp'; ..."
+std::string describe(const SupportConflict& conflict, const topology::Mesh& mesh,
+                     std::span<const Support> supports);
 
 /// All supports of a body, looked up by node.
 class Supports {

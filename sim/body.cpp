@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <set>
+#include <sstream>
 
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
 #include "sim/body_problems.h"
 #include "sim/elastic_constants.h"
 #include "sim/selection.h"
-#include "sim/tool.h"
+#include "sim/step_limit.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
+#include "topology/mesh_check.h"
 
 namespace incise::sim {
 
@@ -28,22 +31,9 @@ std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
     return {names.begin(), names.end()};
 }
 
-SourceMesh build_from_file(const std::filesystem::path& path, const MeshSpec& spec,
-                           const std::vector<MaterialSpec>& materials) {
-    io::MeshFile file = io::read_mesh(
-        path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
-    for (Vec3& x : file.mesh.points) x *= spec.scale;
-    const auto named = [&](const std::string& text) { return path.string() + ": " + text; };
-    try {
-        topology::BuiltMesh built = topology::Mesh::build(file.mesh);
-        file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
-        for (std::string& warning : file.warnings) warning = named(warning);
-        return {std::move(built.mesh),
-                std::move(file.warnings),
-                {path.string(), std::move(file.cell_vectors)}};
-    } catch (const InputError& error) {
-        throw InputError(named(error.what()));
-    }
+std::string text_of(const Vec3& v) {
+    return "[" + io::format_number(v.x()) + ", " + io::format_number(v.y()) + ", " +
+           io::format_number(v.z()) + "]";
 }
 
 /// Throws bad_alloc for a box that this machine cannot hold, before it tries and is killed.
@@ -55,6 +45,57 @@ void require_memory_for(const BoxMeshSpec& box) {
     const double memory =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (bytes > memory) throw std::bad_alloc();
+}
+
+/// The points and cells that the scenario names, scaled.
+io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials,
+                       double scale) {
+    if (const auto* path = std::get_if<std::filesystem::path>(&spec.source)) {
+        io::MeshFile file = io::read_mesh(
+            *path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
+        for (Vec3& x : file.mesh.points) x *= scale;
+        return file;
+    }
+    const auto& box = std::get<BoxMeshSpec>(spec.source);
+    require_memory_for(box);
+    return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
+}
+
+bool can_load(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        load_mesh(spec, materials, 1.0);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+/// The same at the scale of the scenario. Throws BodyError if the file is sound but for the array
+/// that the regions are to be taken from.
+io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        return load_mesh(spec, materials, spec.scale);
+    } catch (const InputError& error) {
+        MeshSpec usual = spec;
+        usual.region_array = io::ReadOptions::usual_region_array;
+        if (spec.region_array == usual.region_array || !can_load(usual, materials)) throw;
+        throw BodyError(spec.region_array_place, error.what());
+    }
+}
+
+/// Why a box is refused, whose cells are sound but for rounding.
+std::string what_is_wrong_with(const BoxMeshSpec& box, double scale) {
+    const Vec3 size = scale * box.size, origin = scale * box.origin;
+    const Vec3 brick = size.cwiseQuotient(Vec3(box.cells[0], box.cells[1], box.cells[2]));
+    const Vec3 reach = origin.cwiseAbs().cwiseMax((origin + size).cwiseAbs());
+    constexpr double least_ratio = 1e-10;  // well above rounding, well below any box within limits
+    const std::string bricks = "key 'mesh.box': its bricks of " + text_of(brick);
+    if ((brick.array() < least_ratio * reach.array()).any())
+        return bricks + " are lost to rounding so far from [0, 0, 0]: bring 'origin', now " +
+               text_of(box.origin) + ", nearer to it, or make the bricks larger";
+    const bool is_large = !(brick.prod() < 1.0);
+    return bricks + " have a volume too " + (is_large ? "large" : "small") +
+           " to compute with: use " + (is_large ? "larger" : "smaller") + " units of length";
 }
 
 physics::Material build_material(const MaterialSpec& spec) {
@@ -145,11 +186,6 @@ Vec3 unit(const Vec3& v) {
     return std::abs(norm - 1.0) <= rounding ? v : Vec3(v / norm);
 }
 
-std::string text_of(const Vec3& v) {
-    return "[" + io::format_number(v.x()) + ", " + io::format_number(v.y()) + ", " +
-           io::format_number(v.z()) + "]";
-}
-
 /// Directions by element id; none if no material has fibres.
 std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
                                const physics::MaterialTable& table, const topology::Mesh& mesh,
@@ -199,13 +235,32 @@ std::string list(const std::set<int>& regions) {
 }  // namespace
 
 SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
-    if (const auto* path = std::get_if<std::filesystem::path>(&spec.source))
-        return build_from_file(*path, spec, materials);
-    const auto& box = std::get<BoxMeshSpec>(spec.source);
-    require_memory_for(box);
-    topology::BuiltMesh built = topology::Mesh::build(
-        topology::box_mesh(box.element, spec.scale * box.origin, spec.scale * box.size, box.cells));
-    return {std::move(built.mesh), std::move(built.warnings), {}};
+    io::MeshFile file = load_mesh(spec, materials);
+    const auto* path = std::get_if<std::filesystem::path>(&spec.source);
+    const std::string prefix = path ? path->string() + ": " : "";
+    try {
+        topology::BuiltMesh built = topology::Mesh::build(file.mesh);
+        file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
+        for (std::string& warning : file.warnings) warning = prefix + warning;
+        return {std::move(built.mesh),
+                std::move(file.warnings),
+                {path ? path->string() : "", std::move(file.cell_vectors)}};
+    } catch (const InputError& error) {
+        if (spec.scale != 1.0 && topology::check(load_mesh(spec, {}, 1.0).mesh).errors.empty())
+            throw BodyError(spec.scale_place,
+                            "key 'mesh.scale': " + io::format_number(spec.scale) +
+                                " makes the mesh too " + (spec.scale > 1.0 ? "large" : "small") +
+                                " to compute with, which without it is sound: use a " +
+                                (spec.scale > 1.0 ? "smaller" : "larger") + " one");
+        if (!path)
+            throw BodyError(spec.place,
+                            what_is_wrong_with(std::get<BoxMeshSpec>(spec.source), spec.scale));
+        BodyProblems problems;
+        for (const std::string& line : prefixed_lines(prefix, error.what()))
+            problems.add(spec.place, line);
+        problems.throw_if_any();
+        throw;
+    }
 }
 
 physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
@@ -224,9 +279,11 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
         for (const int region : *spec.regions) {
             table.of_region[region] = table.materials.size() - 1;
             if (!present.contains(region))
-                warnings.push_back("material " + std::to_string(table.materials.size()) +
-                                   " names region " + std::to_string(region) +
-                                   ", which the mesh does not have (it has " + list(present) + ")");
+                warnings.push_back(placed(spec.regions_place,
+                                          "material " + std::to_string(table.materials.size()) +
+                                              " names region " + std::to_string(region) +
+                                              ", which the mesh does not have (it has " +
+                                              list(present) + ")"));
         }
     }
     std::set<int> left;
@@ -258,6 +315,9 @@ physics::Surroundings build_surroundings(const Scenario& scenario, const topolog
     for (const LoadSpec& spec : scenario.loads)
         surroundings.loads.push_back(
             problems.try_to(spec.place, [&] { return build_load(spec, mesh); }));
+    for (const auto& conflict : physics::find_conflicts(mesh, surroundings.supports))
+        problems.add(scenario.constraints[conflict.second].place,
+                     describe(conflict, mesh, surroundings.supports));
     return surroundings;
 }
 
@@ -270,21 +330,123 @@ physics::Surroundings build_surroundings(const Scenario& scenario, const topolog
     return surroundings;
 }
 
-Body build_body(const Scenario& scenario) {
-    SourceMesh source = build_mesh(scenario.mesh, scenario.materials);
+namespace {
+
+/// The material that the region has or would have; without any, of none.
+std::string place_of_material(const Scenario& scenario, int region) {
+    const MaterialSpec* found = nullptr;
+    for (const MaterialSpec& spec : scenario.materials) {
+        const bool names_it =
+            spec.regions && std::ranges::find(*spec.regions, region) != spec.regions->end();
+        if (names_it || (!spec.regions && !found)) found = &spec;
+    }
+    return found ? found->place : "";
+}
+
+/// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
+std::string out_of_reach(const Tool& tool, const cutting::Box& body) {
+    const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    std::ostringstream text;
+    text << "tool '" << tool.name() << "' touches nothing where the body rests, between "
+         << body.min().transpose().format(list) << " and " << body.max().transpose().format(list)
+         << "; check its coordinates and units, unless the tissue moves to it";
+    return text.str();
+}
+
+/// @param mesh  without one, only what needs none is checked: the files of surfaces
+std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
+                              BodyProblems& problems, std::vector<std::string>& warnings) {
+    cutting::Box body;
+    if (mesh)
+        for (const Vec3& x : mesh->rest_positions()) body.extend(x);
+    std::vector<Tool> tools;
+    std::vector<std::string> idle;
+    for (ToolSpec spec : scenario.tools) {
+        if (mesh) problems.try_to(spec.place, [&] { spec = with_mode(spec, *mesh); });
+        const auto* cut = std::get_if<Cut>(&spec.kind);
+        problems.try_to(cut ? cut->place : spec.place, [&] {
+            tools.emplace_back(spec, warnings);
+            if (mesh && !tools.back().may_meet(body))
+                idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
+        });
+    }
+    warnings.insert(warnings.end(), idle.begin(), idle.end());
+    return tools;
+}
+
+/// What of a body can be built, and what is at fault with the rest.
+struct Parts {
+    std::optional<SourceMesh> source;
+    std::optional<physics::MaterialTable> materials;
+    physics::Surroundings surroundings;
+    std::vector<Tool> tools;
+    std::vector<std::string> warnings;
     BodyProblems problems;
-    const std::string place = scenario.materials.empty() ? "" : scenario.materials.front().place;
-    physics::MaterialTable materials = problems.try_to(place, [&] {
-        return build_materials(scenario, source.mesh, source.cell_vectors, source.warnings);
+};
+
+bool is_known(const MeshSpec& mesh) {
+    const auto* path = std::get_if<std::filesystem::path>(&mesh.source);
+    return !path || !path->empty();
+}
+
+Parts build_parts(const Scenario& scenario) {
+    Parts parts;
+    BodyProblems& problems = parts.problems;
+    if (is_known(scenario.mesh))
+        parts.source = problems.try_to(scenario.mesh.place, [&] {
+            return std::optional(build_mesh(scenario.mesh, scenario.materials));
+        });
+    const topology::Mesh* mesh = parts.source ? &parts.source->mesh : nullptr;
+    if (mesh) {
+        parts.warnings = std::move(parts.source->warnings);
+        if (!scenario.materials.empty())
+            parts.materials = problems.try_to(scenario.materials.front().place, [&] {
+                return std::optional(
+                    build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
+            });
+        parts.surroundings = build_surroundings(scenario, *mesh, problems);
+    }
+    parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
+    return parts;
+}
+
+/// Notes what is at fault with the model and its step, so far as there can be one: neither depends
+/// on supports and loads.
+void check_model(const Scenario& scenario, Parts& parts) {
+    if (!parts.source || !parts.materials) return;
+    parts.problems.try_to("", [&] {
+        step_limit(scenario, make_model(scenario, parts.source->mesh, *parts.materials, {}));
     });
-    physics::Surroundings surroundings = build_surroundings(scenario, source.mesh, problems);
-    if (problems.are_there())  // else tools are made for good, and tell what is theirs
-        for (const ToolSpec& spec : scenario.tools)
-            problems.try_to(spec.place,
-                            [&] { Tool(with_mode(spec, source.mesh), {}, source.warnings); });
-    problems.throw_if_any();
-    return {std::move(source.mesh), std::move(materials), std::move(surroundings),
-            std::move(source.warnings)};
+}
+
+}  // namespace
+
+physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
+                          const physics::MaterialTable& materials,
+                          physics::Surroundings surroundings) {
+    try {
+        return physics::Model(mesh, materials, std::move(surroundings));
+    } catch (const physics::UnsuitableMaterial& error) {
+        throw BodyError(place_of_material(scenario, error.region), error.what());
+    }
+}
+
+Body build_body(const Scenario& scenario) {
+    Parts parts = build_parts(scenario);
+    if (parts.problems.are_there()) {
+        check_model(scenario, parts);
+        parts.problems.throw_if_any(std::move(parts.warnings));
+    }
+    if (!parts.source || !parts.materials)
+        throw InputError("a scenario needs a mesh and a material");
+    return {std::move(parts.source->mesh), std::move(*parts.materials),
+            std::move(parts.surroundings), std::move(parts.tools), std::move(parts.warnings)};
+}
+
+BodyFindings check_body(const Scenario& scenario) {
+    Parts parts = build_parts(scenario);
+    check_model(scenario, parts);
+    return {parts.problems.lines(), std::move(parts.warnings)};
 }
 
 }  // namespace incise::sim

@@ -8,6 +8,7 @@
 
 #include "physics/model.h"
 #include "sim/scenario.h"
+#include "sim/tool.h"
 #include "topology/mesh.h"
 
 namespace incise::sim {
@@ -27,7 +28,8 @@ struct SourceMesh {
 
 /// Reads or makes the scenario's mesh, with the cell arrays that materials name. Warnings name the
 /// file.
-/// Throws InputError with every problem found, each line naming the file.
+/// Throws InputError with every problem found, each line naming the file; BodyError if the scale or
+/// the box are at fault.
 SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials);
 
 /// Which region has which material, which element fibres of which direction, and the precision of
@@ -38,19 +40,34 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
                                        const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);
 
-/// Gravity, damping, supports and loads. Throws BodyError with all empty selections.
+/// Gravity, damping, supports and loads. Throws BodyError with all empty selections and supports
+/// that hold the same.
 physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh);
+
+/// The model of it. Throws BodyError if a material does not suit its elements.
+physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
+                          const physics::MaterialTable& materials,
+                          physics::Surroundings surroundings);
 
 /// What a scenario describes, at rest.
 struct Body {
     topology::Mesh mesh;
     physics::MaterialTable materials;
     physics::Surroundings surroundings;
-    std::vector<std::string> warnings;
+    std::vector<Tool> tools;            ///< not prepared yet
+    std::vector<std::string> warnings;  ///< with the place or file in front
 };
 
-/// Throws InputError as build_mesh, and BodyError with all materials, selections and tools at
-/// fault.
+/// Throws BodyError with all that is at fault: mesh, materials, selections, tools, the time step.
 Body build_body(const Scenario& scenario);
+
+/// What build_body refuses and warns of, a line each.
+struct BodyFindings {
+    std::vector<std::string> errors, warnings;
+};
+
+/// Finds also what make_model and step_limit refuse. Without mesh, materials or dynamics in the
+/// scenario (see ScenarioReport) what depends on these is left out.
+BodyFindings check_body(const Scenario& scenario);
 
 }  // namespace incise::sim

@@ -3,51 +3,56 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "topology/error.h"
 
 namespace incise::sim {
+
+/// `prefix` before each line of the text, whose indents are left out.
+std::vector<std::string> prefixed_lines(const std::string& prefix, const std::string& text);
+
+/// The same as one text. Without prefix the text itself.
+std::string placed(const std::string& place, const std::string& text);
 
 /// A line for each problem, complete in itself: "FILE:line:column: text".
 struct BodyError : InputError {
     using InputError::InputError;
     /// @param place  "FILE:line:column", or empty for a scenario that comes from no file
     BodyError(const std::string& place, const std::string& text)
-        : InputError(joined(place, place.empty() ? "" : ": ", text)) {}
+        : InputError(placed(place, text)) {}
 
-    static std::string joined(std::string first, const char* between, const std::string& second) {
-        return first.append(between).append(second);
-    }
+    std::vector<std::string> warnings;  ///< what was found odd besides
 };
 
 class BodyProblems {
   public:
     /// Returns build(). If it throws InputError, notes that what stands at `place` is at fault, and
-    /// returns an empty value; a BodyError knows its own place.
+    /// returns an empty value; a BodyError and a PhysicsError know their own place.
     template <class Build>
     auto try_to(const std::string& place, Build build) -> decltype(build()) {
         try {
             return build();
         } catch (const BodyError& error) {
-            add(error);
+            add("", error.what());
         } catch (const InputError& error) {
-            add(BodyError(place, error.what()));
+            add(place, error.what());
+        } catch (const PhysicsError& error) {
+            add("", error.what());
         }
         return decltype(build())();
     }
 
-    bool are_there() const { return !text_.empty(); }
+    void add(const std::string& place, const std::string& text);
+
+    bool are_there() const { return !lines_.empty(); }
+    const std::vector<std::string>& lines() const { return lines_; }
+
     /// Throws BodyError if there are any.
-    void throw_if_any() const {
-        if (are_there()) throw BodyError(text_);
-    }
+    void throw_if_any(std::vector<std::string> warnings = {}) const;
 
   private:
-    void add(const BodyError& error) {
-        text_ = BodyError::joined(text_, text_.empty() ? "" : "\n", error.what());
-    }
-
-    std::string text_;
+    std::vector<std::string> lines_;
 };
 
 }  // namespace incise::sim

@@ -1,7 +1,6 @@
 // The [[constraint]] and [[load]] sections, and the selections in them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
-#include <limits>
 
 #include "sim/scenario_sections.h"
 
@@ -55,8 +54,7 @@ Selection read_selection(const TableReader& owner) {
         selection.half_space = read_half_space(*half_space);
     if (where->has("nodes")) selection.nodes = where->integers("nodes", {.low = 0});
     if (where->has("region")) {
-        const auto regions = where->integers(
-            "region", {std::numeric_limits<int>::min(), std::numeric_limits<int>::max()});
+        const auto regions = where->integers("region", region_limits, Repeats::refused);
         selection.regions.emplace(regions.begin(), regions.end());
     }
     selection.surface = where->flag("surface", false);
@@ -108,12 +106,12 @@ void read_motion(const TableReader& constraint, double end_time, ConstraintSpec&
 
 }  // namespace
 
-std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time) {
+std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
+                                             std::vector<std::string>& names) {
     std::vector<ConstraintSpec> specs;
-    std::vector<std::string> names;
     for (const auto& constraint : root.tables("constraint", {constraint_keys})) {
         ConstraintSpec spec;
-        spec.name = read_name(constraint, "constraint_" + std::to_string(specs.size() + 1), names);
+        spec.name = read_name(constraint, "constraint_" + std::to_string(names.size() + 1), names);
         spec.place = constraint.place_text("where");
         constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
         spec.where = read_selection(constraint);
@@ -123,7 +121,7 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
         if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
         if (!constraint.has("fix") && !moves)
             constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
-        specs.push_back(std::move(spec));
+        if (constraint.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }
@@ -133,20 +131,20 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
     std::vector<std::string> names;
     for (const auto& load : root.tables("load", {load_keys})) {
         LoadSpec spec;
-        spec.name = read_name(load, "load_" + std::to_string(specs.size() + 1), names);
+        spec.name = read_name(load, "load_" + std::to_string(names.size() + 1), names);
         spec.place = load.place_text("where");
         spec.where = read_selection(load);
-        const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
-        if (kind == "nodal_force") spec.load = NodalForce{load.vector("nodal_force")};
-        if (kind == "traction") spec.load = Traction{load.vector("traction")};
-        if (kind == "pressure") spec.load = Pressure{load.number("pressure", 0.0)};
-        if (kind == "body_force") spec.load = BodyForce{load.vector("body_force")};
+        load.one_of({"nodal_force", "traction", "pressure", "body_force"});
+        if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};
+        if (load.has("traction")) spec.load = Traction{load.vector("traction")};
+        if (load.has("pressure")) spec.load = Pressure{load.number("pressure", 0.0)};
+        if (load.has("body_force")) spec.load = BodyForce{load.vector("body_force")};
         spec.factor = read_time_keys<double>(load, "factor", {factor_keys}, end_time,
                                              [](const TableReader& row) {
                                                  row.require("value", "as in value = 1.0");
                                                  return row.number("value", 1.0);
                                              });
-        specs.push_back(std::move(spec));
+        if (load.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }

@@ -34,7 +34,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 void Diagnostics::key_error(const Place& place, std::string_view path, std::string_view text) {
-    error(place, std::string("key ").append(in_quotes(path)).append(": ").append(text));
+    errors_.push_back({place, std::string("key ").append(in_quotes(path)).append(": ").append(text),
+                       std::string(path)});
+}
+
+bool Diagnostics::has_errors_at(std::string_view path) const {
+    return std::any_of(errors_.begin(), errors_.end(), [&](const Finding& error) {
+        const std::string_view key = error.path;
+        return key.starts_with(path) &&
+               (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
+    });
 }
 
 std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) const {
@@ -45,7 +54,7 @@ std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) c
         return key(a.place) < key(b.place);
     });
     std::vector<std::string> texts;
-    for (const auto& [place, text] : findings) texts.push_back(text_of(place) + ": " + text);
+    for (const auto& [place, text, path] : findings) texts.push_back(text_of(place) + ": " + text);
     return texts;
 }
 

@@ -18,18 +18,20 @@ class Diagnostics {
         : file_(std::move(file)), overrides_(overrides.begin(), overrides.end()) {}
 
     void error(const Place& place, std::string text) {
-        errors_.push_back({place, std::move(text)});
+        errors_.push_back({place, std::move(text), {}});
     }
     /// "key 'PATH': TEXT"
     void key_error(const Place& place, std::string_view path, std::string_view text);
     void warning(const Place& place, std::string text) {
-        warnings_.push_back({place, std::move(text)});
+        warnings_.push_back({place, std::move(text), {}});
     }
 
     /// "FILE:line:column", or "--set OVERRIDE".
     std::string text_of(const Place& place) const;
 
     bool has_errors() const { return !errors_.empty(); }
+    /// Whether the key of any error is `path` or below it, or is of an element of it.
+    bool has_errors_at(std::string_view path) const;
 
     /// In the order of the file, then of the overrides, each as "FILE:line:column: text".
     std::vector<std::string> errors() const { return formatted(errors_); }
@@ -39,6 +41,7 @@ class Diagnostics {
     struct Finding {
         Place place;
         std::string text;
+        std::string path;  // of the key, if it is about one
     };
     std::vector<std::string> formatted(std::vector<Finding> findings) const;
 

@@ -19,13 +19,6 @@ ParameterSet keys_of(const ElasticParameters& given) {
     return keys;
 }
 
-void check_parameter_set(const MaterialModel& model, const ElasticParameters& given) {
-    const std::string listed = list_of(given);
-    if (!is_complete(model, given))
-        throw InputError(std::string(model.key) + " takes " + list_of_parameters(model) +
-                         "; given: " + (listed.empty() ? "none of them" : listed));
-}
-
 double shear_modulus_of(const MaterialModel& model, const ElasticParameters& p) {
     using enum Parameter;
     if (p[young]) return *p[young] / (2.0 * (1.0 + *p[poisson]));
@@ -65,6 +58,13 @@ bool is_complete(const MaterialModel& model, const ElasticParameters& given) {
         });
 }
 
+void require_complete(const MaterialModel& model, const ElasticParameters& given) {
+    const std::string listed = list_of(given);
+    if (!is_complete(model, given))
+        throw InputError(std::string(model.key) + " takes " + list_of_parameters(model) +
+                         "; given: " + (listed.empty() ? "none of them" : listed));
+}
+
 std::string list_of(const ElasticParameters& given) {
     const ParameterSet keys = keys_of(given);
     return list_of_sets({&keys, 1});
@@ -72,7 +72,7 @@ std::string list_of(const ElasticParameters& given) {
 
 ElasticConstants resolve(Method method, std::string_view law, const ElasticParameters& given) {
     const MaterialModel& model = sim::model(method, law);
-    check_parameter_set(model, given);
+    require_complete(model, given);
     ElasticConstants constants;
     if (method == Method::mass_spring) {
         constants.lambda = constants.mu = 0.4 * *given[Parameter::young];

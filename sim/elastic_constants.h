@@ -16,6 +16,9 @@ ElasticConstants resolve(Method method, std::string_view law, const ElasticParam
 /// Whether the parameters are exactly one of the sets that the model takes, besides optional ones.
 bool is_complete(const MaterialModel& model, const ElasticParameters& given);
 
+/// Throws InputError that says what is given and what the model takes, if that is not so.
+void require_complete(const MaterialModel& model, const ElasticParameters& given);
+
 /// Such as "young + poisson"; empty if there are none.
 std::string list_of(const ElasticParameters& given);
 

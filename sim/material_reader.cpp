@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "io/number_format.h"
 #include "sim/elastic_constants.h"
@@ -19,9 +18,6 @@ constexpr std::string_view heml_keys[] = {"law",   "inversion_threshold", "prony
                                           "fibre", "fibre_array"};
 constexpr std::string_view hybmss_keys[] = {"face_diagonals", "stiffness_ratio",
                                             "correction_forces"};
-
-constexpr IntegerLimits region_limits{std::numeric_limits<int>::min(),
-                                      std::numeric_limits<int>::max()};
 
 /// Reports the keys that belong to other methods.
 void refuse_keys_of_others(const TableReader& material, Method method) {
@@ -88,9 +84,10 @@ ElasticParameters only_young(const ElasticParameters& parameters) {
 }
 
 /// Reports what of the method, law and parameters does not go together.
-void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
+/// @param values_are_sound  else only which parameters there are is looked at
+void check_elasticity(const TableReader& material, const MaterialSpec& spec,
+                      bool values_are_sound) {
     ElasticParameters parameters = spec.parameters;
-    refuse_keys_of_others(material, spec.method);
     if (spec.method == Method::mass_spring) {
         parameters = only_young(parameters);
     } else if (spec.method == Method::heml && spec.law == "saint-venant-kirchhoff" &&
@@ -100,6 +97,10 @@ void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
                              " has no effect: saint-venant-kirchhoff has no volume term");
     }
     try {
+        if (!values_are_sound) {
+            require_complete(model(spec.method, spec.law), parameters);
+            return;
+        }
         const ElasticConstants constants = resolve(spec.method, spec.law, parameters);
         if (spec.method == Method::hybmss) warn_of_limits(material, spec, constants);
     } catch (const InputError& failure) {
@@ -107,7 +108,7 @@ void check_elasticity(const TableReader& material, const MaterialSpec& spec) {
     }
 }
 
-/// Of Ogden's law. Whether they are as they should be, or not there.
+/// Of Ogden's law. Whether they are as they should be, or not there; terms at fault count as one.
 bool read_terms(const TableReader& material, ElasticParameters& parameters) {
     if (!material.has("terms")) return true;
     bool is_readable = !material.is_empty_array("terms");
@@ -124,7 +125,7 @@ bool read_terms(const TableReader& material, ElasticParameters& parameters) {
             row.error("alpha", "0 is not allowed: a power of 0 is no strain");
         parameters.terms.push_back({mu.value_or(1.0), alpha.value_or(1.0)});
     }
-    if (!rows.empty()) parameters[Parameter::terms] = static_cast<double>(rows.size());
+    parameters[Parameter::terms] = std::max(1.0, static_cast<double>(rows.size()));
     return is_readable && !rows.empty();
 }
 
@@ -193,10 +194,9 @@ void read_fibre(const TableReader& material, const MeshSpec& mesh, MaterialSpec&
                                "fibre_array = \"NAME\", a cell array of the mesh file");
         return;
     }
-    const auto key = material.one_of({"fibre", "fibre_array"});
-    if (key == "fibre") {
-        spec.fibre = material.direction("fibre", Vec3::UnitX());
-    } else if (key == "fibre_array") {
+    material.one_of({"fibre", "fibre_array"});
+    if (material.has("fibre")) spec.fibre = material.direction("fibre", Vec3::UnitX());
+    if (material.has("fibre_array")) {
         const std::string name = material.text("fibre_array");
         if (name.empty() && material.is_text("fibre_array"))
             material.error("fibre_array", "is empty: name a cell array of the mesh file");
@@ -213,40 +213,34 @@ constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
     spec.place = material.place_text();
+    spec.regions_place = material.place_text("regions");
     if (material.has("regions")) {
-        const auto regions = material.integers("regions", region_limits);
+        const auto regions = material.integers("regions", region_limits, Repeats::refused);
         spec.regions.emplace(regions.begin(), regions.end());
     }
-    bool is_readable = true;
     if (const auto index = material.choice("method", {method_names()}))
         spec.method = static_cast<Method>(*index);
-    else
-        is_readable = !material.has("method");
     const Tissue* preset = nullptr;
     std::vector<std::string_view> tissue_names;
     for (const auto& tissue : tissues()) tissue_names.push_back(tissue.key);
     if (const auto index = material.choice("preset", {tissue_names})) {
         preset = &tissues()[*index];
         spec.law = preset->law;
-    } else {
-        is_readable = is_readable && !material.has("preset");
     }
     std::vector<std::string_view> law_names;
     for (const auto& law : laws()) law_names.push_back(law.key);
-    if (const auto index = material.choice("law", {law_names}))
-        spec.law = laws()[*index].key;
-    else
-        is_readable = is_readable && !material.has("law");
+    if (const auto index = material.choice("law", {law_names})) spec.law = laws()[*index].key;
     if (!material.has("preset"))
         material.require("density", "kilograms a cubic metre, as in density = 1060");
     spec.density =
         material.number("density", preset != nullptr ? preset->density : 1.0, limits::positive);
+    bool values_are_sound = read_terms(material, spec.parameters);
     for (const auto& row : parameters()) {
-        if (row.parameter == Parameter::terms) continue;
-        spec.parameters[row.parameter] = material.number_if_given(row.key, row.limits);
-        if (material.has(row.key) && !spec.parameters[row.parameter]) is_readable = false;
+        if (row.parameter == Parameter::terms || !material.has(row.key)) continue;
+        const auto value = material.number_if_given(row.key, row.limits);
+        values_are_sound = values_are_sound && value;
+        spec.parameters[row.parameter] = value.value_or(1.0);  // it counts as given
     }
-    is_readable = read_terms(material, spec.parameters) && is_readable;
     spec.inversion_threshold =
         material.number("inversion_threshold", spec.inversion_threshold, {.low = 0.0, .high = 1.0});
     spec.prony = read_prony(material);
@@ -268,12 +262,13 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
             material.error("stiffness_ratio",
                            "has no meaning without face diagonals: leave it out");
     }
-    if (!is_readable) return spec;
+    if (!material.is_sound("method")) return spec;
+    const bool knows_law = material.is_sound("preset") && material.is_sound("law");
+    refuse_keys_of_others(material, spec.method);
+    if (!knows_law) return spec;
     read_fibre(material, mesh, spec);
-    if (preset != nullptr && !complete_parameters(material, *preset, spec))
-        refuse_keys_of_others(material, spec.method);
-    else
-        check_elasticity(material, spec);
+    if (preset == nullptr || complete_parameters(material, *preset, spec))
+        check_elasticity(material, spec, values_are_sound);
     return spec;
 }
 

@@ -31,10 +31,13 @@ struct BoxMeshSpec {
 };
 
 struct MeshSpec {
-    /// A file (already relative to the scenario's folder, or absolute), or a box.
+    /// A file (already relative to the scenario's folder, or absolute), or a box. An empty path:
+    /// not known.
     std::variant<std::filesystem::path, BoxMeshSpec> source;
     double scale = 1.0;  ///< all coordinates of the source are multiplied by it
     std::string region_array = "region";
+    /// For messages: those of the source and of the others.
+    std::string place = {}, scale_place = {}, region_array_place = {};
 };
 
 struct MaterialSpec {
@@ -53,6 +56,7 @@ struct MaterialSpec {
     double stiffness_ratio = 1.0;   ///< A of HybMSS, 0 to infinity
     bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
     std::string place = {};         ///< for messages: FILE:line:column
+    std::string regions_place = {};
 };
 
 enum class Mode { dynamic, statics };
@@ -72,6 +76,7 @@ struct DynamicsSpec {
     std::uint64_t seed = 1;
     /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
     physics::Precision precision = physics::Precision::double_precision;
+    std::string end_time_place = {}, time_step_place = {};  ///< for messages
 };
 
 /// A place and an extent along the axes.
@@ -180,6 +185,7 @@ struct Cut {
     std::variant<PlaneSpec, std::filesystem::path> along;
     double scale = 1.0;  ///< all coordinates of the surface are multiplied by it
     std::optional<double> snap;
+    std::string place = {};  ///< for messages, of the file's name
 };
 
 /// Where a tool's frame is: p -> at + R(axis, angle) p.

@@ -39,6 +39,8 @@ constexpr double max_box_elements = 1e8;
 constexpr int most_load_steps = 1000000;
 /// More frames than this are more likely a slip than a wish.
 constexpr double many_frames = 1e5;
+/// More would fill any disk: the names of so many files alone take a gigabyte.
+constexpr double max_frames = 1e7;
 
 BoxMeshSpec read_box_mesh(const TableReader& box) {
     BoxMeshSpec spec;
@@ -119,6 +121,21 @@ void check_precision(const TableReader& dynamics, const DynamicsSpec& spec,
                                "out, or use method = \"heml\"");
 }
 
+/// @param key  to blame
+void check_number_of_frames(const TableReader& table, std::string_view key, double interval,
+                            double end_time) {
+    const double frames = interval > 0.0 ? std::floor(end_time / interval) : 0.0;
+    if (frames > max_frames)
+        table.error(key, "an output interval of " + format_number(interval) + " s makes " +
+                             format_number(frames) + " frames of a run of " +
+                             format_number(end_time) + " s, more than the " +
+                             format_number(max_frames) +
+                             " allowed: use a longer one, or 0 for no frames");
+    else if (frames > many_frames)
+        table.warning(key, "the output interval of " + format_number(interval) + " s makes " +
+                               format_number(frames) + " frames");
+}
+
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     Scenario scenario;
     scenario.name = file.stem().string();
@@ -127,12 +144,17 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.mesh = read_mesh_spec(root, scenario.folder);
     scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root, scenario.materials);
+    const bool knows_dynamics = root.is_sound("dynamics");
     const double end_time = scenario.dynamics.end_time;
-    scenario.constraints = read_constraints(root, end_time);
+    std::vector<std::string> held;
+    scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
     scenario.tools = read_tools(root, scenario.folder, end_time);
     scenario.output = read_output(root, end_time);
-    scenario.expect = read_expectations(root, scenario.constraints);
+    scenario.expect = read_expectations(root, held);
+    if (!root.is_sound("mesh")) scenario.mesh = {};
+    if (!root.is_sound("material")) scenario.materials.clear();
+    if (!knows_dynamics) scenario.dynamics = {};
     return scenario;
 }
 
@@ -161,12 +183,12 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     root.require("mesh", "add a section [mesh] with file = \"...\" or box = { ... }");
     const auto mesh = root.table("mesh", {mesh_keys});
     if (!mesh) return spec;
-    const auto source = mesh->one_of({"file", "box"});
-    if (source == "file") {
-        spec.source = read_file_name(*mesh, "file", folder, "mesh file");
-    } else if (const auto box = mesh->table("box", {mesh_box_keys}); source == "box" && box) {
-        spec.source = read_box_mesh(*box);
-    }
+    mesh->one_of({"file", "box"});
+    if (const auto box = mesh->table("box", {mesh_box_keys})) spec.source = read_box_mesh(*box);
+    if (mesh->has("file")) spec.source = read_file_name(*mesh, "file", folder, "mesh file");
+    spec.place = mesh->place_text(mesh->has("file") ? "file" : "box");
+    spec.scale_place = mesh->place_text("scale");
+    spec.region_array_place = mesh->place_text("region_array");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
     return spec;
@@ -178,6 +200,8 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     const auto dynamics = root.table("dynamics", {dynamics_keys});
     if (!dynamics) return spec;
     dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
+    spec.end_time_place = dynamics->place_text("end_time");
+    spec.time_step_place = dynamics->place_text("time_step");
     spec.end_time = dynamics->number("end_time", spec.end_time, limits::positive);
     if (dynamics->is_text("time_step")) {
         if (const auto text = dynamics->text("time_step"); text != "auto")
@@ -216,18 +240,16 @@ OutputSpec read_output(const TableReader& root, double end_time) {
     };
     const auto output = root.table("output", {output_keys});
     if (!output) {
+        check_number_of_frames(root, "dynamics", spec.interval, end_time);
         all_fields();
         return spec;
     }
     spec.interval = output->number("interval", spec.interval, limits::non_negative);
+    check_number_of_frames(*output, "interval", spec.interval, end_time);
     if (end_time > 0.0 && spec.interval > end_time)
         output->warning("interval", "the output interval of " + format_number(spec.interval) +
                                         " s is longer than the run of " + format_number(end_time) +
                                         " s: only the first and last state are written");
-    if (spec.interval > 0.0 && end_time / spec.interval > many_frames)
-        output->warning("interval",
-                        "the output interval of " + format_number(spec.interval) + " s makes " +
-                            format_number(std::floor(end_time / spec.interval)) + " frames");
     if (output->has("fields"))
         for (const auto index : output->choices("fields", {field_names}))
             spec.fields.push_back(static_cast<Field>(index));
@@ -241,11 +263,9 @@ OutputSpec read_output(const TableReader& root, double end_time) {
 }
 
 std::vector<Expectation> read_expectations(const TableReader& root,
-                                           std::span<const ConstraintSpec> constraints) {
+                                           const std::vector<std::string>& constraints) {
     std::vector<Expectation> expectations;
-    std::vector<std::string> held;
-    for (const ConstraintSpec& constraint : constraints) held.push_back(constraint.name);
-    const std::vector<std::string> quantities = all_quantities(held);
+    const std::vector<std::string> quantities = all_quantities(constraints);
     const std::vector<std::string_view> names(quantities.begin(), quantities.end());
     const auto expect = root.table("expect", {names});
     if (!expect) return expectations;

@@ -12,7 +12,9 @@
 namespace incise::sim {
 
 struct ScenarioReport {
-    Scenario scenario;  ///< to be used only if there are no errors
+    /// If there are errors, only what is sound of it: constraints, loads and tools at fault are
+    /// left out; the mesh, the materials and the dynamics are there as a whole or not at all.
+    Scenario scenario;
     /// Each complete in itself: "FILE:line:column: key 'material[1].poisson': 0.6 is not allowed:
     /// must be above -1 and below 0.5". In the order of the file.
     std::vector<std::string> errors, warnings;

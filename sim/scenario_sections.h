@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,21 +14,27 @@
 
 namespace incise::sim {
 
+inline constexpr IntegerLimits region_limits{std::numeric_limits<int>::min(),
+                                             std::numeric_limits<int>::max()};
+
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
 /// @param mesh  that is made of them
 std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh);
 /// @param materials  of the body, as not all methods have forces of every precision
 DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials);
+/// Those that are sound; likewise loads and tools.
 /// @param end_time  later keys are warned of; not above 0 if it is not known
-std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time);
+/// @param names  gets those of all
+std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
+                                             std::vector<std::string>& names);
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
 /// @param folder  what the names of surface files are relative to
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
                                  double end_time);
 OutputSpec read_output(const TableReader& root, double end_time);
-/// @param constraints  whose reactions are among the quantities
+/// @param constraints  names of those whose reactions are among the quantities
 std::vector<Expectation> read_expectations(const TableReader& root,
-                                           std::span<const ConstraintSpec> constraints);
+                                           const std::vector<std::string>& constraints);
 
 /// The name that a constraint, load or tool gives itself, or `fallback`. Reports one that is used
 /// already or has other characters than letters, digits, _ and -: it becomes part of the names of

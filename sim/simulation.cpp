@@ -13,7 +13,7 @@
 #include "io/number_format.h"
 #include "physics/winding.h"
 #include "sim/body.h"
-#include "sim/body_problems.h"
+#include "sim/step_limit.h"
 #include "topology/change_check.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
@@ -74,36 +74,15 @@ Simulation::Simulation(const Scenario& scenario, Body body)
     : scenario_(scenario),
       warnings_(std::move(body.warnings)),
       mesh_(std::move(body.mesh)),
-      model_(mesh_, std::move(body.materials), std::move(body.surroundings)),
+      model_(make_model(scenario, mesh_, body.materials, std::move(body.surroundings))),
       integrator_(make_integrator(scenario.dynamics)),
       ledger_(model_),
+      tools_(std::move(body.tools)),
       boxes_(mesh_, model_.positions()) {
     const cutting::UncutBody uncut = uncut_body(model_);
-    BodyProblems problems;
-    for (const ToolSpec& spec : scenario.tools)
-        problems.try_to(spec.place,
-                        [&] { tools_.emplace_back(with_mode(spec, mesh_), uncut, warnings_); });
-    problems.throw_if_any();
-    warn_of_tools_out_of_reach();
+    for (Tool& tool : tools_) tool.prepare(uncut);
     fingerprint_ = fingerprint_of(model_, scenario.tools);
     step_limit();  // a fixed step that is too large is refused before anything is written
-}
-
-/// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
-void Simulation::warn_of_tools_out_of_reach() {
-    cutting::Box body;
-    for (const Vec3& x : mesh_.rest_positions()) body.extend(x);
-    const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-    for (std::size_t i = 0; i < tools_.size(); ++i) {
-        if (tools_[i].may_meet(body)) continue;
-        std::ostringstream text;
-        text << "key 'tool[" << i << "]': '" << tools_[i].name()
-             << "' touches nothing where the body rests, between "
-             << body.min().transpose().format(list) << " and "
-             << body.max().transpose().format(list)
-             << "; check its coordinates and units, unless the tissue moves to it";
-        warnings_.push_back(text.str());
-    }
 }
 
 void Simulation::start() {
@@ -263,39 +242,7 @@ Simulation::Interval Simulation::next_step() const {
     return {time_, time_ + (stop - time_) / steps};
 }
 
-double Simulation::step_limit() const {
-    const DynamicsSpec& dynamics = scenario_.dynamics;
-    if (dynamics.mode == Mode::statics) {
-        if (dynamics.steps) return dynamics.end_time / *dynamics.steps;
-        return scenario_.output.interval > 0.0 ? scenario_.output.interval : dynamics.end_time;
-    }
-    const bool is_explicit = dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-    const double stable = model_.stable_step();
-    const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
-    std::ostringstream text;
-    if (is_explicit && dynamics.time_step && !(limit <= stable)) {
-        text << "dynamics.time_step of " << limit << " s is above the stable step of " << stable
-             << " s";
-        if (num_steps_ > 0) text << " that the edits have left";
-        text << ": use a smaller one, or time_step = \"auto\"";
-        throw PhysicsError(text.str());
-    }
-    // So many steps would take years, and at last would not move the time on at all.
-    constexpr double max_steps = 1e10;
-    if (!(limit * max_steps >= dynamics.end_time)) {
-        text << "steps of " << limit << " s would take more than 1e10 of them to the end at "
-             << dynamics.end_time << " s: lower dynamics.end_time";
-        if (dynamics.time_step)
-            text << " or raise dynamics.time_step";
-        else
-            text << ", or check shape and material of element "
-                 << mesh_.label(model_.limiting_element())
-                 << ", which is the smallest or stiffest for its mass";
-        if (num_steps_ == 0) throw InputError(text.str());
-        throw PhysicsError(text.str());  // edits have left such an element
-    }
-    return limit;
-}
+double Simulation::step_limit() const { return sim::step_limit(scenario_, model_, num_steps_); }
 
 void Simulation::tell_frame() {
     const double interval = scenario_.output.interval;

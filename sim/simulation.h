@@ -36,9 +36,8 @@ class Observer {
 class Simulation {
   public:
     /// Builds what the scenario describes, at time 0.
-    /// Throws InputError for a mesh at fault and for more than 1e10 steps, BodyError with all
-    /// selections, regions and tools at fault,
-    /// PhysicsError for a fixed step above the bound.
+    /// Throws as build_body, make_model and step_limit: BodyError with all that is at fault;
+    /// PhysicsError if that is nothing but a fixed step above the bound.
     explicit Simulation(const Scenario& scenario);
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
@@ -86,7 +85,6 @@ class Simulation {
     Interval next_step() const;
     double step_limit() const;
     void cut(Tool& tool, double from, double to);
-    void warn_of_tools_out_of_reach();
     void warn_of_lost_elements();
     void tell_frame();
     void tell_pause();

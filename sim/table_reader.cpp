@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "io/number_format.h"
 
@@ -111,13 +112,19 @@ std::vector<Vec3> TableReader::vectors(std::string_view key) const {
     return result;
 }
 
-std::vector<std::int64_t> TableReader::integers(std::string_view key,
-                                                const IntegerLimits& limits) const {
+std::vector<std::int64_t> TableReader::integers(std::string_view key, const IntegerLimits& limits,
+                                                Repeats repeats) const {
     std::vector<std::int64_t> result;
+    std::set<std::int64_t> before;
     const Value* value = find(table_, key);
     if (value == nullptr) return result;
     const auto add = [&](const Value& element, const std::string& path) {
-        if (const auto number = integer_of(element, path, limits)) result.push_back(*number);
+        const auto number = integer_of(element, path, limits);
+        if (!number) return;
+        result.push_back(*number);
+        if (repeats == Repeats::refused && !before.insert(*number).second)
+            diagnostics_.key_error(element.place, path,
+                                   std::to_string(*number) + " is there twice");
     };
     if (const auto* values = value->get<Array>()) {
         for (std::size_t i = 0; i < values->size(); ++i)

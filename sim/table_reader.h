@@ -33,6 +33,9 @@ struct IntegerLimits {
     std::int64_t high = std::numeric_limits<std::int64_t>::max();
 };
 
+/// Of numbers in a list.
+enum class Repeats { taken_once, refused };
+
 /// Reads of a key that is missing or wrong give the fallback; a wrong one is reported, a missing
 /// one only by require(). The result counts only if there are no errors in the end.
 class TableReader {
@@ -58,7 +61,8 @@ class TableReader {
     Vec3 direction(std::string_view key, const Vec3& fallback) const;
     std::vector<Vec3> vectors(std::string_view key) const;
     /// One integer or an array of them, not empty; made ascending and unique.
-    std::vector<std::int64_t> integers(std::string_view key, const IntegerLimits& limits) const;
+    std::vector<std::int64_t> integers(std::string_view key, const IntegerLimits& limits,
+                                       Repeats repeats = Repeats::taken_once) const;
     /// The index of the text among the supported names.
     std::optional<std::size_t> choice(std::string_view key, const Names& names) const;
     /// The same for an array of names, each at most once.
@@ -79,6 +83,10 @@ class TableReader {
     /// The same for messages: "FILE:line:column".
     std::string place_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
+    /// Whether nothing has been reported of the key, or of the table without key.
+    bool is_sound(std::string_view key = {}) const {
+        return !diagnostics_.has_errors_at(path_of(key));
+    }
 
     /// Reports "key 'PATH': TEXT" at the key, or at the table without key.
     void error(std::string_view key, const std::string& text) const;

@@ -106,9 +106,8 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
                      "\"separate\", which opens the faces nearest to it");
 }
 
-Tool::Tool(const ToolSpec& spec, const cutting::UncutBody& uncut,
-           std::vector<std::string>& warnings)
-    : spec_(spec), options_{snap_of(spec), uncut} {
+Tool::Tool(const ToolSpec& spec, std::vector<std::string>& warnings)
+    : spec_(spec), options_{snap_of(spec), {}} {
     if (const auto* cut = std::get_if<Cut>(&spec.kind)) surface_ = load_surface(*cut, warnings);
 }
 

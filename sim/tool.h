@@ -27,10 +27,11 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh);
 /// Follows its path: position linear between keys, orientation along the shortest turn.
 class Tool {
   public:
-    /// @param spec  of a blade whose mode is given
-    /// @param uncut  the body before the first cut
     /// Throws InputError if the file of its surface cannot be read. Warnings name that file.
-    Tool(const ToolSpec& spec, const cutting::UncutBody& uncut, std::vector<std::string>& warnings);
+    Tool(const ToolSpec& spec, std::vector<std::string>& warnings);
+
+    /// Before the first cut: what the body then is. The mode of a blade must be given.
+    void prepare(const cutting::UncutBody& uncut) { options_.uncut = uncut; }
 
     const std::string& name() const { return spec_.name; }
     cutting::Pose pose(double time) const;

@@ -41,20 +41,20 @@ Carver read_carver(const TableReader& tool) {
     tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
     const auto shape = tool.table("shape", {shape_keys});
     if (!shape) return carver;
-    const auto kind = shape->one_of({"sphere", "capsule", "box"});
+    shape->one_of({"sphere", "capsule", "box"});
     const auto radius_of = [](const TableReader& table) {
         table.require("radius", "a length, as in radius = 0.008");
         return table.number("radius", 1.0, limits::positive);
     };
-    if (const auto sphere = shape->table("sphere", {shape_sphere_keys}); sphere && kind)
+    if (const auto sphere = shape->table("sphere", {shape_sphere_keys}))
         carver.shape = SphereShape{radius_of(*sphere)};
-    if (const auto capsule = shape->table("capsule", {capsule_keys}); capsule && kind) {
+    if (const auto capsule = shape->table("capsule", {capsule_keys})) {
         capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
         capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
         carver.shape =
             CapsuleShape{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
     }
-    if (const auto box = shape->table("box", {shape_box_keys}); box && kind) {
+    if (const auto box = shape->table("box", {shape_box_keys})) {
         box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
         const Vec3 size = box->vector("size", Vec3::Ones());
         if (!(size.minCoeff() > 0.0))
@@ -85,12 +85,13 @@ Blade read_blade(const TableReader& tool) {
 Cut read_cut(const TableReader& tool, const std::filesystem::path& folder) {
     Cut cut;
     const auto along = tool.one_of({"plane", "surface"});
-    if (const auto plane = tool.table("plane", {plane_keys}); plane && along) {
+    if (const auto plane = tool.table("plane", {plane_keys})) {
         plane->require("point", "a point of the plane, as in point = [0, 0, 0]");
         plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
         cut.along = PlaneSpec{plane->vector("point"), plane->direction("normal", Vec3::UnitZ())};
     }
-    if (along == "surface")
+    cut.place = tool.place_text("surface");
+    if (tool.has("surface"))
         cut.along = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
     cut.scale = tool.number("scale", 1.0, limits::positive);
     if (tool.has("scale") && along == "plane") tool.error("scale", "is for surfaces: leave it out");
@@ -156,7 +157,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
         }
         check_path(tool, spec, end_time);
-        specs.push_back(std::move(spec));
+        if (tool.is_sound()) specs.push_back(std::move(spec));
     }
     return specs;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -210,12 +211,54 @@ TEST_F(Command, ChecksEveryFileAndCountsProblems) {
               "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
 }
 
+TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
+    write("two.msh", mesh());
+    ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
+    const auto check = [&](const std::string& file) {
+        write("scene.toml", "[mesh]\nfile = \"" + file + "\"\nregion_array = \"nope\"\n" +
+                                scenario.substr(scenario.find("[[")));
+        return run("check scene.toml").err;
+    };
+    EXPECT_EQ(check("two.vtu").find("incise: scene.toml:3:16: two.vtu: has no cell array 'nope'"),
+              0u);
+    write("bad.vtu", "<VTKFile");
+    EXPECT_EQ(check("bad.vtu").find("incise: scene.toml:2:8: bad.vtu:"), 0u);
+}
+
 TEST_F(Command, ChecksTheMeshOfAScenario) {
     write("flat.msh", mesh("0 0 1"));
     write("scene.toml", "[mesh]\nfile = \"flat.msh\"\n" + scenario.substr(scenario.find("[[")));
     const auto outcome = run("check scene.toml");
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.err.substr(0, 18), "incise: flat.msh: ");
+    EXPECT_EQ(outcome.err.find("incise: scene.toml:2:8: flat.msh: cell 1 "), 0u) << outcome.err;
+}
+
+TEST_F(Command, RefusesARunWithAllThatItFindsInACheck) {
+    const std::string of_body = scenario + R"(time_step = 5
+[[load]]
+where = { region = 7 }
+pressure = 1
+[[tool]]
+kind = "cut"
+time = 0.01
+surface = "scene.toml"
+)";
+    const std::string of_text = "[[tool]]\nkind = \"cut\"\ntime = 0.01\nsurface = \"none.stl\"\n";
+    for (const auto& text : {of_body, of_body + of_text}) {
+        write("scene.toml", text);
+        const auto checked = run("check scene.toml");
+        EXPECT_EQ(checked.status, 2);
+        EXPECT_EQ(std::count(checked.err.begin(), checked.err.end(), '\n'), text == of_body ? 3 : 4)
+            << checked.err;
+        for (const auto* place : {"9:13", "11:9", "16:11"})
+            EXPECT_NE(checked.err.find(std::string("incise: scene.toml:") + place + ": "),
+                      std::string::npos)
+                << place << " in\n"
+                << checked.err;
+        const auto refused = run("run scene.toml");
+        EXPECT_EQ(refused.status, 2);
+        EXPECT_EQ(refused.err, checked.err);
+    }
 }
 
 TEST_F(Command, ChecksWithAllWarningsOfARunEachOnce) {
@@ -247,7 +290,7 @@ TEST_F(Command, ChecksWithAllWarningsOfARunEachOnce) {
     EXPECT_EQ(count(of_mesh.err, warning + "pinched.msh: "), 3) << of_mesh.err;
     EXPECT_EQ(count(of_mesh.err, warning), 3) << of_mesh.err;
     EXPECT_EQ(count(of_scenario.err, warning + "pinched.msh: "), 3) << of_scenario.err;
-    EXPECT_EQ(count(of_scenario.err, warning + "scene.toml: material 1 names region 9"), 1);
+    EXPECT_EQ(count(of_scenario.err, warning + "scene.toml:5:11: material 1 names region 9"), 1);
     EXPECT_EQ(count(of_scenario.err, warning), 4) << of_scenario.err;
     EXPECT_EQ(count(of_run.err, warning), 4) << of_run.err;
 }

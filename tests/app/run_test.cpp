@@ -167,8 +167,16 @@ TEST_F(Run, RefusesAFixedStepAboveTheBound) {
     write("scene.toml", scene + "time_step = 0.04\n");
     const auto outcome = run({"scene.toml"});
     EXPECT_EQ(outcome.status, 3);
-    EXPECT_NE(outcome.err.find("dynamics.time_step of 0.04 s is above the stable step of 0.0"),
-              std::string::npos);
+    EXPECT_EQ(outcome.err.find("incise: scene.toml:18:13: dynamics.time_step of 0.04 s is above "
+                               "the stable step of 0.0"),
+              0u)
+        << outcome.err;
+    const auto overridden = run({"scene.toml", "--set", "dynamics.time_step=5"});
+    EXPECT_EQ(overridden.status, 3);
+    EXPECT_EQ(overridden.err.find("incise: --set dynamics.time_step=5: dynamics.time_step of 5 s "
+                                  "is above the stable step of 0.0"),
+              0u)
+        << overridden.err;
     EXPECT_FALSE(fs::exists(folder_ / "scene.out"));
 }
 

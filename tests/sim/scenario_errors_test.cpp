@@ -194,9 +194,6 @@ TEST(ScenarioErrors, SayWhatALawWithFibresNeeds) {
     EXPECT_EQ(material_error(law + "fibre = [0, 0, 0]"),
               "scene.toml:8:9: key 'material[0].fibre': is not allowed: a direction must have a "
               "length above 0");
-    EXPECT_EQ(material_error(law + "fibre = [1, 0, 0]\nfibre_array = \"a\""),
-              "scene.toml:1:1: key 'material[0]': has fibre, fibre_array, but only one of fibre, "
-              "fibre_array is allowed");
     EXPECT_EQ(
         material_error(law + "fibre_array = \"a\""),
         "scene.toml:8:15: key 'material[0].fibre_array': needs a mesh file, and the mesh is a "

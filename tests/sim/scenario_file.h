@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/body.h"
 #include "sim/scenario_reader.h"
 #include "support/temporary_folder.h"
 
@@ -39,6 +40,13 @@ class ScenarioFile {
     /// The messages without the folder in front.
     std::vector<std::string> errors(const std::vector<std::string>& overrides = {}) const {
         return without_folder(read(overrides).errors);
+    }
+    /// With what only the body shows.
+    std::vector<std::string> all_errors() const {
+        ScenarioReport report = read();
+        const auto of_body = check_body(report.scenario).errors;
+        report.errors.insert(report.errors.end(), of_body.begin(), of_body.end());
+        return without_folder(report.errors);
     }
     std::vector<std::string> warnings() const { return without_folder(read().warnings); }
 

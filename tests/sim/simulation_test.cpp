@@ -72,7 +72,7 @@ end_time = 0.05
             places.push_back(line.substr(file.size(), line.find(' ', file.size()) - file.size()));
         }
     }
-    EXPECT_EQ(places, (std::vector<std::string>{"3:1:", "9:9:", "12:9:", "15:9:", "17:1:"}));
+    EXPECT_EQ(places, (std::vector<std::string>{"3:1:", "9:9:", "12:9:", "15:9:", "20:11:"}));
 }
 
 std::string text_of(double value) {
@@ -85,6 +85,7 @@ TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
     const auto refusal = [](const std::string& keys, double end_time) -> std::string {
         Scenario scenario = scenario_of(soft_cube + dynamics(1, keys));
         scenario.dynamics.end_time = end_time;
+        scenario.dynamics.time_step_place = "scene.toml:14:13";
         try {
             Simulation{scenario};
         } catch (const InputError& error) {
@@ -93,7 +94,8 @@ TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
         return "no InputError";
     };
     EXPECT_EQ(refusal("time_step = 1e-300", 0.3),
-              "steps of 1e-300 s would take more than 1e10 of them to the end at 0.3 s: lower "
+              "scene.toml:14:13: steps of 1e-300 s would take more than 1e10 of them to the end at "
+              "0.3 s: lower "
               "dynamics.end_time or raise dynamics.time_step");
     EXPECT_NE(refusal("", 1e300).find("check shape and material of element "), std::string::npos);
     EXPECT_EQ(refusal("", 0.3), "no InputError");

@@ -18,7 +18,7 @@ Tool tool_on(std::vector<TimeKey<Pose>> path) {
     spec.kind = Carver{SphereShape{0.1}};
     spec.path = std::move(path);
     std::vector<std::string> warnings;
-    return Tool(spec, {}, warnings);
+    return Tool(spec, warnings);
 }
 
 double angle_between(const cutting::Pose& pose, double angle, const Vec3& axis) {
@@ -81,7 +81,7 @@ ToolSpec spec_of(decltype(ToolSpec::kind) kind, std::vector<TimeKey<Pose>> path)
 
 bool may_meet_unit_box(const ToolSpec& spec) {
     std::vector<std::string> warnings;
-    return Tool(spec, {}, warnings).may_meet({Vec3::Zero(), Vec3::Ones()});
+    return Tool(spec, warnings).may_meet({Vec3::Zero(), Vec3::Ones()});
 }
 
 TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
@@ -113,7 +113,7 @@ TEST(Tool, MayMeetWhateverItComesToWhileItTurns) {
         ToolSpec spec =
             spec_of(Blade{{{1, 0, 0}, {2, 0, 0}}, CutMode::split, {}}, {{0.0, down}, {1.0, up}});
         std::vector<std::string> warnings;
-        const Tool tool(spec, {}, warnings);
+        const Tool tool(spec, warnings);
         for (int i = 0; i <= 1000; ++i) {
             const Vec3 x = tool.pose(i / 1000.0).to_world({2, 0, 0});
             EXPECT_TRUE(tool.may_meet(cutting::Box(x, x))) << angle << " " << i;
@@ -134,8 +134,8 @@ path = [{ time = 0, at = [0.05, 0.05, )";
     const auto told = warnings(two_tools + ball + "109] }]\n");
     ASSERT_EQ(told.size(), 1u);
     EXPECT_EQ(
-        told[0],
-        "key 'tool[2]': 'carver_2' touches nothing where the body rests, between [0, 0, 0] "
+        told[0].substr(told[0].find("scene.toml")),
+        "scene.toml:26:1: tool 'carver_2' touches nothing where the body rests, between [0, 0, 0] "
         "and [0.1, 0.1, 0.1]; check its coordinates and units, unless the tissue moves to it");
 }
 

@@ -1,0 +1,220 @@
+// The promise of `check`: all problems of a scenario at once, each with its place.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "scenario_file.h"
+
+namespace incise::sim {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+TEST(AllProblems, OfMoreFramesThanADiskHolds) {
+    const auto with = [](const std::string& interval) {
+        return ScenarioFile(minimal + "[output]\ninterval = " + interval + "\n");
+    };
+    for (const std::string interval : {"1e-300", "1e-12", "9e-08"}) {
+        const auto errors = with(interval).errors();
+        ASSERT_EQ(errors.size(), 1u) << interval;
+        EXPECT_EQ(errors[0].find("scene.toml:10:12: key 'output.interval': an output interval of " +
+                                 interval + " s makes "),
+                  0u)
+            << errors[0];
+        EXPECT_EQ(with(interval).warnings(), Lines{});
+    }
+    EXPECT_EQ(with("1e-6").errors(), Lines{});
+    EXPECT_EQ(with("1e-6").warnings(),
+              Lines{"scene.toml:10:12: the output interval of 1e-06 s makes 1e+06 frames"});
+    // At the usual interval.
+    EXPECT_EQ(ScenarioFile(minimal).errors({"dynamics.end_time=1e9"}),
+              Lines{"scene.toml:7:1: key 'dynamics': an output interval of 0.01 s makes 1e+11 "
+                    "frames of a run of 1e+09 s, more than the 1e+07 allowed: use a longer one, or "
+                    "0 for no frames"});
+}
+
+const std::string two_faults = R"([[tool]]
+kind = "cut"
+time = 0.01
+surface = "liver.vtu"
+[[constraint]]
+where = { nodes = [1, 99] }
+fix = "x"
+)";
+
+/// "LINE:COLUMN" of each.
+Lines places_of(const Lines& errors) {
+    Lines places;
+    const std::string file = "scene.toml:";
+    for (const auto& error : errors)
+        places.push_back(error.substr(file.size(), error.find(": ") - file.size()));
+    return places;
+}
+
+TEST(AllProblems, OfTheTextDoNotHideThoseOfTheBody) {
+    EXPECT_EQ(places_of(ScenarioFile(minimal + two_faults).all_errors()), (Lines{"14:9", "12:11"}));
+    // Whatever else is at fault, with mesh and selections that are sound.
+    for (const std::string other :
+         {"titel = 'a'\n", "[output]\ninterval = -1\n", "[[tool]]\nkind = 'knife'\n",
+          "[[tool]]\nkind = 'cut'\ntime = 0.01\nsurface = 'missing.stl'\n",
+          "[[load]]\nwhere = { region = 7 }\npressure = 'a'\n"}) {
+        const bool is_root = other[0] == 't';
+        const auto errors =
+            ScenarioFile((is_root ? other : "") + minimal + two_faults + (is_root ? "" : other))
+                .all_errors();
+        EXPECT_EQ(errors.size(), 3u) << other;
+    }
+}
+
+TEST(AllProblems, OfTheMeshDoNotHideThoseOfSurfaces) {
+    const auto errors =
+        ScenarioFile("[mesh]\nfile = 'liver.vtu'\n" + minimal_rest + two_faults).all_errors();
+    EXPECT_EQ(places_of(errors), (Lines{"2:8", "12:11"}));
+    EXPECT_EQ(errors[0].find("scene.toml:2:8: liver.vtu: "), 0u) << errors[0];
+    // What is made of a part at fault is left alone.
+    EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\n" + two_faults + R"([[material]]
+regions = 5
+preset = "livr"
+)")
+                            .all_errors()),
+              (Lines{"19:10", "15:9", "13:11"}));
+    EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\nmode = 1\n").all_errors()),
+              Lines{"10:8"});
+}
+
+TEST(AllProblems, OfSupportsAreAllPairsAndHideNoStep) {
+    const std::string text = minimal + "time_step = 5\n" + R"([[constraint]]
+where = { nodes = [3] }
+fix = "x"
+[[constraint]]
+where = { nodes = [3] }
+fix = "xy"
+[[constraint]]
+where = { nodes = [1, 3] }
+fix = "yx"
+[[constraint]]
+where = { nodes = [1, 3] }
+fix = "z"
+)";
+    const auto errors = ScenarioFile(text).all_errors();
+    ASSERT_EQ(errors.size(), 4u);
+    EXPECT_EQ(errors[0],
+              "scene.toml:14:9: node 3 is held in x by both 'constraint_1' and 'constraint_2'; "
+              "make their selections disjoint");
+    EXPECT_EQ(errors[1].find("scene.toml:17:9: node 3 is held in x by both 'constraint_1' and "
+                             "'constraint_3'"),
+              0u);
+    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in x by both 'constraint_2' and "
+                             "'constraint_3'"),
+              0u);
+    EXPECT_EQ(errors[3].find("scene.toml:9:13: dynamics.time_step of 5 s is above the stable"), 0u);
+}
+
+TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {
+    const auto error = [](const std::string& mesh) {
+        const auto errors = ScenarioFile("[mesh]\n" + mesh + "\n" + minimal_rest).all_errors();
+        return errors.size() == 1 ? errors[0] : std::to_string(errors.size()) + " errors";
+    };
+    const std::string box = "box = { size = [1, 1, 1], cells = [1, 2, 2]";
+    EXPECT_EQ(error(box + ", origin = [1e20, 0, 0] }"),
+              "scene.toml:2:7: key 'mesh.box': its bricks of [1, 0.5, 0.5] are lost to rounding so "
+              "far from [0, 0, 0]: bring 'origin', now [1e+20, 0, 0], nearer to it, or make the "
+              "bricks larger");
+    EXPECT_EQ(error(box + " }\nscale = 1e308"),
+              "scene.toml:3:9: key 'mesh.scale': 1e+308 makes the mesh too large to compute with, "
+              "which without it is sound: use a smaller one");
+    EXPECT_EQ(error(box + " }\nscale = 1e-308"),
+              "scene.toml:3:9: key 'mesh.scale': 1e-308 makes the mesh too small to compute with, "
+              "which without it is sound: use a larger one");
+    EXPECT_EQ(error("box = { size = [1e-200, 1e-200, 1], cells = [1, 1, 1] }"),
+              "scene.toml:2:7: key 'mesh.box': its bricks of [1e-200, 1e-200, 1] have a volume too "
+              "small to compute with: use smaller units of length");
+}
+
+TEST(AllProblems, OfKeysThatExcludeEachOtherHideNoneOfTheirValues) {
+    EXPECT_EQ(places_of(ScenarioFile("[mesh]\nfile = 'none.vtu'\nbox = { size = [1, 0, 1], cells = "
+                                     "[1, 1, 1.5] }\n" +
+                                     minimal_rest)
+                            .errors()),
+              (Lines{"1:1", "2:8", "3:16", "3:35"}));
+    EXPECT_EQ(
+        places_of(ScenarioFile(minimal + R"([[tool]]
+kind = "carver"
+shape = { sphere = { radius = -1 }, box = { size = [1, 0, 1] } }
+path = [{ time = 0, at = [0, 0, 0] }]
+[[tool]]
+kind = "cut"
+time = 0
+plane = { point = [0, 0, 0], normal = [0, 0, 0] }
+surface = "none.stl"
+[[load]]
+pressure = "a"
+traction = [1, 2]
+)")
+                      .errors()),
+        (Lines{"11:9", "11:31", "11:52", "13:1", "16:39", "17:11", "18:1", "19:12", "20:12"}));
+}
+
+TEST(AllProblems, OfBothKeysForFibresAreThoseOfEach) {
+    const auto errors = ScenarioFile(minimal_mesh + R"([[material]]
+law = "holzapfel-gasser-ogden"
+density = 1
+c1 = 1
+k1 = 1
+k2 = 1
+bulk_modulus = 1
+fibre = [0, 0, 0]
+fibre_array = "a"
+[dynamics]
+end_time = 1
+)")
+                            .errors();
+    EXPECT_EQ(places_of(errors), (Lines{"3:1", "10:9", "11:15"}));
+    EXPECT_EQ(errors[0],
+              "scene.toml:3:1: key 'material[0]': has fibre, fibre_array, but only one of fibre, "
+              "fibre_array is allowed");
+}
+
+TEST(AllProblems, OfRegionsAreThoseNamedTwice) {
+    const auto errors = [](const std::string& regions) {
+        return ScenarioFile(
+                   minimal_mesh + "[[material]]\nregions = " + regions +
+                   "\npreset = 'fat'\n[dynamics]\nend_time = 1\n[[load]]\nwhere = { region = " +
+                   regions + " }\npressure = 1\n")
+            .errors();
+    };
+    EXPECT_EQ(errors("[0, 1]"), Lines{});
+    EXPECT_EQ(errors("[0, 0]"),
+              (Lines{"scene.toml:4:15: key 'material[0].regions[1]': 0 is there twice",
+                     "scene.toml:9:24: key 'load[0].where.region[1]': 0 is there twice"}));
+    EXPECT_EQ(places_of(errors("[1, 1, 'a']")), (Lines{"4:15", "4:18", "9:24", "9:27"}));
+}
+
+TEST(AllProblems, OfAMaterialsValuesHideNoneOfItsKeys) {
+    const auto errors = [](const std::string& young, const std::string& terms) {
+        return ScenarioFile(minimal_mesh + "[[material]]\nlaw = 'ogden'\ndensity = 1\nyoung = " +
+                            young + "\nshear_modulus = 1\nterms = " + terms +
+                            "\nfibre = [0, 0, 1]\nmethod = 'hybmss'\n[dynamics]\nend_time = 1\n")
+            .errors();
+    };
+    const auto keys = errors("1", "[{ mu = 5, alpha = 2 }]");
+    EXPECT_EQ(places_of(keys), (Lines{"3:1", "4:7", "9:9"}));
+    const auto all = errors("-1", "[]");
+    EXPECT_EQ(places_of(all), (Lines{"3:1", "4:7", "6:9", "8:9", "9:9"}));
+    EXPECT_EQ(all[0], keys[0]);
+    // Values that depend on the one at fault are not spoken of.
+    EXPECT_EQ(places_of(ScenarioFile(minimal_mesh + "[[material]]\ndensity = 1\nlame_mu = 'a'\n"
+                                                    "lame_lambda = -3\n[dynamics]\nend_time = 1\n")
+                            .errors()),
+              Lines{"5:11"});
+}
+
+TEST(AllProblems, OfAMaterialThatDoesNotSuitItsElementsHaveItsPlace) {
+    EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\n[[material]]\nregions = 0\n"
+                                               "method = 'hybmss'\ndensity = 1\nyoung = 1\n"
+                                               "poisson = 0.3\n")
+                            .all_errors()),
+              Lines{"10:1"});
+}
+
+}  // namespace
+}  // namespace incise::sim
