@@ -130,5 +130,30 @@ TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBufferOfTheSecond) {
     }
 }
 
+const char* const tools_away = R"(
+[[tool]]
+kind = "blade"
+name = "scalpel"
+edge = [[0, -1, 1.05], [0, 0.03, 1.053], [0, 0.2, 1.058]]
+path = [{ time = 0, at = [-0.02, 0, 0] }, { time = 1000, at = [0.2, 0, 0] }]
+[[tool]]
+kind = "blade"
+name = "spatula"
+mode = "separate"
+edge = [[0, -1, 1.05], [0, 0.2, 1.05]]
+path = [{ time = 0, at = [-0.02, 0, 0] }, { time = 1000, at = [0.2, 0, 0] }]
+[[tool]]
+kind = "carver"
+name = "burr"
+shape = { sphere = { radius = 0.01 } }
+path = [{ time = 0, at = [0.05, 0.05, 0.2] }, { time = 1000, at = [0.06, 0.05, 0.2] }]
+)";
+
+TEST(SteadyState, AllocatesNothingForToolsAway) {
+    EXPECT_EQ(allocations_of_steps(
+                  tetrahedra + material() + tools_away + surroundings + motion("double"), 1),
+              0u);
+}
+
 }  // namespace
 }  // namespace incise::sim
