@@ -41,6 +41,14 @@ void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, doubl
     margin_ = distance;  // they have to hold what was before the step too
 }
 
+bool ElementBoxes::may_meet(const Box& swept) const {
+    const auto meets = [&](const Box& box) {
+        return !box.isEmpty() && swept.intersects(grown(box));
+    };
+    return std::any_of(supergroups_.begin(), supergroups_.end(), meets) &&
+           std::any_of(groups_.begin(), groups_.end(), meets);
+}
+
 void ElementBoxes::follow(const Mesh& mesh, std::span<const Vec3> positions,
                           const topology::ChangeSet& changes) {
     groups_.resize(num_groups(mesh.element_capacity()));

@@ -41,6 +41,9 @@ class ElementBoxes {
     template <class MayMeet, class Visit>
     void for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const;
 
+    /// False only if no element has a point in it during the last motion. Cost: that of the boxes.
+    bool may_meet(const Box& swept) const;
+
     static void archive(auto& ar, auto& self) {
         ar(self.groups_, self.supergroups_, self.margin_, self.largest_margin_);
     }

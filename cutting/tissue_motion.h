@@ -33,6 +33,9 @@ struct TissueMotion {
             if (const topology::ElementId e(i); mesh.is_alive(e)) look_at(e);
     }
 
+    /// False only if no element comes into what is swept in the step. Without boxes: true.
+    bool may_meet(const Box& swept) const { return !boxes || boxes->may_meet(swept); }
+
     /// Mean of an element's corners.
     static Vec3 centre(const topology::Mesh& mesh, topology::ElementId e,
                        std::span<const Vec3> positions) {

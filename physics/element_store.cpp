@@ -186,7 +186,9 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
         number_nodes(positions.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
+        // For any block, so that a thread takes its memory when it first works, and never again.
         thread_local std::vector<LocalVector> places;
+        places.reserve(chunk_size * topology::max_corners + 1);
         const auto nodes = blocks_[b]->nodes();
         places.resize(nodes.size() + 1);
         for (std::size_t i = 0; i < nodes.size(); ++i) places[i] = positions[nodes[i]];

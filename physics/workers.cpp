@@ -97,7 +97,7 @@ Workers& Workers::operator=(Workers&&) noexcept = default;
 
 int Workers::num_cores() { return tbb::info::default_concurrency(); }
 
-void Workers::for_each(std::size_t n, const std::function<void(std::size_t)>& work) const {
+void Workers::for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const {
     constexpr std::size_t few = 4;  // done sooner than other threads are woken
     if (!arena_ || n < few) {
         for (std::size_t i = 0; i < n; ++i) work(i);

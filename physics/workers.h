@@ -4,8 +4,9 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
+
+#include "physics/function_ref.h"
 
 namespace incise::physics {
 
@@ -33,7 +34,8 @@ class Workers {
 
     /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
     /// to be worth it; returns when all are done. The first exception thrown comes out.
-    void for_each(std::size_t n, const std::function<void(std::size_t)>& work) const;
+    /// Takes no memory but what TBB keeps of its tasks.
+    void for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const;
 
   private:
     struct Arena;

@@ -72,6 +72,7 @@ double snap_of(const ToolSpec& spec) {
 
 /// Carries the plan out. Faces of removed elements are not counted as opened.
 cutting::Split carry_out(const cutting::CutPlan& plan, topology::Mesh& mesh) {
+    if (plan.is_empty()) return {};
     cutting::Split done{cutting::execute(plan, mesh), {}};
     for (const topology::FacePair& pair : done.changes.faces_opened) {
         if (!mesh.is_alive(pair.a.element) || !mesh.is_alive(pair.b.element)) continue;
@@ -184,9 +185,18 @@ std::vector<Vec3> Tool::edge_at(const Blade& blade, double time) const {
     return edge;
 }
 
+cutting::Box Tool::box_at(const Blade& blade, double time) const {
+    const cutting::Pose at = pose(time);
+    cutting::Box box;
+    for (const Vec3& x : blade.edge) box.extend(at.to_world(x));
+    return box;
+}
+
 cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
                               const cutting::TissueMotion& tissue, cutting::Scars& scars,
                               double from, double to) {
+    if (front_.is_empty() && !tissue.may_meet(box_at(blade, from).merged(box_at(blade, to))))
+        return {};
     const auto before = edge_at(blade, from), after = edge_at(blade, to);
     if (blade.mode == CutMode::split)
         return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_,

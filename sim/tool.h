@@ -67,6 +67,7 @@ class Tool {
                             const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
                             double to);
     std::vector<Vec3> edge_at(const Blade& blade, double time) const;
+    cutting::Box box_at(const Blade& blade, double time) const;
     cutting::Box swept_box(std::span<const Vec3> points) const;
 
     ToolSpec spec_;

@@ -1,0 +1,159 @@
+// A step takes no memory once the body moves, and nothing is cut: this program counts what the
+// global operator new is asked for. Not built for the sanitizers, which have their own.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "run_folder.h"
+
+namespace {
+
+std::atomic<std::size_t> num_allocations = 0;
+
+void* counted(void* memory) {
+    ++num_allocations;
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+void* counted(std::size_t size, std::align_val_t alignment) {
+    const auto a = static_cast<std::size_t>(alignment);
+    return counted(std::aligned_alloc(a, (size + a - 1) / a * a));
+}
+
+}  // namespace
+
+// Those of arrays, and those that do not throw, call these.
+void* operator new(std::size_t size) { return counted(std::malloc(size > 0 ? size : 1)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size > 0 ? size : 1, alignment);
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace incise::sim {
+namespace {
+
+/// Both of more than three blocks of elements, which is what several threads are woken for.
+const std::string tetrahedra = "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [7, 7, 7] }\n";
+const std::string hexahedra =
+    "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [12, 12, 12], element = \"hex\" }\n";
+
+std::string material(const std::string& more = "") {
+    return "[[material]]\ndensity = 1000\nyoung = 1000\npoisson = 0.4\n" + more;
+}
+
+const std::string mass_springs =
+    "[[material]]\nmethod = \"mass-spring\"\ndensity = 1000\nyoung = 1000\n";
+
+const std::string prony =
+    "prony = [{ alpha = 0.4, tau = 0.02 }, { alpha = 0.2, tau = 0.3 }]\nprony_rule = ";
+
+const std::string surroundings = R"(
+[[constraint]]
+name = "floor"
+where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
+fix = "xyz"
+[[constraint]]
+name = "lid"
+where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
+move = [{ time = 0, by = [0, 0, 0] }, { time = 10, by = [0.005, 0, 0.02] }]
+rotate = [{ time = 0, angle = 0 }, { time = 10, angle = 0.2 }]
+about = { point = [0.05, 0.05, 0.1], axis = [0, 0, 1] }
+[[load]]
+where = { nodes = [60, 61, 62] }
+nodal_force = [0.002, 0, 0]
+[[load]]
+where = { half_space = { point = [0.1, 0, 0], normal = [1, 0, 0] } }
+pressure = 20
+factor = [{ time = 0, value = 0 }, { time = 0.1, value = 1 }]
+[[load]]
+where = { half_space = { point = [0, 0, 0], normal = [-1, 0, 0] } }
+traction = [0, 10, 0]
+[[load]]
+where = { half_space = { point = [0, 0, 0.05], normal = [0, 0, 1] } }
+body_force = [0, 30, 0]
+[output]
+interval = 0
+)";
+
+std::string motion(const std::string& precision) {
+    return dynamics(100,
+                    "gravity = [0, 0, -9.81]\ndamping = 2\nprecision = \"" + precision + "\"\n");
+}
+
+/// How often 50 steps ask for memory, after a few.
+std::size_t allocations_of_steps(const std::string& text, int num_threads) {
+    Simulation simulation(scenario_of(text));
+    simulation.set_num_threads(num_threads);
+    simulation.start();
+    for (int i = 0; i < 10; ++i) simulation.step();
+    const std::size_t before = num_allocations;
+    for (int i = 0; i < 50; ++i) simulation.step();
+    return num_allocations - before;
+}
+
+struct Body {
+    const char* name;
+    std::string text;
+};
+
+const Body bodies[] = {
+    {"neo-Hookean", tetrahedra + material()},
+    {"another law", tetrahedra + material("law = \"saint-venant-kirchhoff\"\n")},
+    {"viscous by stress", tetrahedra + material(prony + "\"stress\"\n")},
+    {"viscous by node", tetrahedra + material(prony + "\"nodal\"\n")},
+    {"HybMSS", hexahedra + material("method = \"hybmss\"\n")},
+    {"mass springs", tetrahedra + mass_springs},
+};
+
+TEST(SteadyState, AllocatesNothing) {
+    for (const auto& [name, body] : bodies)
+        for (const char* precision : {"double", "single"}) {
+            if (body.ends_with(mass_springs) && precision == std::string("single")) continue;
+            SCOPED_TRACE(testing::Message() << name << " in " << precision);
+            EXPECT_EQ(allocations_of_steps(body + surroundings + motion(precision), 1), 0u);
+        }
+}
+
+// A thread has a buffer, which it takes when it first gets work: it may come to that in any step.
+// TBB has memory of its own, from elsewhere, for tasks that go to the other thread.
+TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBufferOfTheSecond) {
+    for (const auto& [name, body] : bodies) {
+        SCOPED_TRACE(name);
+        EXPECT_LE(allocations_of_steps(body + surroundings + motion("double"), 2), 1u);
+    }
+}
+
+const char* const tools_away = R"(
+[[tool]]
+kind = "blade"
+name = "scalpel"
+edge = [[0, -1, 1.05], [0, 0.03, 1.053], [0, 0.2, 1.058]]
+path = [{ time = 0, at = [-0.02, 0, 0] }, { time = 1000, at = [0.2, 0, 0] }]
+[[tool]]
+kind = "blade"
+name = "spatula"
+mode = "separate"
+edge = [[0, -1, 1.05], [0, 0.2, 1.05]]
+path = [{ time = 0, at = [-0.02, 0, 0] }, { time = 1000, at = [0.2, 0, 0] }]
+[[tool]]
+kind = "carver"
+name = "burr"
+shape = { sphere = { radius = 0.01 } }
+path = [{ time = 0, at = [0.05, 0.05, 0.2] }, { time = 1000, at = [0.06, 0.05, 0.2] }]
+)";
+
+TEST(SteadyState, AllocatesNothingForToolsAway) {
+    EXPECT_EQ(allocations_of_steps(
+                  tetrahedra + material() + tools_away + surroundings + motion("double"), 1),
+              0u);
+}
+
+}  // namespace
+}  // namespace incise::sim
