@@ -175,9 +175,10 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
 }  // namespace
 
 int run(const RunOptions& options) {
-    const StopSignals signals(options.scenario.string() + ": stopped before its first step; " +
-                              (options.resume ? "to go on: " + resuming_command(options)
-                                              : std::string("nothing has been written")));
+    const StopSignals signals(options.scenario.string() + ": stopped before " +
+                              (options.resume ? "it went on; nothing has been changed; to go on: " +
+                                                    resuming_command(options)
+                                              : "its first step; nothing has been written"));
     auto overrides = options.overrides;
     if (options.end_time)
         overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
@@ -187,7 +188,8 @@ int run(const RunOptions& options) {
     std::optional<StoppedRun> stopped;
     if (options.resume) {
         if (const auto quantities = sim::finished_quantities(folder, scenario)) {
-            sim::remove_checkpoints_of_stops(folder);  // if it was killed when all else was done
+            if (!options.dry_run)  // one may be left if it was killed when all else was done
+                sim::remove_checkpoints_of_stops(folder);
             if (!options.quiet)
                 std::cerr << scenario.name << ": the run in " << folder.string()
                           << " is finished; there is nothing to resume\n";

@@ -11,6 +11,7 @@ void CutFront::put_on(NodeId n, bool is_exact, double reach) {
     const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach});
     place->second.reach = std::max(place->second.reach, reach);
     num_new_ += is_new;
+    has_changed_ = true;
 }
 
 bool CutFront::is_crossed(NodeId a, NodeId b) const {
@@ -20,6 +21,7 @@ bool CutFront::is_crossed(NodeId a, NodeId b) const {
 }
 
 void CutFront::toggle(NodeId a, NodeId b) {
+    has_changed_ = true;
     const auto toggle_from = [&](NodeId from, NodeId to) {
         auto& others = crossed_[from.value];
         const auto place = std::find(others.begin(), others.end(), to);
@@ -44,7 +46,8 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
 // Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
 // edges and nobody will ask for them.
 void CutFront::follow(const topology::ChangeSet& changes) {
-    if (is_empty()) return;
+    if (is_empty() || changes.is_empty()) return;
+    has_changed_ = true;
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
         const NodeId source = record.sources[0].node;

@@ -71,11 +71,18 @@ class CutFront {
     /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
     void forget(const std::vector<topology::NodeId>& nodes);
 
-    /// Of the nodes on the cut, how many are so since the last call of set_reviewed().
+    /// Of the nodes on the cut, how many are so since the last call of set_reviewed(); whether
+    /// anything has changed since.
     std::size_t num_new() const { return num_new_; }
-    void set_reviewed() { num_new_ = 0; }
+    bool has_changed() const { return has_changed_; }
+    void set_reviewed() {
+        num_new_ = 0;
+        has_changed_ = false;
+    }
 
-    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.crossed_, self.num_new_); }
+    static void archive(auto& ar, auto& self) {
+        ar(self.nodes_, self.crossed_, self.num_new_, self.has_changed_);
+    }
 
   private:
     struct Node {
@@ -87,6 +94,7 @@ class CutFront {
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
     std::size_t num_new_ = 0;
+    bool has_changed_ = false;
 };
 
 template <class Keep>

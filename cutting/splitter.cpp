@@ -127,18 +127,18 @@ class Splitter {
     /// front has grown by a share of its size, and when the sweep crosses nothing any more.
     void leave_behind(const topology::ChangeSet& changes) {
         std::vector<std::uint8_t> beside;
-        const double growth_allowed = touched_.empty() ? 0.0 : growth_before_review;
-        if (static_cast<double>(front_.num_new()) >
-            growth_allowed * static_cast<double>(front_.size())) {
-            beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
-            front_.set_reviewed();
-        }
+        const bool is_due = touched_.empty()
+                                ? front_.has_changed()
+                                : static_cast<double>(front_.num_new()) >
+                                      growth_before_review * static_cast<double>(front_.size());
+        if (is_due) beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
         const auto done = front_.nodes_unless([&](NodeId n, double reach) {
             return mesh_.is_alive(n) &&
                    surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&
                    (beside.empty() || beside[n.index()]);
         });
         forget(mesh_, done, front_);
+        if (is_due) front_.set_reviewed();  // forgetting takes crossings back
     }
 
     /// Of a copy, where its source is.

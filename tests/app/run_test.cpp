@@ -73,7 +73,8 @@ TEST_F(Run, StoppedWhileItReadsItsCheckpointsTellsHowToGoOn) {
     const auto outcome = finish(child);
     EXPECT_EQ(outcome.status, 130);
     EXPECT_EQ(outcome.err,
-              "incise: scene.toml: stopped before its first step; to go on: incise run scene.toml "
+              "incise: scene.toml: stopped before it went on; nothing has been changed; to go on: "
+              "incise run scene.toml "
               "--threads 2 --resume\n");
     EXPECT_EQ(support::count_entries(checkpoints), 100u);
 }
