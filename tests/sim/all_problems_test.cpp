@@ -81,7 +81,7 @@ preset = "livr"
               Lines{"10:8"});
 }
 
-TEST(AllProblems, OfSupportsAreAllPairsAndHideNoStep) {
+TEST(AllProblems, OfSupportsAreThoseWithTheFirstHolderAndHideNoStep) {
     const std::string text = minimal + "time_step = 5\n" + R"([[constraint]]
 where = { nodes = [3] }
 fix = "x"
@@ -103,10 +103,30 @@ fix = "z"
     EXPECT_EQ(errors[1].find("scene.toml:17:9: node 3 is held in x by both 'constraint_1' and "
                              "'constraint_3'"),
               0u);
-    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in x by both 'constraint_2' and "
+    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in y by both 'constraint_2' and "
                              "'constraint_3'"),
               0u);
     EXPECT_EQ(errors[3].find("scene.toml:9:13: dynamics.time_step of 5 s is above the stable"), 0u);
+}
+
+TEST(AllProblems, OfManySupportsAreTheFirstFew) {
+    const auto errors = [](std::size_t num_constraints) {
+        std::string text = minimal;
+        for (std::size_t i = 0; i < num_constraints; ++i)
+            text += "[[constraint]]\nwhere = { region = 0 }\nfix = 'xyz'\n";
+        return ScenarioFile(text).all_errors();
+    };
+    EXPECT_EQ(errors(11).size(), 10u);
+    EXPECT_EQ(errors(12).back(),
+              "scene.toml:43:9: and 1 more pair of constraints from here on hold a node in the "
+              "same direction; make their selections disjoint");
+    const auto many = errors(1000);
+    ASSERT_EQ(many.size(), 11u);
+    EXPECT_EQ(many[9].find("scene.toml:40:9: node 0 is held in x by both 'constraint_1' and "
+                           "'constraint_11'"),
+              0u)
+        << many[9];
+    EXPECT_EQ(many[10].find("scene.toml:43:9: and 989 more pairs of constraints "), 0u) << many[10];
 }
 
 TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {
