@@ -30,6 +30,12 @@ TEST(AllProblems, OfMoreFramesThanADiskHolds) {
               Lines{"scene.toml:7:1: key 'dynamics': an output interval of 0.01 s makes 1e+11 "
                     "frames of a run of 1e+09 s, more than the 1e+07 allowed: use a longer one, or "
                     "0 for no frames"});
+    // Nothing is said of the usual interval in place of one that cannot be read.
+    const ScenarioFile unreadable(minimal + "[output]\ninterval = 'x'\n");
+    EXPECT_EQ(
+        unreadable.errors({"dynamics.end_time=200000"}),
+        Lines{"scene.toml:10:12: key 'output.interval': must be a number, but is the text \"x\""});
+    EXPECT_EQ(unreadable.warnings({"dynamics.end_time=0.001"}), Lines{});
 }
 
 const std::string two_faults = R"([[tool]]
