@@ -200,7 +200,10 @@ std::vector<std::size_t> ElementSets::find_circle() const {
 ElementSets::Regions ElementSets::regions(std::span<const std::int64_t> elements) const {
     const auto owners = find_owners(elements);
     Regions result{std::vector<int>(elements.size(), 0), {}};
-    if (const auto circle = find_circle(); !circle.empty()) {
+    if (const auto circle = find_circle(); circle.size() == 1) {
+        result.warnings.push_back("element set " + in_quotes(sets_[circle[0]].name) +
+                                  " holds itself");
+    } else if (!circle.empty()) {
         constexpr std::size_t most_listed = 5;
         std::string list;
         for (std::size_t i = 0; i < std::min(circle.size(), most_listed); ++i)

@@ -101,9 +101,9 @@ class GmshReader {
             if (name == "PartitionedEntities") read_entities(true);
         } else {
             const auto end = "$End" + std::string(name);
-            // Names may quote the mark; binary data need not end with a line.
-            const bool is_text = !scanner_.is_binary() || name == "PhysicalNames";
-            if (is_text ? !scanner_.skip_past_line(end) : !scanner_.skip_past(end))
+            // Names may quote the mark; elsewhere it need not begin a line.
+            const bool may_quote = name == "PhysicalNames";
+            if (!(may_quote ? scanner_.skip_past_line(end) : scanner_.skip_past(end)))
                 scanner_.fail("section " + in_quotes(name) + " has no " + in_quotes(end) +
                               "; the file is cut short");
             return;

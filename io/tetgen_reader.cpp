@@ -57,8 +57,9 @@ class NumberLines {
         return count;
     }
     /// @param columns  in words
-    void expect_columns(std::size_t number, std::string_view columns) const {
-        if (num_columns() != number)
+    /// @param has_more  whether further columns may follow, which are not spoken of
+    void expect_columns(std::size_t number, std::string_view columns, bool has_more = false) const {
+        if (num_columns() < number || (num_columns() > number && !has_more))
             fail("expected " + std::string(columns) + ", as the first line has it, found " +
                  std::to_string(num_columns()) + " columns");
     }
@@ -104,8 +105,10 @@ class TetgenReader {
         if (num_markers > 1)
             nodes_.fail("the number of boundary markers is " + std::to_string(num_markers) +
                         "; it must be 0 or 1");
+        const bool has_more = nodes_.num_columns() < 4;  // the first line leaves counts out
         const auto columns = "an index, 3 coordinates, " + std::to_string(num_attributes) +
-                             " attributes and " + std::to_string(num_markers) + " markers";
+                             " attributes" +
+                             (has_more ? "" : " and " + std::to_string(num_markers) + " markers");
         auto& points = result_.mesh.points;
         points.reserve(static_cast<std::size_t>(num_nodes));
         for (std::uint64_t i = 0; i < num_nodes; ++i) {
@@ -115,7 +118,7 @@ class TetgenReader {
             const double y = coordinate(2, "coordinate y");
             const double z = coordinate(3, "coordinate z");
             points.emplace_back(x, y, z);
-            nodes_.expect_columns(4 + std::size_t{num_attributes} + num_markers, columns);
+            nodes_.expect_columns(4 + std::size_t{num_attributes} + num_markers, columns, has_more);
         }
         nodes_.expect_end(std::to_string(num_nodes) + " nodes");
         if (const auto twice = tags_.sort()) throw InputError(nodes_name_ + ": index " + *twice);

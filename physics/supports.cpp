@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "topology/error.h"
@@ -21,25 +20,23 @@ Vec3 Support::target(const Vec3& X, double time) const {
 
 std::vector<SupportConflict> find_conflicts(const topology::Mesh& mesh,
                                             std::span<const Support> supports) {
-    std::vector<std::pair<NodeId, std::size_t>> holders;
+    constexpr auto nobody = static_cast<std::size_t>(-1);
+    constexpr std::array<std::size_t, 3> free{nobody, nobody, nobody};
+    std::vector<std::array<std::size_t, 3>> first_of(mesh.node_capacity(), free);
+    std::vector<std::size_t> last_second(supports.size(), nobody);  // found with each first one
+    std::vector<SupportConflict> conflicts;
     for (std::size_t s = 0; s < supports.size(); ++s)
         for (const NodeSet::Member& member : supports[s].nodes.members())
-            if (mesh.is_alive(member.node)) holders.emplace_back(member.node, s);
-    std::sort(holders.begin(), holders.end());
-
-    std::map<std::pair<std::size_t, std::size_t>, SupportConflict> found;
-    for (auto b = holders.begin(); b != holders.end(); ++b)
-        for (auto a = b; a != holders.begin() && (a - 1)->first == b->first;) {
-            --a;
-            const auto &of_a = supports[a->second].components,
-                       &of_b = supports[b->second].components;
-            for (std::size_t c = 0; c < 3; ++c)
-                if (of_a[c] && of_b[c])
-                    found.try_emplace({b->second, a->second},
-                                      SupportConflict{b->first, c, a->second, b->second});
-        }
-    std::vector<SupportConflict> conflicts;
-    for (const auto& [pair, conflict] : found) conflicts.push_back(conflict);
+            for (std::size_t c = 0; c < 3 && mesh.is_alive(member.node); ++c) {
+                if (!supports[s].components[c]) continue;
+                std::size_t& first = first_of[member.node.index()][c];
+                if (first == nobody) {
+                    first = s;
+                } else if (last_second[first] != s) {
+                    last_second[first] = s;
+                    conflicts.push_back({member.node, c, first, s});
+                }
+            }
     return conflicts;
 }
 

@@ -37,9 +37,9 @@ struct SupportConflict {
     std::size_t first, second;  ///< indices of the supports, in ascending order
 };
 
-/// Each pair of supports that have a node and a component in common once, with the first of these;
-/// in the order of the second supports.
-/// Cost: O(n log n) in the nodes of all supports, and the pairs at each of them.
+/// Each support that prescribes what an earlier one does, with the first that does so: each such
+/// pair once, with the first node and component of it; in the order of the second supports.
+/// Cost: O(n) in the nodes of all supports.
 std::vector<SupportConflict> find_conflicts(const topology::Mesh& mesh,
                                             std::span<const Support> supports);
 

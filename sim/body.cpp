@@ -8,6 +8,7 @@
 #include <new>
 #include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "io/mesh_reader.h"
@@ -304,6 +305,25 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
 
 namespace {
 
+/// The first few of them: many constraints may hold the same nodes.
+void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
+                    std::span<const physics::Support> supports, BodyProblems& problems) {
+    constexpr std::size_t max_told = 10;
+    const auto conflicts = physics::find_conflicts(mesh, supports);
+    for (std::size_t i = 0; i < conflicts.size(); ++i) {
+        const std::string& place = scenario.constraints[conflicts[i].second].place;
+        if (i == max_told) {
+            const std::size_t num_left = conflicts.size() - max_told;
+            problems.add(place, "and " + std::to_string(num_left) + " more pair" +
+                                    (num_left > 1 ? "s" : "") +
+                                    " of constraints from here on hold a node in the same "
+                                    "direction; make their selections disjoint");
+            return;
+        }
+        problems.add(place, describe(conflicts[i], mesh, supports));
+    }
+}
+
 physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh,
                                          BodyProblems& problems) {
     physics::Surroundings surroundings;
@@ -315,9 +335,7 @@ physics::Surroundings build_surroundings(const Scenario& scenario, const topolog
     for (const LoadSpec& spec : scenario.loads)
         surroundings.loads.push_back(
             problems.try_to(spec.place, [&] { return build_load(spec, mesh); }));
-    for (const auto& conflict : physics::find_conflicts(mesh, surroundings.supports))
-        problems.add(scenario.constraints[conflict.second].place,
-                     describe(conflict, mesh, surroundings.supports));
+    tell_conflicts(scenario, mesh, surroundings.supports, problems);
     return surroundings;
 }
 

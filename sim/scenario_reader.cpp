@@ -245,8 +245,9 @@ OutputSpec read_output(const TableReader& root, double end_time) {
         return spec;
     }
     spec.interval = output->number("interval", spec.interval, limits::non_negative);
-    check_number_of_frames(*output, "interval", spec.interval, end_time);
-    if (end_time > 0.0 && spec.interval > end_time)
+    const bool knows_interval = output->is_sound("interval");
+    if (knows_interval) check_number_of_frames(*output, "interval", spec.interval, end_time);
+    if (knows_interval && end_time > 0.0 && spec.interval > end_time)
         output->warning("interval", "the output interval of " + format_number(spec.interval) +
                                         " s is longer than the run of " + format_number(end_time) +
                                         " s: only the first and last state are written");

@@ -172,10 +172,10 @@ TEST(AbaqusReader, ReadsSetsThatHoldOneAnother) {
                 testing::Contains("element sets hold themselves, each the next one: 'A', 'B'; all "
                                   "of them hold the same elements"));
     EXPECT_THAT(warnings("*ELSET, ELSET=A\n3, A\n" + section),
-                testing::Contains(HasSubstr("each the next one: 'A'; all")));
+                testing::Contains("element set 'A' holds itself"));
     EXPECT_THAT(
         warnings("*ELSET, ELSET=C\n3\n*ELSET, ELSET=B\nC\n*ELSET, ELSET=A\nB, C\n" + section),
-        testing::Not(testing::Contains(HasSubstr("hold themselves"))));
+        testing::Not(testing::Contains(testing::ContainsRegex("hold(s itself| themselves)"))));
 }
 
 TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {

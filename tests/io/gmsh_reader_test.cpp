@@ -159,16 +159,17 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
                 HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
 }
 
-TEST(GmshReader, EndsSectionsThatItSkipsAtTheLineThatSaysSo) {
+TEST(GmshReader, EndsSectionsThatItSkipsAtTheirMarkWhichNamesMayQuote) {
     const std::string names =
         "$PhysicalNames\n1\n3 5 \"liver $EndPhysicalNames\"\n$EndPhysicalNames \r\n";
     for (const std::string& text :
          {replaced(version_2, "$Nodes", names + "$Nodes"),
-          replaced(version_2, "$Nodes", "$Comments\nnot $EndComments\n  $EndComments\n$Nodes")})
+          replaced(version_2, "$Nodes", "$Comments\nhello $EndComments\n$Nodes"),
+          replaced(version_2, "$Nodes", "$Comments\nhello\n  $EndComments\n$Nodes")})
         EXPECT_EQ(read_bytes("liver.msh", text).mesh.num_cells(),
                   read_bytes("liver.msh", version_2).mesh.num_cells());
-    EXPECT_THAT(refusal("liver.msh", "$Comments\nnot $EndComments\n$EndCommentsAll\n"),
-                StartsWith("liver.msh:1: section 'Comments' has no '$EndComments'"));
+    EXPECT_THAT(refusal("liver.msh", "$PhysicalNames\n1\n3 5 \"$EndPhysicalNames\"\n"),
+                StartsWith("liver.msh:1: section 'PhysicalNames' has no '$EndPhysicalNames'"));
 }
 
 TEST(GmshReader, NamesTheRangeOfNumbersBeyondIt) {

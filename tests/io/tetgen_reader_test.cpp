@@ -173,10 +173,12 @@ TEST(TetgenReader, RefusesNodesOfOtherThanTheAnnouncedColumns) {
     };
     for (const auto& [header, more] :
          {std::pair{"", ""}, std::pair{" 0", ""}, std::pair{" 0 0", ""}, std::pair{" 0 1", " -1"},
-          std::pair{" 2", " 0.5 1e3"}, std::pair{" 2 1", " 0.5 1e3 7"}})
+          std::pair{" 2", " 0.5 1e3"}, std::pair{" 2 1", " 0.5 1e3 7"},
+          // What the first line leaves out may be there.
+          std::pair{"", " 1"}, std::pair{"", " 0.5 1e3 7"}, std::pair{" 2", " 0.5 1e3 7"}})
         EXPECT_EQ(read_pair(nodes(header, more), element).mesh.points.size(), 4u) << header;
     for (const auto& [header, more] :
-         {std::pair{"", " 1"}, std::pair{" 0 0", " 1"}, std::pair{" 0 1", ""},
+         {std::pair{" 2", " 1"}, std::pair{" 0 0", " 1"}, std::pair{" 0 1", ""},
           std::pair{" 0 1", " 1 1"}, std::pair{" 1 1", " 1"}, std::pair{" 1 0", ""}})
         EXPECT_THAT(refusal_of(nodes(header, more), element),
                     AllOf(StartsWith("liver.node:2: expected an index, 3 coordinates, "),
@@ -185,6 +187,9 @@ TEST(TetgenReader, RefusesNodesOfOtherThanTheAnnouncedColumns) {
     EXPECT_EQ(refusal_of(nodes(" 3 1", ""), element),
               "liver.node:2: expected an index, 3 coordinates, 3 attributes and 1 markers, as the "
               "first line has it, found 4 columns");
+    EXPECT_EQ(refusal_of(nodes(" 2", " 1"), element),
+              "liver.node:2: expected an index, 3 coordinates, 2 attributes, as the first line has "
+              "it, found 5 columns");
     EXPECT_EQ(refusal_of(nodes(" 999999999999 0", ""), element),
               "liver.node:1: expected the number of attributes, found '999999999999', which is out "
               "of range: 0 to 4294967295 are allowed");

@@ -30,6 +30,12 @@ TEST(AllProblems, OfMoreFramesThanADiskHolds) {
               Lines{"scene.toml:7:1: key 'dynamics': an output interval of 0.01 s makes 1e+11 "
                     "frames of a run of 1e+09 s, more than the 1e+07 allowed: use a longer one, or "
                     "0 for no frames"});
+    // Nothing is said of the usual interval in place of one that cannot be read.
+    const ScenarioFile unreadable(minimal + "[output]\ninterval = 'x'\n");
+    EXPECT_EQ(
+        unreadable.errors({"dynamics.end_time=200000"}),
+        Lines{"scene.toml:10:12: key 'output.interval': must be a number, but is the text \"x\""});
+    EXPECT_EQ(unreadable.warnings({"dynamics.end_time=0.001"}), Lines{});
 }
 
 const std::string two_faults = R"([[tool]]
@@ -81,7 +87,7 @@ preset = "livr"
               Lines{"10:8"});
 }
 
-TEST(AllProblems, OfSupportsAreAllPairsAndHideNoStep) {
+TEST(AllProblems, OfSupportsAreThoseWithTheFirstHolderAndHideNoStep) {
     const std::string text = minimal + "time_step = 5\n" + R"([[constraint]]
 where = { nodes = [3] }
 fix = "x"
@@ -103,10 +109,30 @@ fix = "z"
     EXPECT_EQ(errors[1].find("scene.toml:17:9: node 3 is held in x by both 'constraint_1' and "
                              "'constraint_3'"),
               0u);
-    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in x by both 'constraint_2' and "
+    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in y by both 'constraint_2' and "
                              "'constraint_3'"),
               0u);
     EXPECT_EQ(errors[3].find("scene.toml:9:13: dynamics.time_step of 5 s is above the stable"), 0u);
+}
+
+TEST(AllProblems, OfManySupportsAreTheFirstFew) {
+    const auto errors = [](std::size_t num_constraints) {
+        std::string text = minimal;
+        for (std::size_t i = 0; i < num_constraints; ++i)
+            text += "[[constraint]]\nwhere = { region = 0 }\nfix = 'xyz'\n";
+        return ScenarioFile(text).all_errors();
+    };
+    EXPECT_EQ(errors(11).size(), 10u);
+    EXPECT_EQ(errors(12).back(),
+              "scene.toml:43:9: and 1 more pair of constraints from here on hold a node in the "
+              "same direction; make their selections disjoint");
+    const auto many = errors(1000);
+    ASSERT_EQ(many.size(), 11u);
+    EXPECT_EQ(many[9].find("scene.toml:40:9: node 0 is held in x by both 'constraint_1' and "
+                           "'constraint_11'"),
+              0u)
+        << many[9];
+    EXPECT_EQ(many[10].find("scene.toml:43:9: and 989 more pairs of constraints "), 0u) << many[10];
 }
 
 TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {

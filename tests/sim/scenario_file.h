@@ -48,7 +48,9 @@ class ScenarioFile {
         report.errors.insert(report.errors.end(), of_body.begin(), of_body.end());
         return without_folder(report.errors);
     }
-    std::vector<std::string> warnings() const { return without_folder(read().warnings); }
+    std::vector<std::string> warnings(const std::vector<std::string>& overrides = {}) const {
+        return without_folder(read(overrides).warnings);
+    }
 
   private:
     std::vector<std::string> without_folder(std::vector<std::string> messages) const {
