@@ -54,7 +54,7 @@ const std::string mass_springs =
 const std::string prony =
     "prony = [{ alpha = 0.4, tau = 0.02 }, { alpha = 0.2, tau = 0.3 }]\nprony_rule = ";
 
-const std::string surroundings = R"(
+const std::string surroundings = three_loads + R"(
 [[constraint]]
 name = "floor"
 where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
@@ -66,18 +66,8 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 10, by = [0.005, 0, 0.02] }]
 rotate = [{ time = 0, angle = 0 }, { time = 10, angle = 0.2 }]
 about = { point = [0.05, 0.05, 0.1], axis = [0, 0, 1] }
 [[load]]
-where = { nodes = [60, 61, 62] }
-nodal_force = [0.002, 0, 0]
-[[load]]
-where = { half_space = { point = [0.1, 0, 0], normal = [1, 0, 0] } }
-pressure = 20
-factor = [{ time = 0, value = 0 }, { time = 0.1, value = 1 }]
-[[load]]
 where = { half_space = { point = [0, 0, 0], normal = [-1, 0, 0] } }
 traction = [0, 10, 0]
-[[load]]
-where = { half_space = { point = [0, 0, 0.05], normal = [0, 0, 1] } }
-body_force = [0, 30, 0]
 [output]
 interval = 0
 )";

@@ -110,23 +110,10 @@ path = [{ time = 0.01, at = [-0.02, 0, 0] }, { time = 0.06, at = [0.06, 0, 0.01]
 
 const std::string output = "[output]\ninterval = 0.04\ncompression = \"none\"\n";
 
-const std::string two_loads = R"(
-[[load]]
-where = { nodes = [60, 61, 62] }
-nodal_force = [0.002, 0, 0]
-[[load]]
-where = { half_space = { point = [0.1, 0, 0], normal = [1, 0, 0] } }
-pressure = 20
-factor = [{ time = 0, value = 0 }, { time = 0.1, value = 1 }]
-[[load]]
-where = { half_space = { point = [0, 0, 0.05], normal = [0, 0, 1] } }
-body_force = [0, 30, 0]
-)";
-
 TEST(ResumedRun, EqualsOneNeverStoppedAmongCutsOfABladeThatSplits) {
     const RunFolder folder;
     expect_resumable(folder,
-                     soft_cube + pulled_lid + splitting_blade + two_loads + output +
+                     soft_cube + pulled_lid + splitting_blade + three_loads + output +
                          dynamics(0.1, "gravity = [0, 0, -9.81]\ndamping = 2\nsafety = 0.2\n"),
                      4);
 }

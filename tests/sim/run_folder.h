@@ -45,6 +45,20 @@ edge = [[0, -0.1, 0.06], [0, 0.2, 0.06]]
 path = [{ time = 0.05, at = [-0.05, 0, 0] }, { time = 0.15, at = [0.15, 0, 0.003] }]
 )";
 
+/// On three nodes, on a side and on the upper half of a cube of 10 cm.
+inline const std::string three_loads = R"(
+[[load]]
+where = { nodes = [60, 61, 62] }
+nodal_force = [0.002, 0, 0]
+[[load]]
+where = { half_space = { point = [0.1, 0, 0], normal = [1, 0, 0] } }
+pressure = 20
+factor = [{ time = 0, value = 0 }, { time = 0.1, value = 1 }]
+[[load]]
+where = { half_space = { point = [0, 0, 0.05], normal = [0, 0, 1] } }
+body_force = [0, 30, 0]
+)";
+
 inline std::string dynamics(double end_time, const std::string& more = "") {
     return "[dynamics]\nend_time = " + std::to_string(end_time) + "\n" + more;
 }
