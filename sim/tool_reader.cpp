@@ -68,9 +68,10 @@ Blade read_blade(const TableReader& tool) {
     Blade blade;
     if (tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]"))
         blade.edge = tool.vectors("edge");
-    if (tool.has("edge") && blade.edge.size() < 2)
+    const bool knows_edge = tool.is_sound("edge");  // else points are left out
+    if (tool.has("edge") && knows_edge && blade.edge.size() < 2)
         tool.error("edge", "must have at least 2 points");
-    for (std::size_t i = 1; i < blade.edge.size(); ++i)
+    for (std::size_t i = 1; i < blade.edge.size() && knows_edge; ++i)
         if (blade.edge[i] == blade.edge[i - 1])
             tool.error("edge", "points " + std::to_string(i - 1) + " and " + std::to_string(i) +
                                    " (from 0) are the same: leave one out");

@@ -180,6 +180,17 @@ traction = [1, 2]
         (Lines{"11:9", "11:31", "11:52", "13:1", "16:39", "17:11", "18:1", "19:12", "20:12"}));
 }
 
+TEST(AllProblems, OfAPointOfAnEdgeSayNothingOfTheirNumber) {
+    EXPECT_EQ(ScenarioFile(minimal + R"([[tool]]
+kind = "blade"
+edge = [[0, "a", 0], [0, 1, 0]]
+path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]
+)")
+                  .errors(),
+              (Lines{"scene.toml:11:13: key 'tool[0].edge[0][1]': must be a number, but is the "
+                     "text \"a\""}));
+}
+
 TEST(AllProblems, OfBothKeysForFibresAreThoseOfEach) {
     const auto errors = ScenarioFile(minimal_mesh + R"([[material]]
 law = "holzapfel-gasser-ogden"
