@@ -31,11 +31,19 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+std::string about_key(std::string_view path, std::string_view text) {
+    return std::string("key ").append(in_quotes(path)).append(": ").append(text);
+}
+
 }  // namespace
 
 void Diagnostics::key_error(const Place& place, std::string_view path, std::string_view text) {
-    errors_.push_back({place, std::string("key ").append(in_quotes(path)).append(": ").append(text),
-                       std::string(path)});
+    errors_.push_back({place, about_key(path, text), std::string(path)});
+}
+
+void Diagnostics::unknown_key_error(const Place& place, std::string_view path,
+                                    std::string_view text) {
+    errors_.push_back({place, about_key(path, text), {}});
 }
 
 bool Diagnostics::has_errors_at(std::string_view path) const {
@@ -74,6 +82,10 @@ std::string_view nearest(std::string_view name, std::span<const std::string_view
             best = candidate;
         }
     return best;
+}
+
+bool is_misspelt(std::string_view name, std::string_view candidate) {
+    return 3 * edit_distance(name, candidate) <= std::max(name.size(), candidate.size());
 }
 
 std::string in_quotes(std::string_view text) {

@@ -22,6 +22,9 @@ class Diagnostics {
     }
     /// "key 'PATH': TEXT"
     void key_error(const Place& place, std::string_view path, std::string_view text);
+    /// The same of a key that is not known, and so says nothing of the rest: has_errors_at() does
+    /// not count it.
+    void unknown_key_error(const Place& place, std::string_view path, std::string_view text);
     void warning(const Place& place, std::string text) {
         warnings_.push_back({place, std::move(text), {}});
     }
@@ -53,6 +56,9 @@ class Diagnostics {
 /// The candidate that takes the fewest insertions, deletions, replacements and swaps of
 /// neighbours to make of `name`; the first of equals. Empty without candidates.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);
+
+/// Whether `name` is most likely the candidate misspelt: by one slip in three letters at most.
+bool is_misspelt(std::string_view name, std::string_view candidate);
 
 /// The text between single quotes.
 std::string in_quotes(std::string_view text);

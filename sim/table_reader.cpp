@@ -35,18 +35,30 @@ std::optional<std::string> complaint(std::string_view name, const Names& names) 
 TableReader::TableReader(const Table& table, const Place& place, std::string path,
                          const Names& keys, Diagnostics& diagnostics)
     : table_(table), place_(place), path_(std::move(path)), diagnostics_(diagnostics) {
-    for (const auto& entry : table_)
-        if (const auto text = complaint(entry.key, keys))
-            diagnostics_.key_error(entry.place, path_of(entry.key), *text);
+    for (const auto& entry : table_) {
+        const auto text = complaint(entry.key, keys);
+        if (!text) continue;
+        diagnostics_.unknown_key_error(entry.place, path_of(entry.key), *text);
+        const std::string_view meant = nearest(entry.key, keys.supported);
+        if (!has(meant) && is_misspelt(entry.key, meant))
+            misspelt_.emplace_back(meant, &entry.value);
+    }
+}
+
+const Value* TableReader::value_of(std::string_view key) const {
+    if (const Value* value = find(table_, key)) return value;
+    for (const auto& [meant, value] : misspelt_)
+        if (meant == key) return value;
+    return nullptr;
 }
 
 bool TableReader::is_text(std::string_view key) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     return value != nullptr && value->get<std::string>() != nullptr;
 }
 
 bool TableReader::is_empty_array(std::string_view key) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     const Array* elements = value != nullptr ? value->get<Array>() : nullptr;
     return elements != nullptr && elements->empty();
 }
@@ -63,19 +75,19 @@ double TableReader::number(std::string_view key, double fallback, const Limits& 
 
 std::optional<double> TableReader::number_if_given(std::string_view key,
                                                    const Limits& limits) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     return value != nullptr ? number_of(*value, path_of(key), limits) : std::nullopt;
 }
 
 std::int64_t TableReader::integer(std::string_view key, std::int64_t fallback,
                                   const IntegerLimits& limits) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     return value != nullptr ? integer_of(*value, path_of(key), limits).value_or(fallback)
                             : fallback;
 }
 
 bool TableReader::flag(std::string_view key, bool fallback) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr) return fallback;
     if (const auto* given = value->get<bool>()) return *given;
     report_type(*value, path_of(key), "true or false");
@@ -83,7 +95,7 @@ bool TableReader::flag(std::string_view key, bool fallback) const {
 }
 
 std::string TableReader::text(std::string_view key, const std::string& fallback) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr) return fallback;
     if (const auto* given = value->get<std::string>()) return *given;
     report_type(*value, path_of(key), "text in quotes");
@@ -91,7 +103,7 @@ std::string TableReader::text(std::string_view key, const std::string& fallback)
 }
 
 Vec3 TableReader::vector(std::string_view key, const Vec3& fallback) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     return value != nullptr ? vector_of(*value, path_of(key)).value_or(fallback) : fallback;
 }
 
@@ -116,7 +128,7 @@ std::vector<std::int64_t> TableReader::integers(std::string_view key, const Inte
                                                 Repeats repeats) const {
     std::vector<std::int64_t> result;
     std::set<std::int64_t> before;
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr) return result;
     const auto add = [&](const Value& element, const std::string& path) {
         const auto number = integer_of(element, path, limits);
@@ -142,7 +154,7 @@ std::vector<std::int64_t> TableReader::integers(std::string_view key, const Inte
 
 std::optional<std::size_t> TableReader::choice(std::string_view key, const Names& names) const {
     const std::string name = text(key);
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr || value->get<std::string>() == nullptr) return std::nullopt;
     if (const auto wrong = complaint(name, names)) {
         error(key, in_quotes(name) + ": " + *wrong);
@@ -177,7 +189,7 @@ std::vector<std::size_t> TableReader::choices(std::string_view key, const Names&
 }
 
 std::optional<TableReader> TableReader::table(std::string_view key, const Names& keys) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr) return std::nullopt;
     if (const auto* entries = value->get<Table>())
         return TableReader(*entries, value->place, path_of(key), keys, diagnostics_);
@@ -221,7 +233,7 @@ std::string TableReader::path_of(std::string_view key) const {
 }
 
 const Place& TableReader::place_of(std::string_view key) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     return value != nullptr ? value->place : place_;
 }
 
@@ -238,7 +250,7 @@ void TableReader::warning(std::string_view key, const std::string& text) const {
 }
 
 const Array* TableReader::array(std::string_view key, std::string_view wanted) const {
-    const Value* value = find(table_, key);
+    const Value* value = value_of(key);
     if (value == nullptr) return nullptr;
     if (const auto* elements = value->get<Array>()) return elements;
     report_type(*value, path_of(key), wanted);

@@ -40,11 +40,13 @@ enum class Repeats { taken_once, refused };
 /// one only by require(). The result counts only if there are no errors in the end.
 class TableReader {
   public:
-    /// Reports the keys that are not among `keys`. All references must outlive the reader.
+    /// Reports the keys that are not among `keys`; one that is most likely another one misspelt is
+    /// then read as that, so that what follows from it is not missed. All references must outlive
+    /// the reader.
     TableReader(const Table& table, const Place& place, std::string path, const Names& keys,
                 Diagnostics& diagnostics);
 
-    bool has(std::string_view key) const { return find(table_, key) != nullptr; }
+    bool has(std::string_view key) const { return value_of(key) != nullptr; }
     bool is_text(std::string_view key) const;
     bool is_empty_array(std::string_view key) const;
     /// Reports that the key is missing; `remedy` says what to write.
@@ -83,7 +85,8 @@ class TableReader {
     /// The same for messages: "FILE:line:column".
     std::string place_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
-    /// Whether nothing has been reported of the key, or of the table without key.
+    /// Whether nothing has been reported of the key, or of the table without key, but keys that are
+    /// not known.
     bool is_sound(std::string_view key = {}) const {
         return !diagnostics_.has_errors_at(path_of(key));
     }
@@ -94,6 +97,8 @@ class TableReader {
     void warning(std::string_view key, const std::string& text) const;
 
   private:
+    /// Null if it is missing.
+    const Value* value_of(std::string_view key) const;
     const Array* array(std::string_view key, std::string_view wanted) const;
     std::optional<double> number_of(const Value& value, const std::string& path,
                                     const Limits& limits) const;
@@ -103,6 +108,7 @@ class TableReader {
     void report_type(const Value& value, const std::string& path, std::string_view wanted) const;
 
     const Table& table_;
+    std::vector<std::pair<std::string_view, const Value*>> misspelt_;  // by the key that was meant
     Place place_;
     std::string path_;
     Diagnostics& diagnostics_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "scenario_file.h"
 
 namespace incise::sim {
@@ -85,6 +87,39 @@ preset = "livr"
               (Lines{"19:10", "15:9", "13:11"}));
     EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\nmode = 1\n").all_errors()),
               Lines{"10:8"});
+}
+
+TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
+    const auto places = [](std::string text, const std::string& known, const std::string& given) {
+        text.replace(text.find(known), known.size(), given);
+        return places_of(ScenarioFile(text + two_faults).all_errors());
+    };
+    // Misspelt ones mean what they were to mean.
+    const std::string scaled = minimal_mesh + "scale = 100\n" + minimal_rest +
+                               "time_step = 5\n[[constraint]]\nname = 'far'\n"
+                               "where = { box = { min = [90, 90, 90], max = [110, 110, 110] } }\n"
+                               "fix = 'x'\n";
+    const auto before = places(scaled, "scale", "scale");
+    EXPECT_EQ(before.size(), 2u);  // the step of 5 s holds for a body so large
+    for (const auto& [known, given, place] :
+         {std::array<std::string, 3>{"scale", "scael", "3:1"},
+          {"mesh", "msh", "1:2"},
+          {"box", "bxo", "2:1"},
+          {"material", "materials", "4:3"},
+          {"young", "yuong", "6:1"},
+          {"dynamics", "dynamic", "8:2"},
+          {"end_time", "endtime", "9:1"},
+          {"[[constraint]]\nname", "[[constraint]]\nnmae", "12:1"}}) {
+        auto errors = places(scaled, known, given);
+        EXPECT_EQ(std::erase(errors, place), 1u) << given;
+        EXPECT_EQ(errors, before) << given;
+    }
+    // Of others nothing is made.
+    for (const std::string line : {"depth = 3", "xyz = 'a'", "e = []"}) {
+        auto errors = places(scaled, "scale = 100", "scale = 100\n" + line);
+        EXPECT_EQ(std::erase(errors, "4:1"), 1u) << line;
+        EXPECT_EQ(errors.size(), before.size()) << line;
+    }
 }
 
 TEST(AllProblems, OfSupportsAreThoseWithTheFirstHolderAndHideNoStep) {
