@@ -151,6 +151,7 @@ StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int
                   .single_step = single.step * per_element,
                   .reference = std::nullopt,
                   .reference_ratio = std::nullopt,
+                  .arithmetic = std::nullopt,
                   .steps_per_second = 1.0 / step,
                   .real_time_factor = body.dt / step,
                   .gigaflops = measured.operations * elements / forces * 1e-9,
@@ -161,6 +162,8 @@ StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int
         const physics::EndOfStep state{model.positions(), model.history(), body.dt};
         rate.reference =
             per_element * best_time(seconds, [&] { model.elements().add_forces(state, sums); });
+        if (const auto* links = std::get_if<physics::HyperElasticLinks>(&measured.material.method))
+            rate.arithmetic = 1e9 * physics::measure_arithmetic(links->law);
         rate.reference_ratio = (*rate.reference + rate.step - rate.forces) / rate.step;
     }
     return rate;

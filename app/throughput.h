@@ -16,7 +16,7 @@ struct MachineSpeed {
     std::string processor;          ///< as the system names it
     std::string_view instructions;  ///< what the fast kernels use of it: plain, avx2, avx512
     int num_cores = 0;
-    double gigaflops = 0.0;             ///< additions and multiplications of doubles, not fused
+    double gigaflops = 0.0;             ///< additions and multiplications of doubles, fused
     double gigabytes_per_second = 0.0;  ///< read from memory, far more than caches hold
 };
 
@@ -31,6 +31,8 @@ struct StepRate {
     double single_step = 0.0;
     std::optional<double> reference;        ///< forces by the plain formulas, one thread
     std::optional<double> reference_ratio;  ///< a step with those over a step
+    /// Of forces the arithmetic by itself, one thread: physics::measure_arithmetic.
+    std::optional<double> arithmetic;
     double steps_per_second = 0.0;
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
     double gigaflops = 0.0;             ///< of the forces

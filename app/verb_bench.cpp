@@ -37,6 +37,8 @@ ordered_json as_json(const Throughput& throughput) {
                             {"single_step_ns_per_element", rate.single_step},
                             {"reference_ns_per_element", nullptr},
                             {"reference_step_over_step", nullptr},
+                            {"arithmetic_ns_per_element", nullptr},
+                            {"step_over_arithmetic", nullptr},
                             {"microseconds_per_step", 1e6 / rate.steps_per_second},
                             {"steps_per_second", rate.steps_per_second},
                             {"real_time_factor", rate.real_time_factor},
@@ -44,6 +46,10 @@ ordered_json as_json(const Throughput& throughput) {
                             {"gbytes_per_second", rate.gigabytes_per_second}};
         if (rate.reference) row["reference_ns_per_element"] = *rate.reference;
         if (rate.reference_ratio) row["reference_step_over_step"] = *rate.reference_ratio;
+        if (rate.arithmetic) {
+            row["arithmetic_ns_per_element"] = *rate.arithmetic;
+            row["step_over_arithmetic"] = rate.step / *rate.arithmetic;
+        }
         json["steps"].push_back(std::move(row));
     }
     json["edits"] = ordered_json::array();
@@ -70,17 +76,16 @@ void print_text(const Throughput& throughput) {
     const MachineSpeed& machine = throughput.machine;
     std::printf("processor   %s, %d cores, instructions: %s\n", machine.processor.c_str(),
                 machine.num_cores, std::string(machine.instructions).c_str());
-    std::printf(
-        "limits      %.1f GFLOP/s (doubles, not fused), %.1f GB/s from memory, on one core\n",
-        machine.gigaflops, machine.gigabytes_per_second);
+    std::printf("limits      %.1f GFLOP/s (doubles, fused), %.1f GB/s from memory, on one core\n",
+                machine.gigaflops, machine.gigabytes_per_second);
     std::printf("bodies      cubes of 10 cm with the stiffness of %s\n\n",
                 std::string(throughput.tissue).c_str());
-    std::printf("%-22s %8s %7s | %9s %9s %11s %7s | %9s %8s %9s | %7s %6s | %9s %9s\n", "law",
-                "elements", "threads", "forces", "step", "reference", "step", "step", "steps/s",
-                "real time", "GFLOP/s", "GB/s", "forces in", "step in");
-    std::printf("%-22s %8s %7s | %9s %9s %11s %7s | %9s %8s %9s | %7s %6s | %9s %9s\n", "", "", "",
-                "ns/elem.", "ns/elem.", "forces, ns", "over", "us", "", "factor", "", "", "single",
-                "single");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %6s | %9s %9s\n", "law",
+                "elements", "threads", "forces", "step", "reference", "step", "arithmetic", "step",
+                "steps/s", "real time", "GFLOP/s", "GB/s", "forces in", "step in");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %6s | %9s %9s\n", "", "",
+                "", "ns/elem.", "ns/elem.", "forces, ns", "over", "alone, ns", "us", "", "factor",
+                "", "", "single", "single");
     const auto text = [](const std::optional<double>& value) {
         char digits[32] = "";
         if (value) std::snprintf(digits, sizeof digits, "%.1f", *value);
@@ -89,12 +94,13 @@ void print_text(const Throughput& throughput) {
     for (const StepRate& rate : throughput.steps) {
         const auto name = std::string(rate.law.empty() ? rate.method : rate.law);
         std::printf(
-            "%-22s %8zu %7d | %9.2f %9.2f %11s %7s | %9.0f %8.0f %9.3g | %7.1f %6.1f | %9.2f "
+            "%-22s %8zu %7d | %9.2f %9.2f %11s %7s %10s | %9.0f %8.0f %9.3g | %7.1f %6.1f | %9.2f "
             "%9.2f\n",
             name.c_str(), rate.elements, rate.num_threads, rate.forces, rate.step,
             text(rate.reference).c_str(), text(rate.reference_ratio).c_str(),
-            1e6 / rate.steps_per_second, rate.steps_per_second, rate.real_time_factor,
-            rate.gigaflops, rate.gigabytes_per_second, rate.single_forces, rate.single_step);
+            text(rate.arithmetic).c_str(), 1e6 / rate.steps_per_second, rate.steps_per_second,
+            rate.real_time_factor, rate.gigaflops, rate.gigabytes_per_second, rate.single_forces,
+            rate.single_step);
     }
     std::printf("\n%-10s %-16s %8s %7s | %9s\n", "edit", "item", "elements", "items", "us/item");
     for (const EditRate& rate : throughput.edits)

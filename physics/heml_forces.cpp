@@ -1,101 +1,10 @@
 // Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/heml_lanes.h"
-#include "physics/lanes.h"
+#include "physics/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
-
-/// Symmetric 3 x 3: 11, 22, 33, 12, 23, 31.
-template <class Scalar>
-struct Symmetric {
-    Scalar d1, d2, d3, s12, s23, s31;
-};
-
-/// The part of a group that starts at lane `first`.
-template <class Law, class Number>
-[[gnu::always_inline]] inline void add_forces_of(const Law& law, double J0,
-                                                 const LinkGroup<Number>& group,
-                                                 [[maybe_unused]] const FibreGroup<Number>* fibres,
-                                                 std::size_t first, const LocalVector* positions,
-                                                 LocalVector* forces) {
-    using Scalar = Lanes<Number>;
-    using Vector = Lanes3<Number>;
-    const auto load = [first](const auto& row) { return Scalar::load(row + first); };
-    const auto [v1, v2, v3] = gather_edges<Number>(positions, group.nodes, first);
-
-    // Changes of the squared links, and with them E' = V^T (C - 1) V.
-    const auto dl = [&](const Vector& v, int link) {
-        return dot(v, v) - load(group.rest_links[link]);
-    };
-    const Scalar l1 = dl(v1, 0), l2 = dl(v2, 1), l3 = dl(v3, 2);
-    const Symmetric<Scalar> E{l1,
-                              l2,
-                              l3,
-                              0.5 * (l1 + l2 - dl(v2 - v1, 3)),
-                              0.5 * (l2 + l3 - dl(v3 - v2, 4)),
-                              0.5 * (l3 + l1 - dl(v1 - v3, 5))};
-    const Symmetric<Scalar> G{load(group.G[0]), load(group.G[1]), load(group.G[2]),
-                              load(group.G[3]), load(group.G[4]), load(group.G[5])};
-
-    LinkStrain<Scalar> strain;
-    strain.a = G.d1 * E.d1 + G.d2 * E.d2 + G.d3 * E.d3 +
-               2.0 * (G.s12 * E.s12 + G.s23 * E.s23 + G.s31 * E.s31);
-    // P = G E' and b = tr(P P).
-    const Scalar p11 = G.d1 * E.d1 + G.s12 * E.s12 + G.s31 * E.s31,
-                 p12 = G.d1 * E.s12 + G.s12 * E.d2 + G.s31 * E.s23,
-                 p13 = G.d1 * E.s31 + G.s12 * E.s23 + G.s31 * E.d3,
-                 p21 = G.s12 * E.d1 + G.d2 * E.s12 + G.s23 * E.s31,
-                 p22 = G.s12 * E.s12 + G.d2 * E.d2 + G.s23 * E.s23,
-                 p23 = G.s12 * E.s31 + G.d2 * E.s23 + G.s23 * E.d3,
-                 p31 = G.s31 * E.d1 + G.s23 * E.s12 + G.d3 * E.s31,
-                 p32 = G.s31 * E.s12 + G.s23 * E.d2 + G.d3 * E.s23,
-                 p33 = G.s31 * E.s31 + G.s23 * E.s23 + G.d3 * E.d3;
-    strain.b = p11 * p11 + p22 * p22 + p33 * p33 + 2.0 * (p12 * p21 + p23 * p32 + p31 * p13);
-    const Scalar volume = load(group.volume);
-    const Vector across1 = cross(v2, v3), across2 = cross(v3, v1), across3 = cross(v1, v2);
-    strain.J = dot(across3, v3) / 6.0 / volume;
-    [[maybe_unused]] Vector u;
-    strain.f = 0.0;
-    if constexpr (HasFibres<Law>) {
-        u = {load(fibres->u[0]), load(fibres->u[1]), load(fibres->u[2])};
-        strain.f = u.x * u.x * E.d1 + u.y * u.y * E.d2 + u.z * u.z * E.d3 +
-                   2.0 * (u.x * u.y * E.s12 + u.y * u.z * E.s23 + u.z * u.x * E.s31);
-    }
-
-    const LawResponse<Scalar> r = response_of_lanes(law, strain, J0);
-    // T = -2 Vol (w_a G + 2 w_b G E' G + w_f u u^T), and f_i = sum of T_ij v_j - w_J dvol/dx_i.
-    const Scalar a = -2.0 * volume * r.w_a;
-    Symmetric<Scalar> T{a * G.d1, a * G.d2, a * G.d3, a * G.s12, a * G.s23, a * G.s31};
-    if constexpr (NeedsB<Law>) {
-        const Scalar b = -4.0 * volume * r.w_b;
-        T.d1 += b * (p11 * G.d1 + p12 * G.s12 + p13 * G.s31);
-        T.d2 += b * (p21 * G.s12 + p22 * G.d2 + p23 * G.s23);
-        T.d3 += b * (p31 * G.s31 + p32 * G.s23 + p33 * G.d3);
-        T.s12 += b * (p11 * G.s12 + p12 * G.d2 + p13 * G.s23);
-        T.s23 += b * (p21 * G.s31 + p22 * G.s23 + p23 * G.d3);
-        T.s31 += b * (p31 * G.d1 + p32 * G.s12 + p33 * G.s31);
-    }
-    if constexpr (HasFibres<Law>) {
-        const Scalar f = -2.0 * volume * r.w_f;
-        T.d1 += f * u.x * u.x;
-        T.d2 += f * u.y * u.y;
-        T.d3 += f * u.z * u.z;
-        T.s12 += f * u.x * u.y;
-        T.s23 += f * u.y * u.z;
-        T.s31 += f * u.z * u.x;
-    }
-    Vector f1 = T.d1 * v1 + T.s12 * v2 + T.s31 * v3, f2 = T.s12 * v1 + T.d2 * v2 + T.s23 * v3,
-           f3 = T.s31 * v1 + T.s23 * v2 + T.d3 * v3;
-    if constexpr (NeedsJ<Law>) {
-        const Scalar p = r.w_J / -6.0;
-        f1 = f1 + p * across1;
-        f2 = f2 + p * across2;
-        f3 = f3 + p * across3;
-    }
-    scatter_add<Number>({f1, f2, f3}, forces, group.nodes, first);
-}
 
 template <class Number>
 void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
@@ -104,10 +13,14 @@ void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
         [&](const auto& l) {
             for (std::size_t g = 0; g < groups.links.size(); ++g)
                 for (std::size_t first = 0; first < LinkGroup<Number>::size;
-                     first += num_lanes<Number>)
-                    add_forces_of(l, J0, groups.links[g],
-                                  groups.fibres.empty() ? nullptr : &groups.fibres[g], first,
-                                  positions, forces);
+                     first += num_lanes<Number>) {
+                    const LinkGroup<Number>& group = groups.links[g];
+                    const auto edges = gather_edges<Number>(positions, group.nodes, first);
+                    const auto f = link_forces(l, J0, group,
+                                               groups.fibres.empty() ? nullptr : &groups.fibres[g],
+                                               first, edges);
+                    scatter_add<Number>(f, forces, group.nodes, first);
+                }
         },
         law);
 }

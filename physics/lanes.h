@@ -72,8 +72,29 @@ struct NumberFormat<float> {
     static constexpr int exp_degree = 7;
 };
 
-/// Arithmetic is that of single numbers, lane by lane, to the bit, whatever the processor: nothing
-/// is fused, so results do not depend on how many lanes it has.
+/// a b + c, rounded once.
+template <class Vector>
+[[gnu::always_inline]] inline Vector multiply_add(Vector a, Vector b, Vector c) {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(a[0]) == 8)
+        return _mm512_fmadd_pd(a, b, c);
+    else
+        return _mm512_fmadd_ps(a, b, c);
+#elif defined(__FMA__)
+    if constexpr (sizeof(a[0]) == 8)
+        return _mm256_fmadd_pd(a, b, c);
+    else
+        return _mm256_fmadd_ps(a, b, c);
+#else
+    for (std::size_t l = 0; l < sizeof(a) / sizeof(a[0]); ++l) c[l] = std::fma(a[l], b[l], c[l]);
+    return c;
+#endif
+}
+
+/// Arithmetic is that of single numbers, lane by lane, to the bit, whatever the processor and
+/// however many lanes it has. A product that is added to something is not rounded before: which
+/// products are so is a matter of how a formula is written, not of what the compiler finds.
+/// Processors that have no such operation (before 2013) get it from the C library, which is slow.
 template <class Number>
 struct Lanes {
     using Format = NumberFormat<Number>;
@@ -92,6 +113,7 @@ struct Lanes {
     static Lanes load(const Number* from) {
         return *reinterpret_cast<const typename Format::Aliasing*>(from);
     }
+    void store(Number* to) const { *reinterpret_cast<typename Format::Aliasing*>(to) = v; }
 
     Lanes& operator+=(Lanes o) { return v += o.v, *this; }
     Lanes& operator-=(Lanes o) { return v -= o.v, *this; }
@@ -99,9 +121,14 @@ struct Lanes {
     Lanes& operator/=(Lanes o) { return v /= o.v, *this; }
     friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
     friend Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
-    friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
     friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
     friend Lanes operator-(Lanes a) { return -a.v; }
+
+    struct Product;
+    friend Product operator*(Lanes a, Lanes b) { return {a, b}; }
+    Lanes(Product p);  // rounded
+    Lanes& operator+=(Product p) { return *this = p + *this; }
+    Lanes& operator-=(Product p) { return *this = *this - p; }
 
     // As std::max(a, b) and std::min(a, b), also of what is not a number.
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
@@ -190,6 +217,23 @@ struct Lanes {
     }();
 };
 
+/// A product that waits for what is done with it. Of two that are added the second is rounded.
+template <class Number>
+struct Lanes<Number>::Product {
+    Lanes a, b;
+
+    friend Product operator-(Product p) { return {-p.a, p.b}; }
+    friend Lanes operator+(Product p, Lanes c) { return multiply_add(p.a.v, p.b.v, c.v); }
+    friend Lanes operator+(Lanes c, Product p) { return p + c; }
+    friend Lanes operator+(Product p, Product q) { return p + Lanes(q); }
+    friend Lanes operator-(Product p, Lanes c) { return p + -c; }
+    friend Lanes operator-(Lanes c, Product p) { return -p + c; }
+    friend Lanes operator-(Product p, Product q) { return p - Lanes(q); }
+};
+
+template <class Number>
+[[gnu::always_inline]] inline Lanes<Number>::Lanes(Product p) : v(p.a.v * p.b.v) {}
+
 /// The law's response: by its formulas if these are templates, else lane by lane, in doubles.
 template <class Law, class Number>
 LawResponse<Lanes<Number>> response_of_lanes(const Law& law, const LinkStrain<Lanes<Number>>& s,
@@ -223,13 +267,35 @@ struct Lanes3 {
     friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
-    friend Lanes3 operator*(Scalar s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
-    // Sums in the order in which Eigen has them, so that an element at rest is so to the bit.
+    /// A multiple that waits to be added to something, like Lanes::Product.
+    struct Multiple {
+        Scalar s;
+        Lanes3 a;
+        operator Lanes3() const { return {s * a.x, s * a.y, s * a.z}; }
+        friend Multiple operator-(const Multiple& m) { return {-m.s, m.a}; }
+        friend Lanes3 operator+(const Lanes3& b, const Multiple& m) {
+            return {m.s * m.a.x + b.x, m.s * m.a.y + b.y, m.s * m.a.z + b.z};
+        }
+        friend Lanes3 operator+(const Multiple& m, const Multiple& n) { return Lanes3(n) + m; }
+        friend Lanes3 operator-(const Lanes3& b, const Multiple& m) { return b + -m; }
+    };
+    friend Multiple operator*(Scalar s, const Lanes3& a) { return {s, a}; }
+
     friend Scalar dot(const Lanes3& a, const Lanes3& b) {
         return a.x * b.x + (a.y * b.y + a.z * b.z);
     }
     friend Lanes3 cross(const Lanes3& a, const Lanes3& b) {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+
+    // As Eigen has them, each product rounded: by these an element at rest is so to the bit.
+    friend Scalar rounded_dot(const Lanes3& a, const Lanes3& b) {
+        return Scalar(a.x * b.x) + (Scalar(a.y * b.y) + Scalar(a.z * b.z));
+    }
+    friend Lanes3 rounded_cross(const Lanes3& a, const Lanes3& b) {
+        const auto difference = [](Scalar p, Scalar q) { return p - q; };
+        return {difference(a.y * b.z, a.z * b.y), difference(a.z * b.x, a.x * b.z),
+                difference(a.x * b.y, a.y * b.x)};
     }
 };
 

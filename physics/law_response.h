@@ -79,17 +79,17 @@ VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
 template <class T>
 VolumeTerm<T> logarithmic_volume_term(const T& J, double lambda, double p) {
     using std::log;
-    const T ln = log(J);
-    return {ln * (0.5 * lambda * ln - p), (lambda * ln - p) / J,
-            (lambda - lambda * ln + p) / (J * J)};
+    const T ln = log(J), per_J = 1.0 / J;
+    return {ln * (0.5 * lambda * ln - p), (lambda * ln - p) * per_J,
+            (lambda - lambda * ln + p) * per_J * per_J};
 }
 
 /// J^-p, by which isochoric laws take the change of volume out of an invariant of strain.
 template <class T>
 VolumeTerm<T> power_of_volume(const T& J, double p) {
     using std::pow;
-    const T power = pow(J, -p);
-    return {power, -p * power / J, p * (p + 1.0) * power / (J * J)};
+    const T power = pow(J, -p), per_J = 1.0 / J;
+    return {power, -p * power * per_J, p * (p + 1.0) * power * per_J * per_J};
 }
 
 /// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion

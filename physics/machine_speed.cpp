@@ -7,52 +7,47 @@
 #include <limits>
 #include <vector>
 
-namespace incise::physics {
+#include "physics/heml_kernel.h"
+#include "physics/peak_loops.h"
 
-using MultiplyAndAdd = double(std::size_t);
-using SumUp = double(const double*, std::size_t);
-namespace plain {
-MultiplyAndAdd multiply_and_add;
-SumUp sum_up;
-}  // namespace plain
-#ifdef INCISE_HAS_AVX
-namespace avx2 {
-MultiplyAndAdd multiply_and_add;
-SumUp sum_up;
-}  // namespace avx2
-namespace avx512 {
-MultiplyAndAdd multiply_and_add;
-SumUp sum_up;
-}  // namespace avx512
-#endif
+namespace incise::physics {
 
 namespace {
 
 struct Loops {
     MultiplyAndAdd* arithmetic;
     SumUp* reading;
+    WorkOutLinks* links;
 };
 
 Loops loops_for([[maybe_unused]] Processor processor) {
 #ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return {avx512::multiply_and_add, avx512::sum_up};
-    if (processor == Processor::avx2) return {avx2::multiply_and_add, avx2::sum_up};
+    if (processor == Processor::avx512)
+        return {avx512::multiply_and_add, avx512::sum_up, avx512::work_out_links};
+    if (processor == Processor::avx2)
+        return {avx2::multiply_and_add, avx2::sum_up, avx2::work_out_links};
 #endif
-    return {plain::multiply_and_add, plain::sum_up};
+    return {plain::multiply_and_add, plain::sum_up, plain::work_out_links};
 }
 
-/// Billions a second, the best of several times.
+/// Seconds, the best of several times.
 template <class Work>
-double best_rate(double amount, Work work) {
-    volatile double result = 0.0;  // so that the work is done
+double best_time(Work work) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        result = result + work();
+        work();
         best = std::min(
             best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
-    return amount / best * 1e-9;
+    return best;
+}
+
+/// Billions a second.
+template <class Work>
+double best_rate(double amount, Work work) {
+    volatile double result = 0.0;  // so that the work is done
+    return amount / best_time([&] { result = result + work(); }) * 1e-9;
 }
 
 }  // namespace
@@ -68,6 +63,30 @@ MachinePeak measure_peak() {
         return loops.reading(numbers.data(), num_numbers);
     });
     return peak;
+}
+
+double measure_arithmetic(const Law& law) {
+    constexpr std::size_t num_groups = 8, num_passes = 20'000;
+    constexpr std::size_t num_elements = num_groups * LinkGroup<double>::size;
+    const HemlKernel kernel{law, 0.4};
+    HemlLanes lanes;
+    lanes.assign(num_elements, 0, kernel);
+    std::vector<LinkGroupVectors> vectors(num_groups);
+    for (std::size_t i = 0; i < num_elements; ++i) {
+        // A corner of a cube, stretched in another way each.
+        constexpr double edge = 0.01;
+        const std::array<Vec3, 4> X{Vec3::Zero(), edge * Vec3::UnitX(), edge * Vec3::UnitY(),
+                                    edge * Vec3::UnitZ()};
+        lanes.set(i, kernel.precompute(X), std::array<std::uint16_t, 4>{});
+        const double stretch = 0.9 + 0.2 * static_cast<double>(i) / num_elements;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (int c = 0; c < 3; ++c)
+                vectors[i % num_groups].edges[k][c][i / num_groups] = stretch * X[k + 1][c];
+    }
+    WorkOutLinks* const work_out = loops_for(processor()).links;
+    const double time =
+        best_time([&] { work_out(law, lanes.groups<double>().links, vectors, num_passes); });
+    return time / static_cast<double>(num_elements * num_passes);
 }
 
 std::string_view name_of(Processor processor) {

@@ -4,18 +4,24 @@
 
 #include <string_view>
 
+#include "physics/law.h"
 #include "physics/processor.h"
 
 namespace incise::physics {
 
 /// On one core.
 struct MachinePeak {
-    double gigaflops = 0.0;  ///< additions and multiplications of doubles, not fused, in lanes
+    double gigaflops = 0.0;  ///< additions and multiplications of doubles, fused, in lanes
     double gigabytes_per_second = 0.0;  ///< read from memory one after the other
 };
 
 /// Takes about half a second and 256 MiB.
 MachinePeak measure_peak();
+
+/// Seconds that an element's forces take by themselves, without fetching positions or adding up:
+/// the arithmetic of some elements that the nearest cache holds, on one core. Of
+/// SaintVenantKirchhoff, NeoHookean and MooneyRivlin.
+double measure_arithmetic(const Law& law);
 
 std::string_view name_of(Processor processor);
 

@@ -1,12 +1,13 @@
-// What measure_peak times. Compiled for each kind of processor: see lanes.h.
+// What machine_speed.cpp times. Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/peak_loops.h"
+
 #include <cstddef>
 
-#include "physics/lanes.h"
+#include "physics/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 
-/// So many operations at least, in chains that do not wait for each other.
 double multiply_and_add(std::size_t num_operations) {
     constexpr std::size_t num_chains = 12;
     Lanes<double> chains[num_chains];
@@ -33,6 +34,45 @@ double sum_up(const double* numbers, std::size_t n) {
     double sum = 0.0;
     for (const Lanes<double>& one : sums) sum += one.v[0];
     return sum;
+}
+
+namespace {
+
+template <class L>
+void work_out(const L& law, std::span<const LinkGroup<double>> groups,
+              std::span<LinkGroupVectors> vectors, std::size_t num_passes) {
+    using Scalar = Lanes<double>;
+    for (std::size_t pass = 0; pass < num_passes; ++pass) {
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            for (std::size_t first = 0; first < LinkGroup<double>::size; first += Scalar::size) {
+                const auto edge = [&](std::size_t k) -> Lanes3<double> {
+                    const auto& e = vectors[g].edges[k];
+                    return {Scalar::load(e[0] + first), Scalar::load(e[1] + first),
+                            Scalar::load(e[2] + first)};
+                };
+                const LinkVectors<double> f = link_forces<L, double>(
+                    law, 0.4, groups[g], nullptr, first, {edge(0), edge(1), edge(2)});
+                for (std::size_t k = 0; k < 3; ++k) {
+                    auto& to = vectors[g].forces[k];
+                    f[k].x.store(to[0] + first);
+                    f[k].y.store(to[1] + first);
+                    f[k].z.store(to[2] + first);
+                }
+            }
+        asm volatile("" ::: "memory");  // so that each pass counts
+    }
+}
+
+}  // namespace
+
+void work_out_links(const Law& law, std::span<const LinkGroup<double>> groups,
+                    std::span<LinkGroupVectors> vectors, std::size_t num_passes) {
+    const auto of_law = [&]<class L>(const L* l) {
+        if (l) work_out(*l, groups, vectors, num_passes);
+    };
+    of_law(std::get_if<SaintVenantKirchhoff>(&law));
+    of_law(std::get_if<NeoHookean>(&law));
+    of_law(std::get_if<MooneyRivlin>(&law));
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -5,6 +5,7 @@ namespace incise::physics {
 
 Processor processor() {
 #ifdef INCISE_HAS_AVX
+    if (!__builtin_cpu_supports("fma")) return Processor::plain;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
         return Processor::avx512;
