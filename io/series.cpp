@@ -131,7 +131,7 @@ void Series::add(const Frame& frame) {
     const double time = frame.time.value_or(0.0);
     if (!std::isfinite(time) || (!frames_.empty() && !(time > frames_.back().time)))
         throw std::invalid_argument("the time of a frame must be finite and above the last one's");
-    const std::string text = vtu_text(frame, compression_);
+    const std::string text = vtu_text(frame, compression_, &packed_);
     write_file(folder_ / frame_name(name_, frames_.size()), text);
     frames_.push_back({time, {}});
     frames_.back().file.append(text);

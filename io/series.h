@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/frame.h"
+#include "io/packed_blocks.h"
 #include "io/written_bytes.h"
 
 namespace incise::io {
@@ -58,6 +59,7 @@ class Series {
     std::filesystem::path folder_;
     std::string name_;
     Compression compression_;
+    PackedBlocks packed_;  // of the last frame
     std::vector<FrameWritten> frames_;
 };
 

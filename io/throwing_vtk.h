@@ -9,8 +9,13 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstddef>
+#include <cstring>
 #include <ios>
 #include <new>
+#include <string>
+#include <string_view>
+
+#include "io/packed_blocks.h"
 
 namespace incise::io {
 
@@ -49,8 +54,9 @@ class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
 template <class VtkCompressor>
 class ThrowingCompressor final : public VtkCompressor {
   public:
-    static vtkSmartPointer<ThrowingCompressor> make(int level) {
-        const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor);
+    /// @param known blocks that need not be compressed again, if any; must outlive it
+    static vtkSmartPointer<ThrowingCompressor> make(int level, PackedBlocks* known) {
+        const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor(known));
         made->InitializeObjectBase();
         made->SetCompressionLevel(level);
         return made;
@@ -59,11 +65,24 @@ class ThrowingCompressor final : public VtkCompressor {
   protected:
     std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
                                std::size_t space) override {
-        const auto num_packed =
-            packed ? VtkCompressor::CompressBuffer(data, size, packed, space) : 0;
-        if (num_packed == 0) throw std::bad_alloc();
-        return num_packed;
+        if (!packed) throw std::bad_alloc();
+        const auto compress = [&] {
+            const auto num_packed = VtkCompressor::CompressBuffer(data, size, packed, space);
+            if (num_packed == 0) throw std::bad_alloc();
+            return num_packed;
+        };
+        if (!known_) return compress();
+        const std::string_view block(reinterpret_cast<const char*>(data), size);
+        const auto bytes = known_->packed(
+            block, [&] { return std::string(reinterpret_cast<char*>(packed), compress()); });
+        std::memcpy(packed, bytes.data(), bytes.size());
+        return bytes.size();
     }
+
+  private:
+    explicit ThrowingCompressor(PackedBlocks* known) : known_(known) {}
+
+    PackedBlocks* known_;
 };
 
 }  // namespace incise::io

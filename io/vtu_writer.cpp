@@ -153,17 +153,18 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     return grid;
 }
 
-vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression) {
+vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression, PackedBlocks* known) {
     constexpr int fastest = 1, middle = 5;
     switch (compression) {
         case Compression::none:
             break;
         case Compression::lz4:
-            return ThrowingCompressor<vtkLZ4DataCompressor>::make(middle);  // fast at any level
+            return ThrowingCompressor<vtkLZ4DataCompressor>::make(middle,
+                                                                  known);  // fast at any level
         case Compression::zlib:
-            return ThrowingCompressor<vtkZLibDataCompressor>::make(fastest);
+            return ThrowingCompressor<vtkZLibDataCompressor>::make(fastest, known);
         case Compression::lzma:
-            return ThrowingCompressor<vtkLZMADataCompressor>::make(fastest);
+            return ThrowingCompressor<vtkLZMADataCompressor>::make(fastest, known);
     }
     return nullptr;
 }
@@ -185,14 +186,15 @@ std::string without_notes(std::string_view text) {
 
 }  // namespace
 
-std::string vtu_text(const Frame& frame, Compression compression) {
+std::string vtu_text(const Frame& frame, Compression compression, PackedBlocks* known) {
     const SilentVtk silence;
+    if (known) known->begin_file();
     const auto grid = view_as_grid(frame);
     const auto writer = ThrowingGridWriter::make();
     writer->SetInputData(grid);
     writer->SetDataModeToBinary();
     writer->SetHeaderTypeToUInt64();  // uncompressed arrays may exceed 4 GB
-    writer->SetCompressor(make_compressor(compression));
+    writer->SetCompressor(make_compressor(compression, known));
     writer->WriteToOutputStringOn();
     if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError)
         throw std::runtime_error(std::string("VTK cannot make a .vtu file: ") +

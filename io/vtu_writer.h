@@ -6,6 +6,7 @@
 #include <string>
 
 #include "io/frame.h"
+#include "io/packed_blocks.h"
 
 namespace incise::io {
 
@@ -13,9 +14,12 @@ namespace incise::io {
 /// appended data), compressed at the fastest level (higher ones take 25 times longer and save
 /// nothing). meshio does not read lz4. Field data TimeValue holds the time.
 /// The same frame gives the same bytes.
+/// @param known keeps the compressed blocks for the next file, which is faster then; with the same
+/// compression
 /// Throws std::invalid_argument if a field does not fit the mesh.
 /// Cost: 100 000 tetrahedra with a few fields take about 0.1 s.
-std::string vtu_text(const Frame& frame, Compression compression = Compression::zlib);
+std::string vtu_text(const Frame& frame, Compression compression = Compression::zlib,
+                     PackedBlocks* known = nullptr);
 
 /// Writes that text as write_file() does. Throws OutputError too.
 void write_vtu(const std::filesystem::path& path, const Frame& frame,

@@ -137,6 +137,43 @@ TEST(VtuWriter, GivesTheSameBytesForTheSameFrame) {
         EXPECT_EQ(vtu_text(frame, compression), vtu_text(make_frame(), compression));
 }
 
+TEST(VtuWriter, GivesTheSameBytesWhateverTheLastFileHad) {
+    for (const auto compression : all_compressions) {
+        PackedBlocks known;
+        auto frame = make_frame();
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_EQ(vtu_text(frame, compression, &known), vtu_text(frame, compression));
+            if (i == 0) frame.mesh.points[1].x() += 0.1;
+            if (i == 1) frame.mesh.regions[3] = 12;
+        }
+    }
+}
+
+TEST(PackedBlocks, AreTakenFromThisFileAndTheLast) {
+    PackedBlocks blocks;
+    int num_packings = 0;
+    const auto look_up = [&](std::string_view block) {
+        return blocks.packed(block, [&] {
+            ++num_packings;
+            return "packed " + std::string(block);
+        });
+    };
+    const auto expect = [&](std::string_view block, int packings) {
+        EXPECT_EQ(look_up(block), "packed " + std::string(block));
+        EXPECT_EQ(num_packings, packings) << block;
+    };
+    expect("a", 1);
+    expect("b", 2);
+    expect("a", 2);
+    blocks.begin_file();
+    expect("a", 2);
+    expect("a", 2);
+    expect("c", 3);
+    blocks.begin_file();
+    expect("a", 3);
+    expect("b", 4);  // which the last file did not have
+}
+
 TEST(VtuWriter, WritesInlineWith32BitIndices) {
     const auto text = vtu_text(make_frame());
     EXPECT_THAT(text, Not(HasSubstr("<AppendedData")));
