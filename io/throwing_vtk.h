@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkObject.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLUnstructuredGridWriter.h>
@@ -31,6 +32,25 @@ class SilentVtk {
 
   private:
     int before_;
+};
+
+/// As long as it lives, VTK makes no threads: the other cores are the simulation's, and where no
+/// more threads can be had VTK would fail.
+class SequentialVtk {
+  public:
+    SequentialVtk() : before_(vtk_threads().GetBackend()) {
+        vtk_threads().SetBackend("Sequential");
+    }
+    ~SequentialVtk() { vtk_threads().SetBackend(before_.c_str()); }
+    SequentialVtk(const SequentialVtk&) = delete;
+    SequentialVtk& operator=(const SequentialVtk&) = delete;
+
+  private:
+    // What vtkSMPTools calls, whose header is no C++20.
+    static vtk::detail::smp::vtkSMPToolsAPI& vtk_threads() {
+        return vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
+    }
+    std::string before_;
 };
 
 class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {

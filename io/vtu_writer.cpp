@@ -188,6 +188,7 @@ std::string without_notes(std::string_view text) {
 
 std::string vtu_text(const Frame& frame, Compression compression, PackedBlocks* known) {
     const SilentVtk silence;
+    const SequentialVtk on_this_thread;
     if (known) known->begin_file();
     const auto grid = view_as_grid(frame);
     const auto writer = ThrowingGridWriter::make();
