@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,7 @@ class ElementBlock {
     static constexpr std::uint16_t unnumbered = 0xffff;
 
     virtual ~ElementBlock() = default;
+    virtual std::shared_ptr<ElementBlock> clone() const = 0;
 
     std::span<const ElementId> elements() const { return elements_; }
 
@@ -94,6 +96,9 @@ class ElementBlock {
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
+    /// Those of all, in the order of elements().
+    virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
+                         std::span<ElementResult> results) const = 0;
     virtual const ElementShares& shares(ElementId e) const = 0;
     virtual double rest_volume(ElementId e) const = 0;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "physics/inheritance.h"
@@ -15,21 +16,21 @@ using topology::CellKind;
 
 namespace {
 
-std::unique_ptr<ElementBlock> make_block(const Material& material, Precision precision) {
+std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
-        return std::make_unique<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
+        return std::make_shared<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
                                                                material.density);
     if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
-        return std::make_unique<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
+        return std::make_shared<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
                                                            material.density);
     const auto& links = std::get<HyperElasticLinks>(material.method);
     const HemlKernel elastic{links.law, links.inversion_threshold, precision};
     if (links.prony.empty())
-        return std::make_unique<KernelBlock<HemlKernel>>(elastic, material.density);
+        return std::make_shared<KernelBlock<HemlKernel>>(elastic, material.density);
     if (links.prony_rule == PronyRule::nodal)
-        return std::make_unique<KernelBlock<NodalViscousKernel>>(
+        return std::make_shared<KernelBlock<NodalViscousKernel>>(
             NodalViscousKernel(elastic, links.prony), material.density);
-    return std::make_unique<KernelBlock<ViscousKernel>>(ViscousKernel(elastic, links.prony),
+    return std::make_shared<KernelBlock<ViscousKernel>>(ViscousKernel(elastic, links.prony),
                                                         material.density);
 }
 
@@ -138,14 +139,19 @@ void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
     if (!blocks_[index])
         blocks_[index] =
             make_block(table_.materials[table_.of_region.at(mesh.region(e))], table_.precision);
-    blocks_[index]->insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    editable(index).insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
     note_change(index);
 }
 
 void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
     const std::size_t index = block_index(e, mesh.region(e));
-    blocks_[index]->replace(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    editable(index).replace(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
     note_change(index);
+}
+
+ElementBlock& ElementStore::editable(std::size_t block) {
+    if (blocks_[block].use_count() > 1) blocks_[block] = blocks_[block]->clone();
+    return *blocks_[block];
 }
 
 void ElementStore::note_change(std::size_t block) {
@@ -166,7 +172,7 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
                                 [](const Piece& p, std::size_t b) { return p.block < b; });
     };
     for (const std::size_t b : changed_blocks_) {
-        ElementBlock& block = *blocks_[b];
+        ElementBlock& block = editable(b);
         for_each_range(block.nodes(), [&](std::size_t r, std::size_t, std::size_t) {
             ranges_[r].erase(place_of(ranges_[r], b));
         });
@@ -208,6 +214,13 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
     });
 }
 
+std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() const {
+    std::vector<std::shared_ptr<const ElementBlock>> shared;
+    std::copy_if(blocks_.begin(), blocks_.end(), std::back_inserter(shared),
+                 [](const auto& block) { return block != nullptr; });
+    return shared;
+}
+
 std::size_t ElementStore::history_size() const {
     std::size_t most = 0;
     for (const Material& material : table_.materials)
@@ -227,7 +240,7 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
 
 void ElementStore::erase(ElementId e, int region) {
     const std::size_t index = block_index(e, region);
-    blocks_[index]->erase(e);
+    editable(index).erase(e);
     note_change(index);
 }
 

@@ -108,6 +108,10 @@ class ElementStore {
             if (block) visit(*block);
     }
 
+    /// In ascending order, as they are now: edits work on copies of those that are shared. Whoever
+    /// has them lets go of them on the thread that edits, which counts who shares a block.
+    std::vector<std::shared_ptr<const ElementBlock>> share_blocks() const;
+
   private:
     static constexpr std::size_t chunk_size = 512;
 
@@ -119,13 +123,15 @@ class ElementStore {
     /// Brings the pieces of the blocks that have changed up to date.
     void number_nodes(std::size_t num_nodes);
     void note_change(std::size_t block);
+    /// The block, or a copy that takes its place if somebody shares it.
+    ElementBlock& editable(std::size_t block);
 
     std::size_t block_index(ElementId e, int region) const;
     void require_law(const topology::Mesh& mesh, ElementId e) const;
     Vec3 fibre_of(ElementId e) const;
 
     MaterialTable table_;
-    std::vector<std::unique_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
+    std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;  // the forces of each block

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "physics/element_block.h"
 #include "physics/element_tangent.h"
@@ -38,6 +40,10 @@ class KernelBlock final : public ElementBlock {
     using Corners = std::array<Vec3, num_corners>;
 
     KernelBlock(const Kernel& kernel, double density) : kernel_(kernel), density_(density) {}
+
+    std::shared_ptr<ElementBlock> clone() const override {
+        return std::make_shared<KernelBlock>(*this);
+    }
 
     void compute_forces(std::span<const LocalVector> positions,
                         [[maybe_unused]] const ViscousHistory& history,
@@ -95,6 +101,7 @@ class KernelBlock final : public ElementBlock {
                    ViscousHistory& history) override {
         double energy = 0.0;
         if constexpr (HasHistory<Kernel>) {
+            // Which only this function reads: others may share the block.
             kernel_.begin_step(dt);
             for (std::size_t s = 0; s < elements_.size(); ++s)
                 energy += kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
@@ -130,25 +137,16 @@ class KernelBlock final : public ElementBlock {
         return lowest;
     }
 
-    /// The Cauchy stress is the virial of the element's own forces, -sum of f_i x_i^T over its
-    /// volume: exact for linear elements, and the mean stress for springs.
     ElementResult result(ElementId e, std::span<const Vec3> positions,
                          const ViscousHistory& history) const override {
-        const std::size_t s = slot_of(e);
-        const Corners x = gather(s, positions);
-        ElementResult result;
-        result.energy = kernel_.energy(row(s).rest, x);
-        result.volume = row(s).rest.volume;
-        result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
-        const Corners f = forces_of(s, x, history);
-        for (std::size_t k = 1; k < num_corners; ++k)
-            result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
-        const double volume = result.volume * result.volume_ratio;
-        if (volume == 0.0)  // flat: no volume to spread the stress over
-            result.cauchy_stress.setZero();
-        else
-            result.cauchy_stress /= volume;
-        return result;
+        return result_of(slot_of(e), positions, history);
+    }
+
+    void results(std::span<const Vec3> positions, const ViscousHistory& history,
+                 std::span<ElementResult> results) const override {
+        assert(results.size() == elements_.size());
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            results[s] = result_of(s, positions, history);
     }
 
     const ElementShares& shares(ElementId e) const override { return row(slot_of(e)).shares; }
@@ -246,12 +244,35 @@ class KernelBlock final : public ElementBlock {
             return evaluate(gather(s, end.positions));
     }
 
-    Corners forces_of(std::size_t s, const Corners& x,
-                      [[maybe_unused]] const ViscousHistory& history) const {
-        if constexpr (HasHistory<Kernel>)
-            return kernel_.forces(row(s).rest, x, history.of(elements_[s]));
+    /// The Cauchy stress is the virial of the element's own forces, -sum of f_i x_i^T over its
+    /// volume: exact for linear elements, and the mean stress for springs.
+    ElementResult result_of(std::size_t s, std::span<const Vec3> positions,
+                            const ViscousHistory& history) const {
+        const Corners x = gather(s, positions);
+        ElementResult result;
+        result.volume = row(s).rest.volume;
+        result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
+        Corners f;
+        std::tie(result.energy, f) = energy_and_forces(s, x, history);
+        for (std::size_t k = 1; k < num_corners; ++k)
+            result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
+        const double volume = result.volume * result.volume_ratio;
+        if (volume == 0.0)  // flat: no volume to spread the stress over
+            result.cauchy_stress.setZero();
         else
-            return kernel_.forces(row(s).rest, x);
+            result.cauchy_stress /= volume;
+        return result;
+    }
+
+    std::pair<double, Corners> energy_and_forces(
+        std::size_t s, const Corners& x, [[maybe_unused]] const ViscousHistory& history) const {
+        const auto& rest = row(s).rest;
+        if constexpr (HasHistory<Kernel>)
+            return {kernel_.energy(rest, x), kernel_.forces(rest, x, history.of(elements_[s]))};
+        else if constexpr (requires { kernel_.energy_and_forces(rest, x); })
+            return kernel_.energy_and_forces(rest, x);
+        else
+            return {kernel_.energy(rest, x), kernel_.forces(rest, x)};
     }
 
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {

@@ -161,9 +161,6 @@ class Model {
         return elements_.block_of(mesh_, e).result(e, positions_, history_);
     }
 
-    /// The same of many, in their order: computed by all threads.
-    std::vector<ElementResult> element_results(std::span<const ElementId> elements) const;
-
     /// By element id, the direction of the fibres at rest, zero where there are none; empty if no
     /// material has fibres. Parts of a divided element have that of the whole.
     std::span<const Vec3> fibres() const { return elements_.fibres(); }

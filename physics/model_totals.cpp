@@ -85,16 +85,6 @@ double Model::elastic_energy() const {
     }));
 }
 
-std::vector<ElementResult> Model::element_results(std::span<const ElementId> elements) const {
-    constexpr std::size_t chunk = 512;
-    std::vector<ElementResult> results(elements.size());
-    workers_.for_each((elements.size() + chunk - 1) / chunk, [&](std::size_t c) {
-        const std::size_t end = std::min((c + 1) * chunk, elements.size());
-        for (std::size_t i = c * chunk; i < end; ++i) results[i] = element_result(elements[i]);
-    });
-    return results;
-}
-
 double Model::stiffness_energy() const {
     double sum = 0.0;
     elements_.for_each_block([&](const ElementBlock& block) { sum += block.stiffness_energy(); });

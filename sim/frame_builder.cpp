@@ -12,16 +12,16 @@ using topology::NodeId;
 
 namespace {
 
-/// One value a row, from a function of the row's id that returns a vector or a number.
-template <class Number, class Id, class Value>
-io::Field field(std::string name, int components, const std::vector<Id>& ids, Value value) {
+/// One value a row, from a function of the row that returns a vector or a number.
+template <class Number, class Row, class Value>
+io::Field field(std::string name, int components, const std::vector<Row>& rows, Value value) {
     std::vector<Number> values;
-    values.reserve(ids.size() * static_cast<std::size_t>(components));
-    for (const Id id : ids) {
-        if constexpr (std::is_arithmetic_v<decltype(value(id))>) {
-            values.push_back(static_cast<Number>(value(id)));
+    values.reserve(rows.size() * static_cast<std::size_t>(components));
+    for (const Row& row : rows) {
+        if constexpr (std::is_arithmetic_v<decltype(value(row))>) {
+            values.push_back(static_cast<Number>(value(row)));
         } else {
-            const auto vector = value(id);
+            const auto vector = value(row);
             for (int c = 0; c < components; ++c) values.push_back(static_cast<Number>(vector(c)));
         }
     }
@@ -33,28 +33,28 @@ double von_mises(const Eigen::Matrix3d& stress) {
     return std::sqrt(1.5) * deviator.norm();
 }
 
+std::string name(Field field) { return std::string(field_names[static_cast<std::size_t>(field)]); }
+
 }  // namespace
 
-io::Frame build_frame(const physics::Model& model, double time, std::span<const Field> fields) {
+bool FrameBuilder::has(Field field) const {
+    return std::find(fields_.begin(), fields_.end(), field) != fields_.end();
+}
+
+FrameBuilder::FrameBuilder(const physics::Model& model, double time, std::span<const Field> fields)
+    : fields_(fields.begin(), fields.end()) {
     const topology::Mesh& mesh = model.mesh();
-    const auto has = [&](Field f) {
-        return std::find(fields.begin(), fields.end(), f) != fields.end();
-    };
-    const auto name = [](Field f) { return std::string(field_names[static_cast<std::size_t>(f)]); };
-
-    io::Frame frame;
     std::vector<NodeId> nodes;
-    std::vector<ElementId> elements;
-    frame.mesh = topology::to_mesh_data(mesh, model.positions(), &nodes, &elements);
-    frame.time = time;
+    frame_.mesh = topology::to_mesh_data(mesh, model.positions(), &nodes, &elements_);
+    frame_.time = time;
 
-    auto& points = frame.point_fields;
+    auto& points = frame_.point_fields;
     const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
     if (has(Field::displacement)) {
         points.push_back(field<float>(name(Field::displacement), 3, nodes, [&](NodeId n) {
             return Vec3(model.positions()[n.index()] - mesh.rest_position(n));
         }));
-        frame.active_vectors = name(Field::displacement);
+        frame_.active_vectors = name(Field::displacement);
     }
     points.push_back(field<double>("rest_position", 3, nodes, rest));
     if (has(Field::velocity))
@@ -69,31 +69,30 @@ io::Frame build_frame(const physics::Model& model, double time, std::span<const 
     points.push_back(
         field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
 
-    auto& cells = frame.cell_fields;
-    cells.push_back(
-        field<std::int64_t>("element_id", 1, elements, [&](ElementId e) { return mesh.label(e); }));
+    auto& cells = frame_.cell_fields;
+    cells.push_back(field<std::int64_t>("element_id", 1, elements_,
+                                        [&](ElementId e) { return mesh.label(e); }));
     if (const auto fibres = model.fibres(); !fibres.empty())
         cells.push_back(
-            field<double>("fibre", 3, elements, [&](ElementId e) { return fibres[e.index()]; }));
-    const auto results = model.element_results(elements);
-    std::vector<std::size_t> rows(elements.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-    if (has(Field::J))
-        cells.push_back(field<float>(name(Field::J), 1, rows,
-                                     [&](std::size_t i) { return results[i].volume_ratio; }));
-    if (has(Field::energy_density))
-        cells.push_back(field<float>(name(Field::energy_density), 1, rows, [&](std::size_t i) {
-            return results[i].energy / results[i].volume;
-        }));
-    if (has(Field::stress))
-        cells.push_back(field<float>(name(Field::stress), 9, rows, [&](std::size_t i) {
-            return Eigen::Matrix<double, 9, 1>(results[i].cauchy_stress.reshaped());
-        }));
-    if (has(Field::von_mises))
-        cells.push_back(field<float>(name(Field::von_mises), 1, rows, [&](std::size_t i) {
-            return von_mises(results[i].cauchy_stress);
-        }));
-    return frame;
+            field<double>("fibre", 3, elements_, [&](ElementId e) { return fibres[e.index()]; }));
+    if (has(Field::J) || has(Field::energy_density) || has(Field::stress) || has(Field::von_mises))
+        snapshot_.emplace(model);
+}
+
+io::Frame FrameBuilder::finish() {
+    if (!snapshot_) return std::move(frame_);
+    const auto results = snapshot_->results(elements_);
+    const auto add = [&](Field kind, int components, auto value) {
+        if (has(kind))
+            frame_.cell_fields.push_back(field<float>(name(kind), components, results, value));
+    };
+    using Result = physics::ElementResult;
+    add(Field::J, 1, [](const Result& r) { return r.volume_ratio; });
+    add(Field::energy_density, 1, [](const Result& r) { return r.energy / r.volume; });
+    add(Field::stress, 9,
+        [](const Result& r) { return Eigen::Matrix<double, 9, 1>(r.cauchy_stress.reshaped()); });
+    add(Field::von_mises, 1, [](const Result& r) { return von_mises(r.cauchy_stress); });
+    return std::move(frame_);
 }
 
 }  // namespace incise::sim

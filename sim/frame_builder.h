@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "io/frame.h"
+#include "physics/element_snapshot.h"
 #include "physics/model.h"
 #include "sim/scenario.h"
 
@@ -12,7 +15,30 @@ namespace incise::sim {
 
 /// Points at their current positions; always rest_position, node_id, element_id and region, the
 /// direction of the fibres at rest if a material has any, and the fields asked for. Ids are labels:
-/// the numbers of the source, later ones for later nodes. Cost: O(#nodes + #elements).
-io::Frame build_frame(const physics::Model& model, double time, std::span<const Field> fields);
+/// the numbers of the source, later ones for later nodes.
+/// In two parts: the first copies what the model has, which takes little; the second computes what
+/// elements do, on any thread, while the model goes on.
+class FrameBuilder {
+  public:
+    /// As physics::ElementSnapshot is destroyed on the thread of the model.
+    FrameBuilder(const physics::Model& model, double time, std::span<const Field> fields);
+
+    /// Hands the frame over: once. Cost: O(#nodes + #elements), like that of the first part.
+    io::Frame finish();
+
+  private:
+    bool has(Field field) const;
+
+    std::vector<Field> fields_;
+    std::vector<topology::ElementId> elements_;         // by row
+    std::optional<physics::ElementSnapshot> snapshot_;  // if a field asks for it
+    io::Frame frame_;
+};
+
+/// Both at once.
+inline io::Frame build_frame(const physics::Model& model, double time,
+                             std::span<const Field> fields) {
+    return FrameBuilder(model, time, fields).finish();
+}
 
 }  // namespace incise::sim

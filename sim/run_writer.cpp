@@ -7,7 +7,6 @@
 
 #include "io/atomic_file.h"
 #include "io/number_format.h"
-#include "sim/frame_builder.h"
 #include "topology/error.h"
 
 namespace incise::sim {
@@ -137,18 +136,19 @@ void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
 }
 
 void RunWriter::on_frame(const Simulation& simulation) {
-    auto frame =
-        build_frame(simulation.model(), simulation.time(), simulation.scenario().output.fields);
     wait_for_frame();
+    frame_builder_.emplace(simulation.model(), simulation.time(),
+                           simulation.scenario().output.fields);
     // By this policy the frame is written by whoever waits for it if no thread can be had.
     frame_ = std::async(std::launch::async | std::launch::deferred,
-                        [this, frame = std::move(frame)] { series_.add(frame); });
+                        [this] { series_.add(frame_builder_->finish()); });
     ++num_frames_;
     append_history(simulation);
 }
 
 void RunWriter::wait_for_frame() {
     if (frame_.valid()) frame_.get();
+    frame_builder_.reset();
 }
 
 void RunWriter::on_pause(const Simulation& simulation) {

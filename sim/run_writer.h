@@ -12,6 +12,7 @@
 #include "io/output_folder.h"
 #include "io/series.h"
 #include "sim/checkpoint.h"
+#include "sim/frame_builder.h"
 #include "sim/measured_quantities.h"
 #include "sim/simulation.h"
 
@@ -71,7 +72,8 @@ class RunWriter : public Observer {
     double next_checkpoint_;                        // in intervals
     std::optional<std::uint64_t> last_checkpoint_;  // its step
     std::size_t num_frames_;
-    std::future<void> frame_;  // which is being written; the last member, as its thread uses others
+    std::optional<FrameBuilder> frame_builder_;  // of the frame that is being written
+    std::future<void> frame_;  // writes it; the last member, as its thread uses others
 };
 
 }  // namespace incise::sim

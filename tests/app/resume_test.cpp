@@ -293,7 +293,7 @@ TEST_F(ResumedProcess, LeavesTheFolderOfAnotherRunAlone) {
 }
 
 TEST_F(ResumedProcess, NeedsNoThreadButItsOwn) {
-    write("scene.toml", scene + "[output]\ninterval = 0.001\n");
+    write("scene.toml", scene + "[output]\ninterval = 0.01\n");
     const Environment environment{{"LD_PRELOAD", INCISE_FAULTS}, {"INCISE_FAULT_THREADS", "1"}};
     std::vector<std::string> arguments{"scene.toml", "--quiet", "--end-time",
                                        "0.05",       "--set",   "mesh.box.cells=[10, 10, 10]",
@@ -305,6 +305,9 @@ TEST_F(ResumedProcess, NeedsNoThreadButItsOwn) {
     arguments.back() = "1";
     outcome = run(arguments, environment);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto files = files_of(folder_ / "scene.out");
+    ASSERT_EQ(run(arguments).status, 0);
+    expect_same(files_of(folder_ / "scene.out"), files);
 }
 
 // Wherever memory ends: also within VTK, whose compressors and streams do not expect it.

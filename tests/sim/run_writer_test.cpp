@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "io/mesh_reader.h"
+#include "io/vtu_writer.h"
 #include "run_folder.h"
 #include "sim/frame_builder.h"
 #include "sim/quantities.h"
@@ -314,6 +315,18 @@ TEST_F(RunFiles, AFrameReadAsAMeshIsTheCutBodyAtRest) {
     EXPECT_NEAR(first.totals.elastic_energy, 0.0, 1e-12);
     run(next, folder_ / "next");
     EXPECT_TRUE(std::filesystem::exists(folder_ / "next/scene.pvd"));
+}
+
+TEST(FrameBuilder, FinishesTheFrameOfTheMomentItBeganAt) {
+    Simulation simulation(scenario_of(scene));
+    while (simulation.time() < 0.02) simulation.step();
+    const auto& fields = simulation.scenario().output.fields;
+    const io::Frame at_once = build_frame(simulation.model(), simulation.time(), fields);
+    FrameBuilder builder(simulation.model(), simulation.time(), fields);
+    const auto num_edits = simulation.ledger().edits().size();
+    while (!simulation.is_finished()) simulation.step();
+    EXPECT_GT(simulation.ledger().edits().size(), num_edits);
+    EXPECT_EQ(io::vtu_text(builder.finish()), io::vtu_text(at_once));
 }
 
 TEST(RunWriter, WritesOnlyTheFieldsAskedFor) {

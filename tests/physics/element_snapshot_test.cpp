@@ -1,0 +1,74 @@
+// What elements did at one moment, worked out while the body goes on.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "physics/element_snapshot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <future>
+#include <span>
+#include <vector>
+
+#include "physics/model_snapshot.h"
+#include "topology/box_mesh.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::CellKind;
+
+/// All numbers of a result, to compare to the bit.
+using Numbers = std::array<double, 12>;
+
+Numbers numbers_of(const ElementResult& result) {
+    Numbers numbers{result.energy, result.volume, result.volume_ratio};
+    std::copy_n(result.cauchy_stress.data(), 9, numbers.begin() + 3);
+    return numbers;
+}
+
+std::vector<Numbers> numbers_of(const std::vector<ElementResult>& results) {
+    std::vector<Numbers> numbers;
+    for (const ElementResult& result : results) numbers.push_back(numbers_of(result));
+    return numbers;
+}
+
+std::vector<Numbers> results_of(const Model& model, std::span<const ElementId> elements) {
+    std::vector<Numbers> numbers;
+    for (const ElementId e : elements) numbers.push_back(numbers_of(model.element_result(e)));
+    return numbers;
+}
+
+TEST(ElementSnapshot, StaysAsItIsWhileTheModelMovesAndIsEdited) {
+    for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
+        SCOPED_TRACE(topology::traits(kind).name);
+        const auto box = topology::box_mesh(kind, Vec3::Zero(), {0.4, 0.4, 0.4}, {4, 4, 4});
+        const MaterialTable table = table_for(box);
+        auto mesh = topology::Mesh::build(with_regions(box, table.materials.size())).mesh;
+        Model model(mesh, table);
+        test::Random random(5);
+        set_state(model, random_state(mesh, random, 0.01, 0.5));
+        double time = 0.0;
+        const auto go_on = [&] { step(model, time, 0.1 * model.stable_step()); };
+        go_on();
+
+        for (int i = 0; i < 5; ++i) {
+            const auto elements = living_elements(mesh);
+            const auto expected = results_of(model, elements);
+            const ElementSnapshot snapshot(model);
+            // On a thread of its own, so that a sanitizer sees whether they meet.
+            auto results = std::async(std::launch::async,
+                                      [&] { return numbers_of(snapshot.results(elements)); });
+            for (int k = 0; k < 3; ++k) {
+                model.apply(test::random_edit(mesh, random));
+                go_on();
+            }
+            EXPECT_EQ(results.get(), expected);
+            EXPECT_EQ(numbers_of(snapshot.results(elements)), expected);
+            EXPECT_NE(mesh.num_elements(), 0u);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::physics
