@@ -69,7 +69,7 @@ template <class Law, class Number>
                    2.0 * (u.x * u.y * E.s12 + u.y * u.z * E.s23 + u.z * u.x * E.s31);
     }
 
-    const LawResponse<Scalar> r = response_of_lanes(law, strain, J0);
+    const LawResponse<Scalar> r = law.response(strain, J0);
     // T = -2 Vol (w_a G + 2 w_b G E' G + w_f u u^T), and f_i = sum of T_ij v_j - w_J dvol/dx_i.
     const Scalar a = -2.0 * volume * r.w_a;
     Symmetric<Scalar> T{a * G.d1, a * G.d2, a * G.d3, a * G.s12, a * G.s23, a * G.s31};

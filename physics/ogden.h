@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "physics/law_response.h"
+#include "physics/squared_stretches.h"
 
 namespace incise::physics {
 
@@ -29,13 +31,74 @@ struct Ogden {
         return sum;
     }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
-    /// Cost: some ten times that of the other laws.
+    /// Derivatives are such that stresses, where all of them stand together, are right to rounding;
+    /// each by itself is less so where stretches are alike.
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const;
+    /// The same, with an energy that is zero at rest.
     LawResponse<double> response(const LinkStrain<double>& s, double J0) const;
+    /// Right in each derivative, as tangents ask for.
     LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const;
 };
 
-/// Eigenvalues of the right Cauchy-Green tensor, in ascending order, none below zero.
-/// @param s  its invariants; the sign of J does not matter
-std::array<double, 3> squared_principal_stretches(const LinkStrain<double>& s);
+/// Powers h(c_k) = c_k^p of the three squared stretches, measured in a unit; below the floor a
+/// parabola goes on whose slope falls to zero at c = 0. Negative powers would be a wall that keeps
+/// inverted elements inverted.
+template <class T>
+struct PowersOfStretches {
+    std::array<T, 3> logs;      ///< of the stretch, or of the floor if that is more
+    std::array<T, 3> relative;  ///< h'(c)/(p h): 1/c, below the floor c over its square
+    std::array<T, 3> below;     ///< (h/h(floor) - 1)/p below the floor, else 0
+
+    PowersOfStretches(const std::array<T, 3>& c, double floor, const T& log_of_unit) {
+        using std::log, std::max, std::min;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const T at = max(c[k], T(floor)), under = min(c[k], T(floor));
+            logs[k] = log(at) - log_of_unit;
+            relative[k] = under / (floor * at);
+            const T d = under * (1.0 / floor) - 1.0;
+            below[k] = d * (1.0 + 0.5 * d);
+        }
+    }
+
+    /// The sum of h(c_k); adds the h'(c_k) times the factor, but for `relative`, to the slopes.
+    T add(double p, const T& factor, std::array<T, 3>& slopes) const {
+        using std::exp;
+        const T slope = p * factor;
+        T sum = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const T power = exp(T(p * logs[k]));
+            slopes[k] += slope * power;
+            sum += power * (1.0 + p * below[k]);
+        }
+        return sum;
+    }
+};
+
+template <class T>
+LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
+    using std::log, std::max, std::min;
+    const double floor = J0 * J0;
+    const T J = max(s.J, T(J0)), per_J = 1.0 / J, log_of_unit = 2.0 / 3.0 * log(J);
+    const SquaredStretches<T> stretches(s, double{std::numeric_limits<T>::epsilon()}, floor);
+    const PowersOfStretches<T> powers(stretches.all(), floor, log_of_unit);
+    const VolumeTerm<T> v = quadratic_volume_term(s.J, bulk_modulus);
+    const T d = min(T(s.J - J0), T(0.0)) * (1.0 / J0);
+    T w = v.value, w_J = v.first;
+    std::array<T, 3> slopes{0.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < num_terms; ++i) {
+        const double p = 0.5 * terms[i].alpha, q = 2.0 / 3.0 * p,
+                     factor = 0.5 * terms[i].mu / (p * p);
+        // J^-q stands in the powers: what `extended` makes of it, and of its derivative, over it.
+        const T g = factor * (1.0 - q * d * (1.0 - 0.5 * (q + 1.0) * d)),
+                g_J = -q * factor * (1.0 - (q + 1.0) * d) * per_J;
+        const T sum = powers.add(p, g, slopes);
+        w += g * sum - 3.0 * factor;
+        w_J += g_J * sum;
+    }
+    for (std::size_t k = 0; k < 3; ++k) slopes[k] *= powers.relative[k];
+    const auto by = stretches.derivatives(slopes, s);
+    return {w, by.a, by.b, w_J + 2.0 * s.J * by.I3};
+}
 
 }  // namespace incise::physics

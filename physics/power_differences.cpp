@@ -9,7 +9,7 @@ namespace incise::physics {
 
 namespace {
 
-constexpr std::size_t num_places = 6;
+constexpr std::size_t max_places = 6;
 
 /// Sums over all products of `degree` of the places, by degree after degree: the divided
 /// differences of x^(n + degree) over n + 1 places.
@@ -27,14 +27,14 @@ class SymmetricSums {
 
   private:
     std::span<const double> places_;
-    std::array<double, num_places> sums_;  // of the first places, up to each
+    std::array<double, max_places> sums_;  // of the first places, up to each
 };
 
 /// Of x^q over places within a factor of two: the binomial series about their middle.
 double of_close_places(std::span<const double> places, double q) {
     const std::size_t n = places.size() - 1;
     const double middle = 0.5 * (places.front() + places.back());
-    std::array<double, num_places> offsets{};
+    std::array<double, max_places> offsets{};
     for (std::size_t k = 0; k <= n; ++k) offsets[k] = (places[k] - middle) / middle;
     double binomial = 1.0;
     for (std::size_t k = 0; k < n; ++k)
@@ -62,27 +62,31 @@ double of_whole_power(std::span<const double> places, std::size_t q) {
     return sums.value();
 }
 
-}  // namespace
-
-std::array<double, 5> doubled_differences(const std::array<double, 3>& c, const PowerSlope& slope) {
+/// Over all the places, which are c0, c1, c2, each `times` times, of x^m times the slope for all m
+/// that the result has room for.
+template <std::size_t times, std::size_t num_powers>
+std::array<double, num_powers> differences_of_powers(const std::array<double, 3>& c,
+                                                     const PowerSlope& slope) {
     constexpr double kink = 0.01;
     std::array<bool, 3> is_above;
     for (std::size_t k = 3; k-- > 0;)
         is_above[k] = c[k] >= slope.floor ||
                       (k < 2 && is_above[k + 1] && c[k + 1] - c[k] < kink * slope.floor);
-    const std::array<double, num_places> places{c[0], c[0], c[1], c[1], c[2], c[2]};
+    constexpr std::size_t num_places = 3 * times;
+    std::array<double, num_places> places;
+    for (std::size_t i = 0; i < num_places; ++i) places[i] = c[i / times];
     const double line = slope.p * std::pow(slope.floor, slope.p - 2.0);
 
-    std::array<double, 5> result;
-    for (std::size_t m = 0; m < result.size(); ++m) {
+    std::array<double, num_powers> result;
+    for (std::size_t m = 0; m < num_powers; ++m) {
         std::array<double, num_places> table;  // over `size` places from each on
         for (std::size_t size = 1; size <= num_places; ++size)
             for (std::size_t i = 0; i + size <= num_places; ++i) {
                 const std::size_t last = i + size - 1;
-                const auto part = std::span(places).subspan(i, size);
-                if (!is_above[last / 2])
+                const auto part = std::span<const double>(places).subspan(i, size);
+                if (!is_above[last / times])
                     table[i] = line * of_whole_power(part, m + 1);
-                else if (is_above[i / 2] && part.back() <= 2.0 * part.front())
+                else if (is_above[i / times] && part.back() <= 2.0 * part.front())
                     table[i] =
                         slope.p * of_close_places(part, slope.p - 1.0 + static_cast<double>(m));
                 else
@@ -91,6 +95,16 @@ std::array<double, 5> doubled_differences(const std::array<double, 3>& c, const 
         result[m] = table[0];
     }
     return result;
+}
+
+}  // namespace
+
+std::array<double, 3> differences(const std::array<double, 3>& c, const PowerSlope& slope) {
+    return differences_of_powers<1, 3>(c, slope);
+}
+
+std::array<double, 5> doubled_differences(const std::array<double, 3>& c, const PowerSlope& slope) {
+    return differences_of_powers<2, 5>(c, slope);
 }
 
 }  // namespace incise::physics

@@ -113,6 +113,54 @@ TYPED_TEST(HemlLanesOf, HaveTheForcesOfTheReference) {
     });
 }
 
+/// Ogden's law of one to three terms, and stretches to find from its invariants: alike or nearly
+/// so, also with the third of them apart, in elements small and large, crushed and turned inside
+/// out.
+template <class Visit>
+void for_each_case_of_ogden(Visit visit) {
+    const Ogden laws[] = {{{{{3846.0, 4.0}}}, 1, 8333.0},
+                          {{{{670.0, -19.0}}}, 1, 6000.0},
+                          {{{{10.0, 40.0}}}, 1, 1e5},
+                          {{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0},
+                          {{{{2000.0, 1.3}, {900.0, 5.0}, {700.0, -3.0}}}, 3, 20000.0}};
+    test::Random random(7);
+    for (const Ogden& law : laws)
+        for (const double spread : {0.0, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1})
+            for (const double size : {0.1, 0.6, 1.0, 1.6, 20.0}) {
+                const Vec3 alike = Vec3::Constant(size * random.uniform(1.0, 1.2)) +
+                                   spread * size * (random.vector(1.0) + Vec3::Ones());
+                for (const double third : {1.0, 1.7, -1.0})
+                    visit(law, Vec3(alike[0], alike[1], third * alike[2]));
+            }
+}
+
+TYPED_TEST(HemlLanesOf, HaveTheForcesOfTheReferenceWhereStretchesAreAlike) {
+    test::Random random(8);
+    for_each_case_of_ogden([&](const Ogden& law, const Vec3& stretches) {
+        HemlKernel kernel{law, 0.4};
+        if (this->is_single) kernel.precision = Precision::single_precision;
+        std::vector<Tetrahedron> rest, now;
+        for (int i = 0; i < 8; ++i) {
+            rest.push_back(random_tetrahedron(random, 0.01));
+            now.push_back(deformed(rest.back(), random_deformation(random, stretches)));
+        }
+        const Elements<TypeParam> elements(kernel, rest, now);
+        // A high power has as many times the rounding of its base.
+        const double tolerance =
+            this->rounding(law) * std::max(1.0, 0.25 * std::abs(law.terms[0].alpha));
+        const auto f = elements.forces(kernel, Processor::plain);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            double scale = 1e-4 * stiffness(kernel);
+            for (const Vec3& g : elements.expected[i]) scale = std::max(scale, g.norm());
+            if (this->is_single && scale > 1e30) continue;  // more than floats hold
+            for (std::size_t k = 0; k < 4; ++k)
+                EXPECT_LE((f[4 * i + k].vector() - elements.expected[i][k]).norm(),
+                          tolerance * scale)
+                    << "alpha " << law.terms[0].alpha << ", stretches " << stretches.transpose();
+        }
+    });
+}
+
 TYPED_TEST(HemlLanesOf, HaveTheSameBitsOnEachProcessor) {
     test::Random random(2);
     this->for_each_kernel_of_it([&](const HemlKernel& kernel) {

@@ -55,11 +55,23 @@ TYPED_TEST(LanesOf, HaveTheFunctionsThatTheyState) {
     });
 }
 
+TYPED_TEST(LanesOf, FindCosinesOfAThirdOfAnAngle) {
+    using L = Lanes<TypeParam>;
+    const double tolerance = sizeof(TypeParam) == sizeof(float) ? 3e-7 : 4e-16;
+    for (int i = 0; i <= 1000; ++i) {
+        const double cosine = i / 1000.0;
+        const double expected = std::cos(std::acos(double{static_cast<TypeParam>(cosine)}) / 3.0);
+        EXPECT_NEAR(cosine_of_third(L(cosine)).v[0], expected, tolerance) << cosine;
+        EXPECT_NEAR(cosine_of_third(L(-cosine)).v[0], -expected, tolerance) << cosine;
+    }
+}
+
 TYPED_TEST(LanesOf, PassOnWhatIsNotANumber) {
     using L = Lanes<TypeParam>;
     for (const double x : {0.0, -1.0, std::nan(""), double{INFINITY}})
         EXPECT_TRUE(std::isnan(log(L(x)).v[0])) << x;
     EXPECT_TRUE(std::isnan(exp(L(std::nan(""))).v[0]));
+    EXPECT_TRUE(std::isnan(cosine_of_third(L(std::nan(""))).v[0]));
     EXPECT_TRUE(std::isfinite(reciprocal_sqrt(L(0.0)).v[0]));
 }
 
