@@ -18,23 +18,8 @@ using topology::ElementId;
 using topology::Mesh;
 using topology::NodeId;
 
-struct NamedMaterial {
-    std::string name;
-    CellKind kind;
-    MaterialTable table;
-};
 std::vector<NamedMaterial> materials() {
-    const auto tet = CellKind::tetrahedron;
-    std::vector<NamedMaterial> all{
-        {"neo-Hookean", tet, table_of_one_law(soft_law)},
-        {"viscous", tet,
-         table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.3, 0.02}, {0.2, 0.2}}})},
-        {"viscous by the nodal rule", tet,
-         table_of_one_material(
-             HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
-        {"springs", tet, table_of_one_material(MassSprings{8e3})},
-        {"hybrid springs", CellKind::hexahedron,
-         table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
+    const auto all = materials_of_all_methods();
     const auto some = test::some_of(all);
     return {some.begin(), some.end()};
 }

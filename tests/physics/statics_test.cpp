@@ -73,28 +73,8 @@ double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
     return largest;
 }
 
-struct NamedMaterial {
-    std::string name;
-    CellKind kind;
-    MaterialTable table;
-};
-
-std::vector<NamedMaterial> materials() {
-    const auto tet = CellKind::tetrahedron;
-    return {{"neo-Hookean", tet, table_of_one_law(soft_law)},
-            {"Ogden", tet, table_of_one_law(Ogden{{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0})},
-            {"viscous", tet,
-             table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}})},
-            {"viscous by the nodal rule", tet,
-             table_of_one_material(
-                 HyperElasticLinks{soft_law, 0.4, {{0.3, 0.05}, {0.2, 0.2}}, PronyRule::nodal})},
-            {"springs", tet, table_of_one_material(MassSprings{8e3})},
-            {"hybrid springs", CellKind::hexahedron,
-             table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
-}
-
 TEST(Statics, EndWhereDampedMotionEnds) {
-    for (const NamedMaterial& m : materials()) {
+    for (const NamedMaterial& m : materials_of_all_methods()) {
         SCOPED_TRACE(m.name);
         const Mesh mesh = bar(m.kind);
         Surroundings s = loaded(mesh);
@@ -123,7 +103,7 @@ TEST(Statics, EndWhereDampedMotionEnds) {
 }
 
 TEST(Statics, EndInTheSameStateWheneverTheBodyIsCut) {
-    for (const NamedMaterial& m : materials()) {
+    for (const NamedMaterial& m : materials_of_all_methods()) {
         SCOPED_TRACE(m.name);
         std::vector<std::vector<Vec3>> ends;
         for (const bool is_cut_before : {true, false}) {
