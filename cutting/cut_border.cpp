@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <vector>
 
 namespace incise::cutting {
 
@@ -12,6 +14,12 @@ using topology::Mesh;
 using topology::NodeId;
 
 namespace {
+
+/// The share of its nodes by which a front may be larger than it has to be.
+constexpr double growth_before_look = 0.25;
+
+/// How many edge lengths away from its whole front a blade has probably gone.
+constexpr double far_away = 4.0;
 
 /// What is known of nodes, by id: a bit each.
 using Marks = std::vector<std::uint8_t>;
@@ -73,8 +81,10 @@ class CrossedEdges {
     std::vector<std::uint32_t> places_;  // by node id: 0 for none, else one more than in others_
 };
 
-/// Whether crossings round one of the element's faces are odd in number.
-bool has_odd_face(const Mesh& mesh, const CrossedEdges& edges, ElementId e) {
+/// Whether crossings round one of the element's faces are odd in number, and the sweep has ended
+/// there.
+bool has_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                const CrossedEdges& edges, ElementId e) {
     const topology::CellTraits& t = traits(mesh.kind(e));
     const auto corners = mesh.corners(e);
     // By corner, a bit for each other to which the edge is crossed.
@@ -94,19 +104,28 @@ bool has_odd_face(const Mesh& mesh, const CrossedEdges& edges, ElementId e) {
         unsigned count = 0;
         for (std::size_t p = 0; p < face.size(); ++p)
             count += crossed[static_cast<std::size_t>(face[p])] >> face[(p + 1) % face.size()] & 1u;
-        if (count % 2 == 1) return true;
+        if (count % 2 == 0) continue;
+        std::array<MovingPoint, 3> triangle;
+        for (std::size_t p = 0; p < 3; ++p) {
+            const Vec3 x = position(corners[static_cast<std::size_t>(face[p])]);
+            triangle[p] = {x, x};
+        }
+        if (surface.ends_inside(triangle).value_or(true)) return true;
     }
     return false;
 }
 
-}  // namespace
+/// By node id, which nodes of the front are beside the border of the cut. What it says of other
+/// nodes is of no meaning.
 
-std::vector<std::uint8_t> nodes_beside_border(const Mesh& mesh, const CutFront& front, bool snaps) {
+Marks nodes_beside_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                          const CutFront& front, bool snaps) {
     Marks marks(mesh.node_capacity());
     const std::vector<ElementId> elements = elements_at(mesh, front, marks);
     const CrossedEdges edges(mesh, front);
     for (const ElementId e : elements)
-        if (has_odd_face(mesh, edges, e)) mark_corners(mesh, e, marks, border_mark);
+        if (has_border(mesh, surface, position, edges, e))
+            mark_corners(mesh, e, marks, border_mark);
     const auto spread = [&](std::uint8_t from, std::uint8_t to) {
         for (const ElementId e : elements)
             if (has_corner(mesh, e, marks, from)) mark_corners(mesh, e, marks, to);
@@ -122,6 +141,8 @@ std::vector<std::uint8_t> nodes_beside_border(const Mesh& mesh, const CutFront& 
     return marks;
 }
 
+/// Each of the nodes comes to be on the side of those of its neighbours that are not on the cut: no
+/// edge to them is crossed then, and the counts of its other edges stay true.
 void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front) {
     std::vector<ElementId> star;
     std::vector<NodeId> neighbors;
@@ -142,6 +163,29 @@ void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front)
         for (const NodeId other : neighbors) front.toggle(n, other);
     }
     front.forget(nodes);
+}
+
+}  // namespace
+
+void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                  bool has_crossed, bool snaps, CutFront& front) {
+    if (front.is_empty()) return;
+    const auto is_far = [&] {
+        bool is_near = false;
+        front.for_each([&](NodeId n) {
+            is_near = is_near || (mesh.is_alive(n) &&
+                                  surface.ends_near(position(n), far_away * front.reach(n)));
+        });
+        return !is_near;
+    };
+    const bool has_grown = static_cast<double>(front.num_new()) >
+                           growth_before_look * static_cast<double>(front.size());
+    if (has_crossed ? !has_grown : !front.has_changed() && !is_far()) return;
+    const Marks beside = nodes_beside_border(mesh, surface, position, front, snaps);
+    forget(mesh,
+           front.nodes_unless([&](NodeId n) { return mesh.is_alive(n) && beside[n.index()]; }),
+           front);
+    front.set_reviewed();  // forgetting takes crossings back
 }
 
 }  // namespace incise::cutting

@@ -2,30 +2,32 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <functional>
 
 #include "cutting/cut_front.h"
+#include "cutting/cut_surface.h"
 #include "topology/mesh.h"
 
 namespace incise::cutting {
 
-/// By node id, which nodes of the front are beside the border of the cut: the cut may go on there.
-/// They have an element in common with a node of an element through which the border runs. The
-/// counts of crossings tell which: round a triangle through which the border runs they are odd in
-/// number, and only there. What it says of other nodes is of no meaning.
-///
-/// @param snaps  whether nodes may come to count as on the cut from an element farther away:
-///               then the elements beside those of the border belong to it too
-/// Cost: proportional to the number of elements at the front, and clearing five bytes for each node
-/// of the mesh and a bit for each element.
-std::vector<std::uint8_t> nodes_beside_border(const topology::Mesh& mesh, const CutFront& front,
-                                              bool snaps);
+/// Where a node is after the step, m.
+using PositionOf = std::function<Vec3(topology::NodeId)>;
 
-/// Forgets nodes round which the cut is finished. Each comes to be on the side of those of its
-/// neighbours that are not on the cut: no edge to them is crossed then, and the counts of its other
-/// edges stay true.
-void forget(const topology::Mesh& mesh, const std::vector<topology::NodeId>& nodes,
-            CutFront& front);
+/// Forgets the nodes of the front round which the cut is finished: a later passage there is another
+/// cut. Kept are those beside the border at which the sweep has ended, as the cut may go on there:
+/// they have an element in common with a node of an element through which the border runs. The
+/// counts of crossings tell which: round a triangle through which the border runs they are odd in
+/// number. Where they are odd but the blade is no more, it ended in the body and has gone.
+///
+/// To find this out takes a look at the whole front. So it is done when the front has grown by a
+/// share of its size, and when the sweep crosses nothing any more but has done so, or is far away.
+///
+/// @param has_crossed  whether the surface passed through any element in this step
+/// @param snaps  whether nodes may come to count as on the cut from an element farther away: then
+///               the elements beside those of the border belong to it too
+/// Cost of a look: proportional to the number of elements at the front, and clearing five bytes for
+/// each node of the mesh and a bit for each element.
+void leave_behind(const topology::Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                  bool has_crossed, bool snaps, CutFront& front);
 
 }  // namespace incise::cutting

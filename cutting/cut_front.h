@@ -65,7 +65,7 @@ class CutFront {
 
     /// Copies of a node are what it is.
     void follow(const topology::ChangeSet& changes);
-    /// The nodes for which keep(node, reach) is false, in ascending order.
+    /// The nodes for which keep(node) is false, in ascending order.
     template <class Keep>
     std::vector<topology::NodeId> nodes_unless(Keep keep) const;
     /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
@@ -102,7 +102,7 @@ std::vector<topology::NodeId> CutFront::nodes_unless(Keep keep) const {
     std::vector<topology::NodeId> nodes;
     for (const auto& [value, node] : nodes_) {
         const topology::NodeId n(static_cast<std::size_t>(value));
-        if (!keep(n, node.reach)) nodes.push_back(n);
+        if (!keep(n)) nodes.push_back(n);
     }
     std::sort(nodes.begin(), nodes.end());
     return nodes;

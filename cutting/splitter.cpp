@@ -39,13 +39,6 @@ constexpr double share_always_snapped = 1.0 / 3.0;
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
 
-/// How many edge lengths away from where a sweep has ended nothing more comes of it: elements that
-/// are cut in part hang on nodes nearer than that.
-constexpr double reach_of_front = 4.0;
-
-/// The share of its nodes by which a front may be larger than it has to be.
-constexpr double growth_before_review = 0.25;
-
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
 
@@ -122,23 +115,10 @@ class Splitter {
         return new_points_[n.index() - num_old_nodes_];
     }
 
-    /// Where the cut is finished, or the sweep has gone far away, a later passage is another cut.
-    /// To find out where it is finished takes a look at the whole front. So that is done when the
-    /// front has grown by a share of its size, and when the sweep crosses nothing any more.
     void leave_behind(const topology::ChangeSet& changes) {
-        std::vector<std::uint8_t> beside;
-        const bool is_due = touched_.empty()
-                                ? front_.has_changed()
-                                : static_cast<double>(front_.num_new()) >
-                                      growth_before_review * static_cast<double>(front_.size());
-        if (is_due) beside = nodes_beside_border(mesh_, front_, options_.snap > 0.0);
-        const auto done = front_.nodes_unless([&](NodeId n, double reach) {
-            return mesh_.is_alive(n) &&
-                   surface_.ends_near(final_position(n, changes), reach_of_front * reach) &&
-                   (beside.empty() || beside[n.index()]);
-        });
-        forget(mesh_, done, front_);
-        if (is_due) front_.set_reviewed();  // forgetting takes crossings back
+        cutting::leave_behind(
+            mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
+            !touched_.empty(), options_.snap > 0.0, front_);
     }
 
     /// Of a copy, where its source is.

@@ -338,6 +338,40 @@ TEST(SplitByBlade, PartsLongAndFlatElementsInTwo) {
                 }
 }
 
+// On its way through a long element the blade is far away, measured by the edges that it has
+// divided, before it comes to the next: until then the element's nodes are at the front.
+TEST(SplitByBlade, RemembersElementsThatAreLongInItsDirection) {
+    for (const double snap : {0.0, 0.01, default_snap})
+        for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
+            SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
+            Random random(seed);
+            const double from = random.uniform(0.3, 0.7), to = from + random.uniform(-0.1, 0.1);
+            SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                              Vec3::Ones(), {3, 1, 20}));
+            body.cut(way_of_edge({{-0.1, from}, {1.1, to}}, 0.02), guarded(body.mesh, snap));
+            ASSERT_EQ(topology::components(body.mesh).count, 2);
+        }
+}
+
+// It ends in the body and slides out along itself, so that it crosses nothing: the border where it
+// was is there no more.
+TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
+    for (const double snap : {0.0, default_snap}) {
+        SplitBody body(test::jittered_cube(4, 0.2, 1));
+        CutFront front;
+        const auto go = [&](const Polyline& from, const Polyline& to) {
+            for (const auto& part : sweep(from, to, 8))
+                body.cut(*part, front, guarded(body.mesh, snap), body.positions);
+        };
+        const Polyline above{{0.53, 0.4, -0.1}, {0.53, 1.5, -0.1}};
+        const Polyline inside{{0.53, 0.4, 0.55}, {0.53, 1.5, 0.55}};
+        go(above, inside);
+        EXPECT_FALSE(front.is_empty());
+        go(inside, {{0.53, 4.4, 0.55}, {0.53, 5.5, 0.55}});
+        EXPECT_TRUE(front.is_empty());
+    }
+}
+
 TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
     static constexpr std::array<std::array<int, 3>, 3> numbers_of_bricks{
         {{10, 2, 10}, {6, 6, 6}, {20, 4, 20}}};
@@ -370,6 +404,24 @@ TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
         EXPECT_NEAR(volumes[3], std::min({x * z, (1 - x) * z, x * (1 - z), (1 - x) * (1 - z)}),
                     1e-12);
     }
+}
+
+// From element to element it is far away from where it has crossed its earlier way, a hundredth of
+// an element beside a plane of nodes.
+TEST(SplitByBlade, ThatCrossesItsOwnWayBesideNodesLeavesFourPieces) {
+    static constexpr std::array<std::array<double, 3>, 3> ways{
+        {{0.403704, 0.499921, 0.05},
+         {0.416506985, 0.583315689, 0.056774151},
+         {0.499910597, 0.499972579, 0.048991445}}};
+    for (const auto& [z, x, part] : test::some_of(ways))
+        for (const double snap : {0.0, 0.01}) {
+            SCOPED_TRACE(testing::Message() << "z " << z << ", x " << x << ", snap " << snap);
+            SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                              Vec3::Ones(), {12, 1, 12}));
+            body.cut(way_of_edge({{-0.1, z}, {1.2, z}, {1.2, 1.2}, {x, 1.2}, {x, -0.1}}, part),
+                     guarded(body.mesh, snap));
+            ASSERT_EQ(topology::components(body.mesh).count, 4);
+        }
 }
 
 }  // namespace
