@@ -29,8 +29,8 @@ Passage passage_at(const Crossing& crossing, const CutSurface& surface, const Cr
     const double steepness = size > 0.0 ? std::abs(normal_at_rest.dot(edge.at_rest)) / size : 1.0;
     const Vec3 &a = edge.a[1], &b = edge.b[1];
     Passage passage{
-        crossing.place, crossing.place * steepness,   (1.0 - crossing.place) * steepness,
-        near,           a + crossing.place * (b - a), crossing.normal.normalized()};
+        crossing.place, crossing.place * steepness,   (1.0 - crossing.place) * steepness, near,
+        crossing.time,  a + crossing.place * (b - a), crossing.normal.normalized()};
     // Where the surface bends away its plane at the crossing would say too little.
     const double length = (b - a).norm(), at_a = surface.distance(a) / length;
     if (!std::isnan(at_a)) {

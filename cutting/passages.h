@@ -18,6 +18,7 @@ struct CrossableEdge {
 /// an end counts as on it; all in units of the edge's length at rest.
 struct Passage {
     double place, from_a, from_b, near;
+    double time;         ///< 0 before the step, 1 after it
     Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
 
     /// Whether the end is so near that it counts as on the surface. Of an edge that lies all but in

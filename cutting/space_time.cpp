@@ -48,7 +48,7 @@ std::array<Event, 4> corners(const MovingSegment& s, bool is_tissue) {
     return {event(s.a[0], 0.0), event(s.b[0], 0.0), event(s.b[1], 1.0), event(s.a[1], 1.0)};
 }
 
-/// Calls visit(place along the tissue's segment) for each crossing.
+/// Calls visit(place along the tissue's segment, time) for each crossing.
 template <class Visit>
 void for_crossings(const MovingSegment& tissue, const MovingSegment& blade, Visit visit) {
     const auto p = corners(tissue, true), q = corners(blade, false);
@@ -61,7 +61,8 @@ void for_crossings(const MovingSegment& tissue, const MovingSegment& blade, Visi
             // Corners 1 and 2 are those of b.
             const double towards_b = i == 1 ? weights[1] + weights[2] : weights[1];
             const double sum = weights[0] + weights[1] + weights[2];
-            visit(sum > 0.0 ? towards_b / sum : 0.5);
+            const double late = i == 1 ? weights[2] : weights[1] + weights[2];
+            visit(sum > 0.0 ? towards_b / sum : 0.5, sum > 0.0 ? late / sum : 0.5);
         }
 }
 
@@ -77,14 +78,14 @@ void append_crossings(const MovingSegment& tissue, const MovingSegment& blade,
                             (1.0 - place) * shift(tissue.a) - place * shift(tissue.b);
         return along.cross(motion);
     };
-    for_crossings(tissue, blade, [&](double place) {
-        crossings.push_back({place, normal(place)});
+    for_crossings(tissue, blade, [&](double place, double time) {
+        crossings.push_back({place, normal(place), time});
     });
 }
 
 bool cross(const MovingSegment& tissue, const MovingSegment& blade) {
     bool is_odd = false;
-    for_crossings(tissue, blade, [&](double) { is_odd = !is_odd; });
+    for_crossings(tissue, blade, [&](double, double) { is_odd = !is_odd; });
     return is_odd;
 }
 

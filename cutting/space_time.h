@@ -19,8 +19,9 @@ struct MovingSegment {
 
 /// Where a cut passes through a segment of tissue from a to b.
 struct Crossing {
-    double place;  ///< 0 at a, 1 at b
-    Vec3 normal;   ///< of the cut there, of any length but zero, unless it is not known
+    double place;       ///< 0 at a, 1 at b
+    Vec3 normal;        ///< of the cut there, of any length but zero, unless it is not known
+    double time = 0.0;  ///< of the passage: 0 before the step, 1 after it
     bool operator<(const Crossing& other) const { return place < other.place; }
 };
 

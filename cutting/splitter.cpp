@@ -57,6 +57,9 @@ struct EdgeHash {
     }
 };
 
+/// Of those through an edge, the one at which it is divided first.
+const Passage& middle_of(const Passages& passages) { return passages[passages.size() / 2]; }
+
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
@@ -102,10 +105,12 @@ class Splitter {
         Passages passages;
     };
     struct Turn {
-        double length;
+        double time, length;
         Edge edge;
-        // The longest comes first, of equal ones the lowest.
+        // As the blade comes to them, so that it does not matter into how many steps its way is
+        // taken; of those that it meets at once, the longest comes first, of equal ones the lowest.
         bool operator<(const Turn& other) const {
+            if (time != other.time) return time > other.time;
             return length != other.length ? length < other.length : other.edge < edge;
         }
     };
@@ -325,7 +330,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
 void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
     Passages left = passages;
     if (is_to_be_divided(edge, left)) {
-        queue_.push({rest_length(edge), edge});
+        queue_.push({middle_of(left).time, rest_length(edge), edge});
         pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
     } else {
         settle(edge, passages);
@@ -351,7 +356,7 @@ void Splitter::divide_next() {
     pending_.erase(place);
     Passages left = pending.passages;
     if (is_to_be_divided(edge, left)) {
-        const Passage& passage = left[left.size() / 2];
+        const Passage& passage = middle_of(left);
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
             const NodeId middle = divide(edge, pending.element, t);

@@ -48,11 +48,12 @@ struct Split {
 /// Divides the tetrahedra that the surface passes through and opens the faces on it, in one
 /// transaction.
 ///
-/// Edges that the surface crosses are divided there, longest first; each division takes every
-/// element round the edge in two, so the mesh stays conforming, and no volume is lost. Then the
-/// faces open whose three nodes lie on the surface and whose elements are on different sides of
-/// it. A body through which the surface passes right across is parted; where the surface ends, so
-/// do the opened faces, within one element.
+/// Edges that the surface crosses are divided there, in the order in which it comes to them, of
+/// those that it meets at once the longest first; each division takes every element round the edge
+/// in two, so the mesh stays conforming, and no volume is lost. Then the faces open whose three
+/// nodes lie on the surface and whose elements are on different sides of it. A body through which
+/// the surface passes right across is parted; where the surface ends, so do the opened faces,
+/// within one element.
 ///
 /// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
 ///               brought up to date
