@@ -2,7 +2,6 @@
 #include "cutting/splitter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <queue>
@@ -11,9 +10,9 @@
 #include <utility>
 
 #include "cutting/cut_border.h"
+#include "cutting/fitting_place.h"
 #include "cutting/passages.h"
 #include "cutting/sides.h"
-#include "cutting/step_length.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
 
@@ -152,7 +151,6 @@ class Splitter {
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, Passages& passages);
     void divide_next();
-    bool is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t, double share) const;
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place);
     void place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
@@ -368,42 +366,14 @@ void Splitter::divide_next() {
     settle(edge, pending.passages);
 }
 
-/// Whether the halves of all elements round the edge, divided there, are larger than this share of
-/// what the uncut body had.
-bool Splitter::is_fit(const Edge& edge, const std::vector<ElementId>& ring, double t,
-                      double share) const {
-    const Vec3 middle = (1.0 - t) * mesh_.rest_position(edge.a) + t * mesh_.rest_position(edge.b);
-    for (const ElementId e : ring) {
-        const auto uncut = options_.uncut.step_length.find(mesh_.region(e));
-        if (uncut == options_.uncut.step_length.end()) continue;
-        for (const NodeId replaced : {edge.a, edge.b}) {
-            std::array<Vec3, 4> x;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const NodeId n = mesh_.corners(e)[k];
-                x[k] = n == replaced ? middle : mesh_.rest_position(n);
-            }
-            if (!(own_step_length(x) >= share * uncut->second)) return false;
-        }
-    }
-    return true;
-}
-
-/// Where to divide the edge: on the surface; if a half would be too small, as much nearer to the
-/// middle as nodes may be off the surface. Negative if the nearer end is to count as on it.
+/// Where to divide the edge; negative if the nearer end is to count as on the surface.
 double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
-    const double place = passage.place;
     if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
-    if (options_.uncut.step_length.empty()) return place;
+    if (options_.uncut.step_length.empty()) return passage.place;
     ring_.clear();
     topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
-    const double share = least_step_share(options_.snap);
-    if (is_fit(edge, ring_, place, share)) return place;
-    const double length = rest_length(edge);
-    const double reach = farthest_ / length / (passage.from_a + passage.from_b);
-    const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
-    if (is_fit(edge, ring_, moved, share)) return moved;
-    const bool is_end_near = std::min(passage.from_a, passage.from_b) * length <= farthest_;
-    return !is_end_near && is_fit(edge, ring_, moved, 0.5 * share) ? moved : -1.0;
+    return fitting_place(mesh_, {edge.a, edge.b, ring_}, passage,
+                         {options_.uncut, least_step_share(options_.snap), farthest_});
 }
 
 /// Returns the new node.
