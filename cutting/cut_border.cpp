@@ -117,7 +117,6 @@ bool has_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& p
 
 /// By node id, which nodes of the front are beside the border of the cut. What it says of other
 /// nodes is of no meaning.
-
 Marks nodes_beside_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                           const CutFront& front, bool snaps) {
     Marks marks(mesh.node_capacity());
