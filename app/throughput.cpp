@@ -109,7 +109,8 @@ struct MovingBody {
     MovingBody(const topology::Mesh& mesh, const Measured& measured, physics::Precision precision,
                int num_threads)
         : model(mesh, table_of(measured.material, precision),
-                {.gravity = Vec3(0, 0, -9.81), .damping = 0.0, .supports = {}, .loads = {}}),
+                // Damped, as a body that falls freely would at last be too fast for its steps.
+                {.gravity = Vec3(0, 0, -9.81), .damping = 10.0, .supports = {}, .loads = {}}),
           dt(0.9 * model.stable_step()) {
         model.set_num_threads(num_threads);
     }
