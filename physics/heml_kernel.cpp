@@ -85,11 +85,6 @@ double HemlKernel::energy(const Element& e, const Corners& x) const {
 }
 
 std::array<Vec3, 4> HemlKernel::forces(const Element& e, const Corners& x) const {
-    return energy_and_forces(e, x).second;
-}
-
-std::pair<double, std::array<Vec3, 4>> HemlKernel::energy_and_forces(const Element& e,
-                                                                     const Corners& x) const {
     const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
     const Vec6 dl = squared_links(x) - e.rest_links;
     const Vec6 Mdl = e.Mtr * dl;
@@ -100,7 +95,7 @@ std::pair<double, std::array<Vec3, 4>> HemlKernel::energy_and_forces(const Eleme
     const Vec3 f1 = -((t[0] + t[3] + t[5]) * v1 - t[3] * v2 - t[5] * v3 + p * v2.cross(v3));
     const Vec3 f2 = -((t[1] + t[3] + t[4]) * v2 - t[3] * v1 - t[4] * v3 + p * v3.cross(v1));
     const Vec3 f3 = -((t[2] + t[4] + t[5]) * v3 - t[4] * v2 - t[5] * v1 + p * v1.cross(v2));
-    return {e.volume * r.w, {-(f1 + f2 + f3), f1, f2, f3}};
+    return {-(f1 + f2 + f3), f1, f2, f3};
 }
 
 std::array<double, 4> HemlKernel::stiffness_bounds(const Element& e, const Corners& X) const {

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <utility>
 
 #include "physics/heml_lanes.h"
 #include "physics/law.h"
@@ -67,9 +66,6 @@ struct HemlKernel {
     /// Nodal forces: minus the gradient of energy(), eq. (11):
     /// f_i = -[ Vol (w_l^T DLM_i) v^T + w_J dvol/dx_i ].
     Corners forces(const Element& e, const Corners& x) const;
-
-    /// The same bits at once, for hardly more than one of them takes.
-    std::pair<double, Corners> energy_and_forces(const Element& e, const Corners& x) const;
 
     /// Each corner's part s_i = (lambda + 2 mu) V (1/h_i) sum_j 1/h_j of the nodal bound on the
     /// stiffness at rest (stable_step.h), N/m; h are the altitudes. Fibres that are stretched add

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "physics/element_block.h"
@@ -252,8 +251,8 @@ class KernelBlock final : public ElementBlock {
         ElementResult result;
         result.volume = row(s).rest.volume;
         result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
-        Corners f;
-        std::tie(result.energy, f) = energy_and_forces(s, x, history);
+        result.energy = kernel_.energy(row(s).rest, x);
+        const Corners f = forces_of(s, x, history);
         for (std::size_t k = 1; k < num_corners; ++k)
             result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
         const double volume = result.volume * result.volume_ratio;
@@ -264,15 +263,12 @@ class KernelBlock final : public ElementBlock {
         return result;
     }
 
-    std::pair<double, Corners> energy_and_forces(
-        std::size_t s, const Corners& x, [[maybe_unused]] const ViscousHistory& history) const {
-        const auto& rest = row(s).rest;
+    Corners forces_of(std::size_t s, const Corners& x,
+                      [[maybe_unused]] const ViscousHistory& history) const {
         if constexpr (HasHistory<Kernel>)
-            return {kernel_.energy(rest, x), kernel_.forces(rest, x, history.of(elements_[s]))};
-        else if constexpr (requires { kernel_.energy_and_forces(rest, x); })
-            return kernel_.energy_and_forces(rest, x);
+            return kernel_.forces(row(s).rest, x, history.of(elements_[s]));
         else
-            return {kernel_.energy(rest, x), kernel_.forces(rest, x)};
+            return kernel_.forces(row(s).rest, x);
     }
 
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {
