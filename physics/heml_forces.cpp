@@ -11,7 +11,8 @@ void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
                 const LocalVector* positions, LocalVector* forces) {
     std::visit(
         [&](const auto& l) {
-            for (std::size_t g = 0; g < groups.links.size(); ++g)
+            for (std::size_t g = 0; g < groups.links.size(); ++g) {
+                fetch_ahead(std::span<const LinkGroup<Number>>(groups.links), g);
                 for (std::size_t first = 0; first < LinkGroup<Number>::size;
                      first += num_lanes<Number>) {
                     const LinkGroup<Number>& group = groups.links[g];
@@ -21,6 +22,7 @@ void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
                                                first, edges);
                     scatter_add<Number>(f, forces, group.nodes, first);
                 }
+            }
         },
         law);
 }

@@ -64,9 +64,11 @@ template <class Number>
 template <class Number>
 [[gnu::flatten]] void add_forces(double volume_modulus, std::span<const CellGroup<Number>> groups,
                                  const LocalVector* positions, LocalVector* forces) {
-    for (const CellGroup<Number>& group : groups)
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        fetch_ahead(groups, g);
         for (std::size_t first = 0; first < CellGroup<Number>::size; first += num_lanes<Number>)
-            add_forces_of(volume_modulus, group, first, positions, forces);
+            add_forces_of(volume_modulus, groups[g], first, positions, forces);
+    }
 }
 
 }  // namespace

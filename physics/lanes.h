@@ -4,12 +4,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
 #ifdef __AVX2__
@@ -330,6 +332,17 @@ template <class Number>
         c = shuffle<halves>(ab_high, cd_high);
         d = shuffle<other_halves>(ab_high, cd_high);
     }
+}
+
+/// Has the processor fetch the group that a loop over them comes to some rounds later. The groups
+/// of a body that the caches do not hold would be waited for: by itself the processor begins too
+/// late.
+template <class Group>
+[[gnu::always_inline]] inline void fetch_ahead(std::span<const Group> groups, std::size_t now) {
+    constexpr std::size_t num_rounds = 8, pair_of_lines = 128;  // lines come in pairs
+    const Group& group = groups[std::min(now + num_rounds, groups.size() - 1)];
+    for (std::size_t i = 0; i < sizeof(Group); i += pair_of_lines)
+        __builtin_prefetch(reinterpret_cast<const char*>(&group) + i);
 }
 
 using Quad = double __attribute__((vector_size(32)));  // a LocalVector
