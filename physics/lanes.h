@@ -93,6 +93,20 @@ template <class Vector>
 #endif
 }
 
+/// A product that waits for what is done with it. Of two that are added the second is rounded.
+template <class Scalar>
+struct Product {
+    Scalar a, b;
+
+    friend Product operator-(Product p) { return {-p.a, p.b}; }
+    friend Scalar operator+(Product p, Scalar c) { return multiply_add(p.a.v, p.b.v, c.v); }
+    friend Scalar operator+(Scalar c, Product p) { return p + c; }
+    friend Scalar operator+(Product p, Product q) { return p + Scalar(q); }
+    friend Scalar operator-(Product p, Scalar c) { return p + -c; }
+    friend Scalar operator-(Scalar c, Product p) { return -p + c; }
+    friend Scalar operator-(Product p, Product q) { return p - Scalar(q); }
+};
+
 /// Arithmetic is that of single numbers, lane by lane, to the bit, whatever the processor and
 /// however many lanes it has. A product that is added to something is not rounded before: which
 /// products are so is a matter of how a formula is written, not of what the compiler finds.
@@ -126,11 +140,10 @@ struct Lanes {
     friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
     friend Lanes operator-(Lanes a) { return -a.v; }
 
-    struct Product;
-    friend Product operator*(Lanes a, Lanes b) { return {a, b}; }
-    Lanes(Product p);  // rounded
-    Lanes& operator+=(Product p) { return *this = p + *this; }
-    Lanes& operator-=(Product p) { return *this = *this - p; }
+    friend Product<Lanes> operator*(Lanes a, Lanes b) { return {a, b}; }
+    Lanes(Product<Lanes> p) : v(p.a.v * p.b.v) {}  // rounded
+    Lanes& operator+=(Product<Lanes> p) { return *this = p + *this; }
+    Lanes& operator-=(Product<Lanes> p) { return *this = *this - p; }
 
     // As std::max(a, b) and std::min(a, b), also of what is not a number.
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
@@ -234,23 +247,6 @@ struct Lanes {
     }();
 };
 
-/// A product that waits for what is done with it. Of two that are added the second is rounded.
-template <class Number>
-struct Lanes<Number>::Product {
-    Lanes a, b;
-
-    friend Product operator-(Product p) { return {-p.a, p.b}; }
-    friend Lanes operator+(Product p, Lanes c) { return multiply_add(p.a.v, p.b.v, c.v); }
-    friend Lanes operator+(Lanes c, Product p) { return p + c; }
-    friend Lanes operator+(Product p, Product q) { return p + Lanes(q); }
-    friend Lanes operator-(Product p, Lanes c) { return p + -c; }
-    friend Lanes operator-(Lanes c, Product p) { return -p + c; }
-    friend Lanes operator-(Product p, Product q) { return p - Lanes(q); }
-};
-
-template <class Number>
-[[gnu::always_inline]] inline Lanes<Number>::Lanes(Product p) : v(p.a.v * p.b.v) {}
-
 /// Vectors in space, one a lane.
 template <class Number>
 struct Lanes3 {
@@ -263,7 +259,7 @@ struct Lanes3 {
     friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
-    /// A multiple that waits to be added to something, like Lanes::Product.
+    /// A multiple that waits to be added to something, like Product.
     struct Multiple {
         Scalar s;
         Lanes3 a;
