@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -15,6 +16,7 @@
 #include "app/command_line.h"
 #include "app/messages.h"
 #include "app/verbs.h"
+#include "physics/workers.h"
 #include "topology/error.h"
 
 namespace {
@@ -47,6 +49,12 @@ void occupy_standard_descriptors() {
     if (file >= 0) ::close(file);
 }
 
+int fail_for_threads() {
+    return fail(app::out_of_memory,
+                "out of memory or of processes: the system gives no further thread; raise the "
+                "limits (ulimit -v, ulimit -u), or let a run have --threads 1");
+}
+
 /// Prints what the exception says; returns the status that it stands for.
 int report(const std::exception_ptr& exception) {
     if (!exception) return fail_by_fault("it has given up");
@@ -64,16 +72,21 @@ int report(const std::exception_ptr& exception) {
         return fail_for_memory();
     } catch (const std::system_error& error) {
         if (error.code() == std::errc::not_enough_memory) return fail_for_memory();
-        if (error.code() == std::errc::resource_unavailable_try_again)
-            return fail(app::out_of_memory,
-                        "out of memory or of processes: the system gives no further thread; raise "
-                        "the limits (ulimit -v, ulimit -u), or let a run have --threads 1");
+        if (error.code() == std::errc::resource_unavailable_try_again) return fail_for_threads();
         return fail_by_fault(error.what());
     } catch (const std::exception& error) {
+        if (physics::Workers::is_refused_thread(error)) return fail_for_threads();
         return fail_by_fault(error.what());
     } catch (...) {
         return fail_by_fault("it has given up");
     }
+}
+
+/// Of several threads that fail at the same time one tells; the others wait for the end.
+int report_once(const std::exception_ptr& exception) {
+    static std::atomic_flag is_told;
+    while (is_told.test_and_set()) ::pause();
+    return report(exception);
 }
 
 }  // namespace
@@ -84,13 +97,13 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     // In the threads of libraries there is nobody to catch.
-    std::set_terminate([] { std::_Exit(report(std::current_exception())); });
+    std::set_terminate([] { std::_Exit(report_once(std::current_exception())); });
     try {
         const int status = app::dispatch(argc, argv);
         std::cout.flush();
         if (!std::cout) throw OutputError("standard output: cannot be written");
         return status;
     } catch (...) {
-        return report(std::current_exception());
+        return report_once(std::current_exception());
     }
 }

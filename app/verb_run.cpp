@@ -204,7 +204,7 @@ int run(const RunOptions& options) {
 
     const auto built = build(scenario, options.scenario);
     sim::Simulation& simulation = *built;
-    simulation.set_num_threads(num_threads(options));
+    if (!options.dry_run) simulation.set_num_threads(num_threads(options));
     if (stopped) stopped->checkpoint.restore(simulation);
     for (const std::string& warning : simulation.warnings()) print_warning(warning);
     if (!options.quiet) {

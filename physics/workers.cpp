@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <mutex>
-#include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -25,8 +25,8 @@ namespace incise::physics {
 
 namespace {
 
-/// Makes as many threads as TBB will make, all at once, and ends them. TBB makes its own from one
-/// another, where nothing could catch an exception.
+/// Makes as many threads as TBB will make, all at once, and ends them: what is refused here can be
+/// caught. TBB's own may still be refused where memory is short, as each of them takes some.
 void require_threads(int count) {
     std::mutex gate;
     std::vector<std::jthread> threads;  // joined when the gate is open
@@ -79,8 +79,9 @@ struct Workers::Arena {
         // TBB makes its threads when there is work for them: now, not when memory is taken.
         try {
             arena.execute([&] { meet(num_threads); });
-        } catch (const std::runtime_error& refusal) {  // TBB's own
-            throw std::system_error(EAGAIN, std::generic_category(), refusal.what());
+        } catch (const std::exception& error) {
+            if (!is_refused_thread(error)) throw;
+            throw std::system_error(EAGAIN, std::generic_category(), error.what());
         }
     }
     tbb::global_control limit;  // else there are no more threads than cores, and a complaint
@@ -96,6 +97,10 @@ Workers::Workers(Workers&&) noexcept = default;
 Workers& Workers::operator=(Workers&&) noexcept = default;
 
 int Workers::num_cores() { return tbb::info::default_concurrency(); }
+
+bool Workers::is_refused_thread(const std::exception& error) {
+    return std::string_view(error.what()).starts_with("pthread_create has failed");  // TBB's words
+}
 
 void Workers::for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const {
     constexpr std::size_t few = 4;  // done sooner than other threads are woken

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 
 #include "physics/function_ref.h"
@@ -31,6 +32,10 @@ class Workers {
 
     /// How many the process may run at the same time.
     static int num_cores();
+
+    /// Whether TBB threw it since the system gives no further thread. It makes its threads from one
+    /// another, where nobody can catch it: the handler of std::terminate asks this.
+    static bool is_refused_thread(const std::exception& error);
 
     /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
     /// to be worth it; returns when all are done. The first exception thrown comes out.

@@ -2,8 +2,8 @@
 // it makes. INCISE_FAULT_AT is n, from 1; INCISE_FAULT is the number of the error to report, or
 // "kill", or "half": half of what is to be written is, and then the disk is full. Files that are
 // opened to be written count only if INCISE_FAULT_OPEN is there, and then nothing else does. The
-// number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself. Where
-// INCISE_FAULT_THREADS is there, no thread can be made. From the INCISE_FAULT_MEMORY-th request for
+// number of calls goes to the file INCISE_FAULT_COUNT when the program ends by itself. From the
+// INCISE_FAULT_THREADS-th thread on, none can be made. From the INCISE_FAULT_MEMORY-th request for
 // a page of memory or more on, none is granted.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <dlfcn.h>
@@ -107,7 +107,9 @@ int openat(int folder, const char* path, int flags, ...) {
 }
 int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                    void* argument) {
-    if (std::getenv("INCISE_FAULT_THREADS")) return EAGAIN;
+    static std::atomic<long> num_threads = 0;
+    const char* at = std::getenv("INCISE_FAULT_THREADS");
+    if (at && ++num_threads >= std::atol(at)) return EAGAIN;
     using Create = int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
     return original<Create>("pthread_create")(thread, attributes, start, argument);
 }

@@ -26,8 +26,6 @@ compression = "none"
 
 class ResumedProcess : public Run {
   protected:
-    using Environment = std::vector<std::pair<std::string, std::string>>;
-
     /// What a run that nothing happens to leaves.
     std::map<std::string, std::string> whole(const std::string& text) {
         write("scene.toml", text);

@@ -62,10 +62,11 @@ class Run : public testing::Test {
         std::ofstream(folder_ / name) << text;
     }
 
-    /// Starts `incise run` in the folder, with variables of the environment besides.
-    pid_t start(std::vector<std::string> arguments,
-                const std::vector<std::pair<std::string, std::string>>& environment = {}) {
-        arguments.insert(arguments.begin(), {INCISE_PROGRAM, "run"});
+    using Environment = std::vector<std::pair<std::string, std::string>>;
+
+    /// Starts `incise` in the folder, with variables of the environment besides.
+    pid_t start_incise(std::vector<std::string> arguments, const Environment& environment = {}) {
+        arguments.insert(arguments.begin(), INCISE_PROGRAM);
         std::vector<char*> argv;
         for (auto& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);
@@ -81,6 +82,11 @@ class Run : public testing::Test {
             ::execv(argv[0], argv.data());
         ::_exit(127);
     }
+    /// `incise run`.
+    pid_t start(std::vector<std::string> arguments, const Environment& environment = {}) {
+        arguments.insert(arguments.begin(), "run");
+        return start_incise(std::move(arguments), environment);
+    }
     /// Waits for its end. A status of 128 + n: ended by signal n, not by itself.
     Outcome finish(pid_t child) {
         int result = 0;
@@ -89,9 +95,11 @@ class Run : public testing::Test {
         return {WIFEXITED(result) ? WEXITSTATUS(result) : -1, read_text(folder_ / "stdout"),
                 read_text(folder_ / "stderr")};
     }
-    Outcome run(const std::vector<std::string>& arguments,
-                const std::vector<std::pair<std::string, std::string>>& environment = {}) {
+    Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) {
         return finish(start(arguments, environment));
+    }
+    Outcome incise(const std::vector<std::string>& arguments, const Environment& environment = {}) {
+        return finish(start_incise(arguments, environment));
     }
 
     /// Until the frame is there, of this run or of one before it in the same folder.
