@@ -149,8 +149,22 @@ std::vector<Step> split_path(std::string_view path, const Place& place) {
     return steps;
 }
 
-/// The value that `step` leads to; a table that lacks the key gets it.
-Value& descend(Value& value, const Step& step, const std::string& path, const Place& place) {
+/// Why there is no element `index` of a key that the table lacks.
+std::string why_no_element(const Table& table, const std::string& key, std::size_t index,
+                           const std::string& path) {
+    std::vector<std::string_view> keys;
+    for (const Entry& entry : table) keys.push_back(entry.key);
+    const std::string_view meant = nearest(key, keys);
+    std::string text = in_quotes(path.empty() ? key : path + "." + key) +
+                       " is not there, so it has no [" + std::to_string(index) + "]";
+    if (is_misspelt(key, meant)) text += "; did you mean " + in_quotes(meant) + "?";
+    return text;
+}
+
+/// The value that `step` leads to; a table that lacks the key gets it, unless an element of it is
+/// `next`, the step that follows if any.
+Value& descend(Value& value, const Step& step, const Step* next, const std::string& path,
+               const Place& place) {
     if (auto* array = std::get_if<Array>(&value.data)) {
         if (!step.index)
             throw DocumentError{place, in_quotes(path) +
@@ -174,6 +188,8 @@ Value& descend(Value& value, const Step& step, const std::string& path, const Pl
                                        std::to_string(*step.index) + "]"};
     for (auto& entry : *table)
         if (entry.key == step.key) return entry.value;
+    if (next && next->key.empty())
+        throw DocumentError{place, why_no_element(*table, step.key, *next->index, path)};
     return table->emplace_back(Entry{step.key, place, Value{Table{}, place}}).value;
 }
 
@@ -322,11 +338,15 @@ void apply_override(Value& document, std::string_view text, int number) {
         return part;
     };
     require_flat_keys(text, number);
-    Value* target = &document;
+    Value changed = document;
+    Value* target = &changed;
     std::string path;
-    for (const auto& step : split_path(trimmed(text.substr(0, equals)), place)) {
+    const auto steps = split_path(trimmed(text.substr(0, equals)), place);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const Step& step = steps[i];
+        const Step* next = i + 1 < steps.size() ? &steps[i + 1] : nullptr;
         const bool is_element = target->get<Array>() != nullptr || step.key.empty();
-        target = &descend(*target, step, path, place);
+        target = &descend(*target, step, next, path, place);
         if (is_element) {
             path.append("[").append(std::to_string(*step.index)).append("]");
         } else {
@@ -335,6 +355,7 @@ void apply_override(Value& document, std::string_view text, int number) {
         }
     }
     *target = parse_override_value(trimmed(text.substr(equals + 1)), number);
+    document = std::move(changed);
 }
 
 std::string content_hash(const Value& value) {

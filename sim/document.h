@@ -61,7 +61,7 @@ Value read_document(const std::filesystem::path& file);
 /// `material.0.law=neo-hookean`. Steps are keys, or numbers of array elements from 0. Tables that
 /// are not there are made; array elements are not. What is no TOML value but a plain word is text.
 /// @param number  for the places of the new values
-/// Throws DocumentError.
+/// Throws DocumentError; the document is then as before.
 void apply_override(Value& document, std::string_view text, int number);
 
 /// 16 hexadecimal digits; equal for equal contents, whatever the order of keys and the layout.

@@ -466,42 +466,5 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
                   more);
 }
 
-TEST(ScenarioErrors, OfOverridesQuoteThem) {
-    const ScenarioFile file(minimal);
-    const auto error = [&](const std::string& text) {
-        const auto errors = file.errors({"title=fine", text});
-        return errors.size() == 1 ? errors[0] : std::to_string(errors.size()) + " errors";
-    };
-    EXPECT_EQ(error("dynamics.end_time=-1"),
-              "--set dynamics.end_time=-1: key 'dynamics.end_time': -1 is not allowed: must be "
-              "above 0");
-    EXPECT_EQ(
-        error("dynamics.end_tim=1"),
-        "--set dynamics.end_tim=1: key 'dynamics.end_tim': is not known; did you mean "
-        "'end_time'? Known here: mode, integrator, end_time, time_step, steps, safety, damping, "
-        "gravity, seed, precision");
-    EXPECT_EQ(error("dynamics.end_time=2s"),
-              "--set dynamics.end_time=2s: key 'dynamics.end_time': must be a number, but is the "
-              "text \"2s\"");
-    EXPECT_EQ(error("dynamics.end_time"),
-              "--set dynamics.end_time: an override has the form key.path=value");
-    EXPECT_EQ(error("material[1].young=1"),
-              "--set material[1].young=1: 'material' has no element "
-              "1: it has 1, numbered from 0");
-    EXPECT_EQ(error("material.young=1"),
-              "--set material.young=1: 'material' is an array: go on "
-              "with the number of an element, as in material[0]");
-    EXPECT_EQ(error("dynamics[0]=1"),
-              "--set dynamics[0]=1: 'dynamics' is a table, not an array: "
-              "it has keys, no [0]");
-    EXPECT_EQ(error("dynamics.end_time.x=1"),
-              "--set dynamics.end_time.x=1: 'dynamics.end_time' is the number 1: there is nothing "
-              "below it");
-    for (const auto& text : {"a..b=1", "=1", "a[=1", "a[x]=1", "a]=1"})
-        EXPECT_NE(error(text).find("is not a path"), std::string::npos) << text;
-    for (const auto& text : {"dynamics.gravity=[0, 0", "title=", "title=1\nx=2"})
-        EXPECT_NE(error(text).find("is no TOML value"), std::string::npos) << text;
-}
-
 }  // namespace
 }  // namespace incise::sim
