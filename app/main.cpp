@@ -66,6 +66,8 @@ int report(const std::exception_ptr& exception) {
         return fail(app::physics_went_wrong, error.what());
     } catch (const OutputError& error) {
         return fail(app::output_failed, error.what());
+    } catch (const MemoryError& error) {
+        return fail(app::out_of_memory, error.what());
     } catch (const std::bad_alloc&) {
         return fail_for_memory();
     } catch (const std::length_error&) {

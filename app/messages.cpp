@@ -38,6 +38,9 @@ void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& 
         const sim::BodyFindings body = sim::check_body(scenario);
         errors.insert(errors.end(), body.errors.begin(), body.errors.end());
         warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
+    } catch (const MemoryError& error) {
+        if (errors.empty()) throw;
+        errors.emplace_back(error.what());
     } catch (const std::bad_alloc&) {
         if (errors.empty()) throw;
     }

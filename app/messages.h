@@ -23,8 +23,8 @@ std::string joined(std::span<const std::string> lines);
 /// The text with `prefix` before each of its lines.
 std::string prefixed(std::string_view prefix, std::string_view text);
 
-/// Appends what is at fault or odd with the body that the scenario describes. Memory that does not
-/// suffice for it is of interest only if there are no errors before it.
+/// Appends what is at fault or odd with the body that the scenario describes. If memory
+/// does not suffice for it, throws MemoryError or std::bad_alloc where there are no errors before.
 void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& errors,
                        std::vector<std::string>& warnings);
 

@@ -1,6 +1,8 @@
 // incise check: every problem of scenarios and meshes, without changing anything.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
 #include <iostream>
+#include <new>
 #include <set>
 
 #include "app/messages.h"
@@ -59,23 +61,43 @@ Findings check_scenario(const std::filesystem::path& path) {
     return findings;
 }
 
+Findings check_file(const std::filesystem::path& file) {
+    return file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, "region");
+}
+
+int print(const std::filesystem::path& file, const Findings& findings) {
+    for (const auto& warning : findings.warnings) print_warning(warning);
+    for (const auto& error : findings.errors) print_error(error);
+    if (findings.errors.empty()) {
+        std::cout << file.string() << ": OK, " << findings.summary << std::endl;
+        return done;
+    }
+    std::cout << file.string() << ": " << count_of(findings.errors.size(), "problem") << std::endl;
+    return input_at_fault;
+}
+
+int print_lack_of_memory(const std::filesystem::path& file, const std::string& text) {
+    print_error(text);
+    std::cout << file.string() << ": too large for this machine" << std::endl;
+    return out_of_memory;
+}
+
+int check(const std::filesystem::path& file) {
+    try {
+        return print(file, check_file(file));
+    } catch (const MemoryError& error) {
+        return print_lack_of_memory(file, error.what());
+    } catch (const std::bad_alloc&) {
+        return print_lack_of_memory(
+            file, file.string() + ": out of memory: the mesh is too large for this machine");
+    }
+}
+
 }  // namespace
 
 int check(const CheckOptions& options) {
     int status = done;
-    for (const auto& file : options.files) {
-        const auto findings =
-            file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, "region");
-        for (const auto& warning : findings.warnings) print_warning(warning);
-        for (const auto& error : findings.errors) print_error(error);
-        if (!findings.errors.empty()) {
-            status = input_at_fault;
-            std::cout << file.string() << ": " << count_of(findings.errors.size(), "problem")
-                      << std::endl;
-        } else {
-            std::cout << file.string() << ": OK, " << findings.summary << std::endl;
-        }
-    }
+    for (const auto& file : options.files) status = std::max(status, check(file));
     return status;
 }
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <string>
 
 #include "io/number_text.h"
 #include "topology/error.h"
@@ -17,14 +16,17 @@ std::string gigabytes(double bytes) { return shown(std::round(bytes / 1e8) / 10)
 
 }  // namespace
 
-void require_memory(double bytes, std::string_view what, std::string_view remedy) {
+std::optional<std::string> lack_of_memory(double bytes) {
     const auto pages = ::sysconf(_SC_PHYS_PAGES), page_size = ::sysconf(_SC_PAGESIZE);
-    if (pages <= 0 || page_size <= 0) return;  // not known
+    if (pages <= 0 || page_size <= 0) return std::nullopt;  // not known
     const double memory = static_cast<double>(pages) * static_cast<double>(page_size);
-    if (bytes > memory)
-        throw InputError(std::string(what) + " takes " + gigabytes(bytes) +
-                         " of memory, and this machine has " + gigabytes(memory) + "; " +
-                         std::string(remedy));
+    if (bytes <= memory) return std::nullopt;
+    return "takes " + gigabytes(bytes) + " of memory, and this machine has " + gigabytes(memory);
+}
+
+void require_memory(double bytes, std::string_view what, std::string_view remedy) {
+    if (const auto lack = lack_of_memory(bytes))
+        throw InputError(std::string(what) + " " + *lack + "; " + std::string(remedy));
 }
 
 }  // namespace incise::io

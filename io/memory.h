@@ -3,9 +3,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace incise::io {
+
+/// "takes ... GB of memory, and this machine has ... GB" if it has fewer bytes.
+std::optional<std::string> lack_of_memory(double bytes);
 
 /// Throws InputError "`what` takes ... GB of memory, and this machine has ...; `remedy`" if it
 /// has fewer bytes.

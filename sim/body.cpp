@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "sim/body.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <optional>
 #include <set>
 #include <span>
 #include <sstream>
 
+#include "io/memory.h"
 #include "io/mesh_reader.h"
 #include "io/number_format.h"
 #include "sim/body_problems.h"
@@ -37,15 +35,16 @@ std::string text_of(const Vec3& v) {
            io::format_number(v.z()) + "]";
 }
 
-/// Throws bad_alloc for a box that this machine cannot hold, before it tries and is killed.
-void require_memory_for(const BoxMeshSpec& box) {
+/// Throws MemoryError for a box that this machine cannot hold, before it tries and is killed.
+void require_memory_for(const BoxMeshSpec& box, const std::string& place) {
     const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
-    const double bytes_per_brick = is_tetrahedra ? 6 * 1200.0 : 2500.0;  // map, arrays, elements
-    const double bytes =
-        bytes_per_brick * box.cells[0] * static_cast<double>(box.cells[1]) * box.cells[2];
-    const double memory =
-        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-    if (bytes > memory) throw std::bad_alloc();
+    const double bytes_per_element = is_tetrahedra ? 1200.0 : 2500.0;  // map, arrays, elements
+    const double elements = (is_tetrahedra ? 6.0 : 1.0) * box.cells[0] *
+                            static_cast<double>(box.cells[1]) * box.cells[2];
+    if (const auto lack = io::lack_of_memory(bytes_per_element * elements))
+        throw MemoryError(placed(place, "key 'mesh.box.cells': makes " +
+                                            io::format_number(elements) + " elements: that " +
+                                            *lack + "; use fewer cells"));
 }
 
 /// The points and cells that the scenario names, scaled.
@@ -58,7 +57,7 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         return file;
     }
     const auto& box = std::get<BoxMeshSpec>(spec.source);
-    require_memory_for(box);
+    require_memory_for(box, spec.place);
     return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
 }
 

@@ -58,7 +58,8 @@ struct Body {
     std::vector<std::string> warnings;  ///< with the place or file in front
 };
 
-/// Throws BodyError with all that is at fault: mesh, materials, selections, tools, the time step.
+/// Throws BodyError with all that is at fault: mesh, materials, selections, tools, the time step;
+/// MemoryError if the mesh is a box that this machine cannot hold, and so do those below and above.
 Body build_body(const Scenario& scenario);
 
 /// What build_body refuses and warns of, a line each.

@@ -23,4 +23,10 @@ struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The machine has less memory than what is asked for takes; known before it is taken, else it is
+/// std::bad_alloc.
+struct MemoryError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 }  // namespace incise

@@ -1,6 +1,7 @@
 // The command as users and scripts meet it: exit statuses, messages, what goes to which stream.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <map>
@@ -209,6 +210,32 @@ TEST_F(Command, ChecksEveryFileAndCountsProblems) {
     EXPECT_EQ(bad.out,
               "bad.toml: 2 problems\nnone.msh: 1 problem\n"
               "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
+}
+
+TEST_F(Command, ChecksWhatComesAfterABoxTooLargeForTheMachine) {
+    const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
+    if (pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) > 240e9) GTEST_SKIP() << "it is not";
+    std::string large = scenario;
+    large.replace(large.find("[2, 2, 2]"), 9, "[464, 464, 464], element = \"hex\"");
+    write("large.toml", large);
+    write("large_and_bad.toml", large + "damping = -1\n");
+    write("good.toml", scenario);
+    const std::string message =
+        ".toml:2:7: key 'mesh.box.cells': makes 99897344 elements: that "
+        "takes 249.7 GB of memory, and this machine has ";
+    const auto outcome = run("check large.toml good.toml");
+    EXPECT_EQ(outcome.status, 5);
+    EXPECT_EQ(outcome.err.find("incise: large" + message), 0u) << outcome.err;
+    EXPECT_EQ(outcome.out,
+              "large.toml: too large for this machine\n"
+              "good.toml: OK, scenario of 1 s with 1 material, 0 constraints, 0 loads, 0 tools\n");
+    const auto refused = run("run large.toml");
+    EXPECT_EQ(refused.status, 5);
+    EXPECT_EQ(refused.err, outcome.err);
+    const auto bad = run("check large_and_bad.toml");
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 2) << bad.err;
+    EXPECT_NE(bad.err.find("incise: large_and_bad" + message), std::string::npos) << bad.err;
 }
 
 TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
