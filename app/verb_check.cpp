@@ -42,6 +42,9 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
         findings.summary = "mesh with " + count_of(file.mesh.points.size(), "point") + ", " +
                            count_of(file.mesh.num_cells(), "cell") + ", " +
                            count_of(regions.size(), "region");
+    } catch (const io::UnknownFormat& error) {
+        findings.errors.push_back(std::string(error.what()) +
+                                  "; if it is a scenario, let its name end in .toml");
     } catch (const InputError& error) {
         findings.errors.emplace_back(error.what());
     }

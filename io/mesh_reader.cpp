@@ -66,8 +66,9 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
         std::string known;
         for (const auto& row : read_formats)
             known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
-        throw InputError(file.name() +
-                         ": begins like no mesh format known here; convert it to one of: " + known);
+        throw UnknownFormat(
+            file.name() +
+            ": begins like no mesh format known here; convert it to one of: " + known);
     }
     MeshFile result = format->read(file, options);
     for (const auto& name : options.vector_arrays)

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "topology/error.h"
 #include "topology/mesh_data.h"
 
 namespace incise::io {
@@ -24,6 +25,11 @@ struct ReadOptions {
     std::vector<std::string> vector_arrays = {};
 
     bool must_have_regions() const { return region_array != usual_region_array; }
+};
+
+/// The file begins like none of the formats.
+struct UnknownFormat : InputError {
+    using InputError::InputError;
 };
 
 struct MeshFile {

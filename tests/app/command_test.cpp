@@ -238,6 +238,15 @@ TEST_F(Command, ChecksWhatComesAfterABoxTooLargeForTheMachine) {
     EXPECT_NE(bad.err.find("incise: large_and_bad" + message), std::string::npos) << bad.err;
 }
 
+TEST_F(Command, ChecksScenariosByTheirEnding) {
+    write("scene.txt", scenario);
+    const auto outcome = run("check scene.txt");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("; if it is a scenario, let its name end in .toml\n"),
+              std::string::npos)
+        << outcome.err;
+}
+
 TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
     write("two.msh", mesh());
     ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
