@@ -14,6 +14,7 @@
 #include "app/stop_signals.h"
 #include "app/stopped_run.h"
 #include "app/verbs.h"
+#include "io/atomic_file.h"
 #include "io/number_format.h"
 #include "physics/workers.h"
 #include "sim/body_problems.h"
@@ -90,6 +91,27 @@ void require_inputs_elsewhere(const sim::Scenario& scenario, const std::filesyst
             throw InputError(input.string() + ": lies among the frames in " + folder.string() +
                              ", which the run would replace; give the run another folder with "
                              "--out, or the scenario a copy of the file elsewhere");
+    }
+}
+
+/// Why nothing can be written to the folder, as far as that can be told before.
+std::optional<OutputError> refusal_of(const std::filesystem::path& folder) {
+    try {
+        io::require_output_folder(folder);
+        return std::nullopt;
+    } catch (const OutputError& error) {
+        return error;
+    }
+}
+
+/// What read() returns. If it throws InputError, the refusal is told with it.
+template <class Read>
+auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
+    try {
+        return read();
+    } catch (const InputError& error) {
+        if (!refusal) throw;
+        throw InputError(std::string(error.what()) + "\n" + refusal->what());
     }
 }
 
@@ -182,8 +204,11 @@ int run(const RunOptions& options) {
     auto overrides = options.overrides;
     if (options.end_time)
         overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
-    const sim::Scenario scenario = load_scenario(options.scenario, overrides);
-    const std::filesystem::path folder = options.out.value_or(scenario.name + ".out");
+    const std::filesystem::path folder =
+        options.out.value_or(options.scenario.stem().string() + ".out");
+    const auto refusal = options.resume ? std::nullopt : refusal_of(folder);
+    const sim::Scenario scenario =
+        with_refusal(refusal, [&] { return load_scenario(options.scenario, overrides); });
 
     std::optional<StoppedRun> stopped;
     if (options.resume) {
@@ -202,7 +227,8 @@ int run(const RunOptions& options) {
         require_inputs_elsewhere(scenario, folder);
     }
 
-    const auto built = build(scenario, options.scenario);
+    const auto built = with_refusal(refusal, [&] { return build(scenario, options.scenario); });
+    if (refusal) throw OutputError(*refusal);
     sim::Simulation& simulation = *built;
     if (!options.dry_run) simulation.set_num_threads(num_threads(options));
     if (stopped) stopped->checkpoint.restore(simulation);

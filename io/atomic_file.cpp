@@ -226,6 +226,17 @@ void make_output_folder(const fs::path& folder) {
     const TemporaryFile probe(folder, "probe", folder);
 }
 
+void require_output_folder(const fs::path& folder) {
+    struct stat status {};
+    fs::path nearest = folder;
+    while (::stat(nearest.c_str(), &status) != 0) {
+        if (errno != ENOENT && errno != ENOTDIR) throw_output_error(folder, errno);
+        nearest = folder_of(nearest);
+    }
+    if (!S_ISDIR(status.st_mode)) throw_output_error(folder, ENOTDIR);
+    if (::access(nearest.c_str(), W_OK | X_OK) != 0) throw_output_error(folder, errno);
+}
+
 void remove_unfinished_files(const fs::path& folder) {
     std::vector<fs::path> temporaries;
     std::error_code error;

@@ -27,6 +27,10 @@ void require_writable(const std::filesystem::path& path);
 /// written in it. Throws OutputError as above.
 void make_output_folder(const std::filesystem::path& folder);
 
+/// Throws the OutputError that make_output_folder would throw, as far as permissions tell: those of
+/// the folder, or of the nearest one above it that is there. Changes nothing.
+void require_output_folder(const std::filesystem::path& folder);
+
 /// Removes from the folder the hidden files that nobody writes any more: those of processes that
 /// were killed in the middle of write_file. Throws OutputError as above.
 void remove_unfinished_files(const std::filesystem::path& folder);

@@ -247,6 +247,29 @@ TEST_F(Command, ChecksScenariosByTheirEnding) {
         << outcome.err;
 }
 
+TEST_F(Command, TellsOfAFolderThatCannotBeWrittenWithAllElse) {
+    write("good.toml", scenario);
+    write("bad.toml", scenario + "damping = -1\n");
+    write("bad_body.toml", scenario + "[[load]]\nwhere = { region = 7 }\npressure = 1\n");
+    const std::string message =
+        "incise: good.toml/out: cannot be written: not a directory; a file is in the place of a "
+        "folder; choose another path\n";
+    for (const std::string option : {"", " --dry-run"}) {
+        const auto alone = run("run good.toml --quiet --out good.toml/out" + option);
+        EXPECT_EQ(alone.status, 4);
+        EXPECT_EQ(alone.err, message);
+        for (const std::string name : {"bad.toml", "bad_body.toml"}) {
+            const auto both = run("run " + name + " --out good.toml/out" + option);
+            EXPECT_EQ(both.status, 2);
+            EXPECT_EQ(both.err.find("incise: " + name), 0u) << both.err;
+            EXPECT_NE(both.err.find("\n" + message), std::string::npos) << both.err;
+        }
+    }
+    // Nothing is made.
+    EXPECT_EQ(run("run good.toml --quiet --out new/folder --dry-run").status, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
+}
+
 TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
     write("two.msh", mesh());
     ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
