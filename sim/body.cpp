@@ -219,6 +219,14 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
     return fibres;
 }
 
+std::set<int> regions_of(const topology::Mesh& mesh) {
+    std::set<int> regions;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (mesh.is_alive(topology::ElementId(i)))
+            regions.insert(mesh.region(topology::ElementId(i)));
+    return regions;
+}
+
 /// The first few by number.
 std::string list(const std::set<int>& regions) {
     constexpr std::size_t max_listed = 20;
@@ -230,6 +238,11 @@ std::string list(const std::set<int>& regions) {
         text += (text.empty() ? "" : ", ") + std::to_string(region);
     }
     return text;
+}
+
+std::string names_region(int region, const std::set<int>& present) {
+    return " names region " + std::to_string(region) + ", which the mesh does not have (it has " +
+           list(present) + ")";
 }
 
 }  // namespace
@@ -267,11 +280,7 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
                                        const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings) {
     const std::vector<MaterialSpec>& specs = scenario.materials;
-    std::set<int> present;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (mesh.is_alive(topology::ElementId(i)))
-            present.insert(mesh.region(topology::ElementId(i)));
-
+    const std::set<int> present = regions_of(mesh);
     physics::MaterialTable table;
     for (const MaterialSpec& spec : specs) {
         table.materials.push_back(build_material(spec));
@@ -281,9 +290,7 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
             if (!present.contains(region))
                 warnings.push_back(placed(spec.regions_place,
                                           "material " + std::to_string(table.materials.size()) +
-                                              " names region " + std::to_string(region) +
-                                              ", which the mesh does not have (it has " +
-                                              list(present) + ")"));
+                                              names_region(region, present)));
         }
     }
     std::set<int> left;
@@ -321,6 +328,22 @@ void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
         }
         problems.add(place, describe(conflicts[i], mesh, supports));
     }
+}
+
+/// Selections of no region of the mesh at all are errors, of which more is told.
+void warn_of_missing_regions(const Scenario& scenario, const topology::Mesh& mesh,
+                             std::vector<std::string>& warnings) {
+    const std::set<int> present = regions_of(mesh);
+    const auto is_present = [&](int region) { return present.contains(region); };
+    const auto warn = [&](const auto& spec, const std::string& kind) {
+        if (!spec.where.regions || std::ranges::none_of(*spec.where.regions, is_present)) return;
+        for (const int region : *spec.where.regions)
+            if (!is_present(region))
+                warnings.push_back(placed(
+                    spec.place, kind + " '" + spec.name + "'" + names_region(region, present)));
+    };
+    for (const ConstraintSpec& spec : scenario.constraints) warn(spec, "constraint");
+    for (const LoadSpec& spec : scenario.loads) warn(spec, "load");
 }
 
 physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh,
@@ -422,6 +445,7 @@ Parts build_parts(const Scenario& scenario) {
                     build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
             });
         parts.surroundings = build_surroundings(scenario, *mesh, problems);
+        warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }
     parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
     return parts;

@@ -238,6 +238,21 @@ TEST_F(Command, ChecksWhatComesAfterABoxTooLargeForTheMachine) {
     EXPECT_NE(bad.err.find("incise: large_and_bad" + message), std::string::npos) << bad.err;
 }
 
+TEST_F(Command, WarnsOfRegionsThatTheMeshLacks) {
+    write("two.msh", mesh());
+    write("scene.toml",
+          "[mesh]\nfile = \"two.msh\"\n" + scenario.substr(scenario.find("[[")) +
+              "[[constraint]]\nwhere = { region = [3, 9] }\nfix = \"x\"\n"
+              "[[load]]\nname = \"push\"\nwhere = { region = [4, 5] }\npressure = 1\n");
+    const auto outcome = run("check scene.toml");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err,
+              "incise: warning: scene.toml:10:9: constraint 'constraint_1' names region 9, which "
+              "the mesh does not have (it has 3, 5)\n"
+              "incise: warning: scene.toml:14:9: load 'push' names region 4, which the mesh does "
+              "not have (it has 3, 5)\n");
+}
+
 TEST_F(Command, ChecksScenariosByTheirEnding) {
     write("scene.txt", scenario);
     const auto outcome = run("check scene.txt");
