@@ -19,22 +19,22 @@ namespace {
 using topology::CellKind;
 
 /// All numbers of a result, to compare to the bit.
-using Numbers = std::array<double, 12>;
+using ResultNumbers = std::array<double, 12>;
 
-Numbers numbers_of(const ElementResult& result) {
-    Numbers numbers{result.energy, result.volume, result.volume_ratio};
+ResultNumbers numbers_of(const ElementResult& result) {
+    ResultNumbers numbers{result.energy, result.volume, result.volume_ratio};
     std::copy_n(result.cauchy_stress.data(), 9, numbers.begin() + 3);
     return numbers;
 }
 
-std::vector<Numbers> numbers_of(const std::vector<ElementResult>& results) {
-    std::vector<Numbers> numbers;
+std::vector<ResultNumbers> numbers_of(const std::vector<ElementResult>& results) {
+    std::vector<ResultNumbers> numbers;
     for (const ElementResult& result : results) numbers.push_back(numbers_of(result));
     return numbers;
 }
 
-std::vector<Numbers> results_of(const Model& model, std::span<const ElementId> elements) {
-    std::vector<Numbers> numbers;
+std::vector<ResultNumbers> results_of(const Model& model, std::span<const ElementId> elements) {
+    std::vector<ResultNumbers> numbers;
     for (const ElementId e : elements) numbers.push_back(numbers_of(model.element_result(e)));
     return numbers;
 }
