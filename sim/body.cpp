@@ -406,7 +406,7 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
         const auto* cut = std::get_if<Cut>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
             tools.emplace_back(spec, warnings);
-            if (mesh && !tools.back().may_meet(body))
+            if (mesh && !spec.path.empty() && !tools.back().may_meet(body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });
     }

@@ -26,7 +26,8 @@ BoxRegion read_box(const TableReader& box) {
     box.require("min", "the lowest corner, as in min = [0, 0, 0]");
     box.require("max", "the highest corner, as in max = [1, 1, 1]");
     const BoxRegion region{box.vector("min"), box.vector("max")};
-    if (box.has("max") && (region.max.array() < region.min.array()).any())
+    if (box.is_sound("min") && box.is_sound("max") &&
+        (region.max.array() < region.min.array()).any())
         box.error("max", "is not allowed: no coordinate may be below that of min");
     return region;
 }
@@ -76,7 +77,7 @@ std::array<bool, 3> read_axes(const TableReader& constraint) {
         constraint.error("fix", in_quotes(text) +
                                     " is not allowed: any of the letters x, y and z, each at "
                                     "most once, as in fix = \"xyz\"");
-    return axes;
+    return is_valid ? axes : std::array<bool, 3>{};
 }
 
 void read_motion(const TableReader& constraint, double end_time, ConstraintSpec& spec) {
@@ -109,9 +110,10 @@ void read_motion(const TableReader& constraint, double end_time, ConstraintSpec&
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
                                              std::vector<std::string>& names) {
     std::vector<ConstraintSpec> specs;
+    std::size_t number = 0;
     for (const auto& constraint : root.tables("constraint", {constraint_keys})) {
         ConstraintSpec spec;
-        spec.name = read_name(constraint, "constraint_" + std::to_string(names.size() + 1), names);
+        spec.name = read_name(constraint, "constraint_" + std::to_string(++number), names);
         spec.place = constraint.place_text("where");
         constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
         spec.where = read_selection(constraint);
@@ -121,7 +123,7 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
         if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
         if (!constraint.has("fix") && !moves)
             constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
-        if (constraint.is_sound()) specs.push_back(std::move(spec));
+        if (constraint.is_sound("where")) specs.push_back(std::move(spec));
     }
     return specs;
 }
@@ -129,12 +131,13 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
     std::vector<LoadSpec> specs;
     std::vector<std::string> names;
+    std::size_t number = 0;
     for (const auto& load : root.tables("load", {load_keys})) {
         LoadSpec spec;
-        spec.name = read_name(load, "load_" + std::to_string(names.size() + 1), names);
+        spec.name = read_name(load, "load_" + std::to_string(++number), names);
         spec.place = load.place_text("where");
         spec.where = read_selection(load);
-        load.one_of({"nodal_force", "traction", "pressure", "body_force"});
+        const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
         if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};
         if (load.has("traction")) spec.load = Traction{load.vector("traction")};
         if (load.has("pressure")) spec.load = Pressure{load.number("pressure", 0.0)};
@@ -144,7 +147,7 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
                                                  row.require("value", "as in value = 1.0");
                                                  return row.number("value", 1.0);
                                              });
-        if (load.is_sound()) specs.push_back(std::move(spec));
+        if (kind && load.is_sound("where")) specs.push_back(std::move(spec));
     }
     return specs;
 }

@@ -47,11 +47,9 @@ void Diagnostics::unknown_key_error(const Place& place, std::string_view path,
 }
 
 bool Diagnostics::has_errors_at(std::string_view path) const {
-    return std::any_of(errors_.begin(), errors_.end(), [&](const Finding& error) {
-        const std::string_view key = error.path;
-        return key.starts_with(path) &&
-               (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
-    });
+    const auto is_there = [&](const std::string& at) { return is_at_or_below(at, path); };
+    return std::ranges::any_of(errors_, is_there, &Finding::path) ||
+           std::ranges::any_of(untold_, is_there);
 }
 
 std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) const {
@@ -71,6 +69,11 @@ std::string Diagnostics::text_of(const Place& place) const {
         return "--set " + overrides_[static_cast<std::size_t>(place.override_number)];
     if (place.line == 0) return file_;
     return file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+}
+
+bool is_at_or_below(std::string_view path, std::string_view owner) {
+    return path.starts_with(owner) &&
+           (path.size() == owner.size() || path[owner.size()] == '.' || path[owner.size()] == '[');
 }
 
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {

@@ -25,6 +25,8 @@ class Diagnostics {
     /// The same of a key that is not known, and so says nothing of the rest: has_errors_at() does
     /// not count it.
     void unknown_key_error(const Place& place, std::string_view path, std::string_view text);
+    /// Tells nothing, but has_errors_at() counts it.
+    void untold_error(std::string path) { untold_.push_back(std::move(path)); }
     void warning(const Place& place, std::string text) {
         warnings_.push_back({place, std::move(text), {}});
     }
@@ -51,7 +53,11 @@ class Diagnostics {
     std::string file_;
     std::vector<std::string> overrides_;
     std::vector<Finding> errors_, warnings_;
+    std::vector<std::string> untold_;
 };
+
+/// Whether the path of a key is `owner` or below it, or is of an element of it.
+bool is_at_or_below(std::string_view path, std::string_view owner);
 
 /// The candidate that takes the fewest insertions, deletions, replacements and swaps of
 /// neighbours to make of `name`; the first of equals. Empty without candidates.

@@ -176,8 +176,19 @@ std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
     return terms;
 }
 
-/// The direction of the fibres. Reports a law with fibres without one, and one without law.
-void read_fibre(const TableReader& material, const MeshSpec& mesh, MaterialSpec& spec) {
+/// The direction of the fibres.
+void read_fibre(const TableReader& material, MaterialSpec& spec) {
+    if (material.has("fibre")) spec.fibre = material.direction("fibre", Vec3::UnitX());
+    if (!material.has("fibre_array")) return;
+    const std::string name = material.text("fibre_array");
+    if (name.empty() && material.is_text("fibre_array"))
+        material.error("fibre_array", "is empty: name a cell array of the mesh file");
+    spec.fibre = name;
+}
+
+/// Reports a law with fibres without direction, a direction without such a law, and one of a file
+/// without file.
+void check_fibre(const TableReader& material, const MeshSpec& mesh, const MaterialSpec& spec) {
     const bool given = material.has("fibre") || material.has("fibre_array");
     if (spec.method != Method::heml) return;  // refused as keys of another method
     if (!law_named(spec.law).has_fibres) {
@@ -195,16 +206,10 @@ void read_fibre(const TableReader& material, const MeshSpec& mesh, MaterialSpec&
         return;
     }
     material.one_of({"fibre", "fibre_array"});
-    if (material.has("fibre")) spec.fibre = material.direction("fibre", Vec3::UnitX());
-    if (material.has("fibre_array")) {
-        const std::string name = material.text("fibre_array");
-        if (name.empty() && material.is_text("fibre_array"))
-            material.error("fibre_array", "is empty: name a cell array of the mesh file");
-        else if (std::holds_alternative<BoxMeshSpec>(mesh.source))
-            material.error("fibre_array",
-                           "needs a mesh file, and the mesh is a box: use fibre = [x, y, z]");
-        spec.fibre = name;
-    }
+    if (material.has("fibre_array") && material.is_sound("fibre_array") &&
+        std::holds_alternative<BoxMeshSpec>(mesh.source))
+        material.error("fibre_array",
+                       "needs a mesh file, and the mesh is a box: use fibre = [x, y, z]");
 }
 
 /// Indexed by physics::PronyRule.
@@ -246,13 +251,9 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     spec.prony = read_prony(material);
     if (preset != nullptr && spec.method == Method::heml && !material.has("prony"))
         spec.prony = preset->prony;
-    if (const auto index = material.choice("prony_rule", {prony_rule_names})) {
+    if (const auto index = material.choice("prony_rule", {prony_rule_names}))
         spec.prony_rule = static_cast<physics::PronyRule>(*index);
-        if (spec.method == Method::heml && spec.prony.empty() && !material.has("prony"))
-            material.error("prony_rule",
-                           "has no meaning without viscosity: give prony = [{ alpha = 0.3, tau = "
-                           "0.5 }], or leave it out");
-    }
+    read_fibre(material, spec);
     spec.correction_forces = material.flag("correction_forces", true);
     spec.stiffness_ratio = material.number("stiffness_ratio", spec.stiffness_ratio,
                                            {.low = 0.0, .includes_high = true});
@@ -263,10 +264,16 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
                            "has no meaning without face diagonals: leave it out");
     }
     if (!material.is_sound("method")) return spec;
-    const bool knows_law = material.is_sound("preset") && material.is_sound("law");
+    const bool knows_law = material.is_sound("law");
     refuse_keys_of_others(material, spec.method);
+    if (!material.is_sound("preset")) return spec;
+    if (spec.method == Method::heml && material.has("prony_rule") && spec.prony.empty() &&
+        !material.has("prony"))
+        material.error("prony_rule",
+                       "has no meaning without viscosity: give prony = [{ alpha = 0.3, tau = 0.5 "
+                       "}], or leave it out");
     if (!knows_law) return spec;
-    read_fibre(material, mesh, spec);
+    check_fibre(material, mesh, spec);
     if (preset == nullptr || complete_parameters(material, *preset, spec))
         check_elasticity(material, spec, values_are_sound);
     return spec;

@@ -119,7 +119,8 @@ struct TimeKey {
 struct ConstraintSpec {
     std::string name;
     Selection where;
-    std::array<bool, 3> fixed{};  ///< at least one; of a led node all, unless some are named
+    /// At least one, unless not known; of a led node all, unless some are named.
+    std::array<bool, 3> fixed{};
     std::vector<TimeKey<Vec3>> move;
     std::vector<TimeKey<double>> rotate;  ///< radians
     Vec3 about_point = Vec3::Zero();
@@ -199,8 +200,9 @@ struct Pose {
 struct ToolSpec {
     std::string name;
     std::variant<Carver, Blade, Cut> kind;
-    std::vector<TimeKey<Pose>> path;  ///< at least one key, for a blade two
-    std::string place = {};           ///< for messages: FILE:line:column
+    /// At least one key, for a blade two. Empty: not known.
+    std::vector<TimeKey<Pose>> path;
+    std::string place = {};  ///< for messages: FILE:line:column
 };
 
 /// What a frame can hold besides points, rest positions, ids and regions.

@@ -54,7 +54,8 @@ BoxMeshSpec read_box_mesh(const TableReader& box) {
     if (const auto kind = box.choice("element", {element_names}))
         spec.element = element_kinds[*kind];
     const double elements =
-        cells.prod() * (spec.element == topology::CellKind::tetrahedron ? 6.0 : 1.0);
+        cells.prod() *
+        (spec.element == topology::CellKind::tetrahedron && box.is_sound("element") ? 6.0 : 1.0);
     if (!is_whole)
         box.error("cells", "is not allowed: must be three whole numbers, each at least 1");
     else if (elements > max_box_elements)
@@ -74,6 +75,7 @@ bool is_name_character(char c) {
 
 /// Keys that do not go together.
 void check_solver(const TableReader& dynamics, const DynamicsSpec& spec) {
+    if (!dynamics.is_sound("mode")) return;
     if (spec.mode == Mode::statics) {
         for (const Keys key : {"integrator", "time_step", "safety", "damping"})
             if (dynamics.has(key))
@@ -136,6 +138,19 @@ void check_number_of_frames(const TableReader& table, std::string_view key, doub
                                format_number(frames) + " frames");
 }
 
+/// Leaves of dynamics at fault what still can be judged: without end nothing is said of the number
+/// of steps, without time step nothing of their stability.
+void keep_sound(const TableReader& root, DynamicsSpec& spec) {
+    if (root.is_sound("dynamics")) return;
+    const auto is_sound = [&](std::string_view key) {
+        return root.is_sound(std::string("dynamics.").append(key));
+    };
+    if (!is_sound("mode") || !is_sound("integrator") || !is_sound("time_step")) spec = {};
+    const bool is_explicit = spec.integrator == TimeIntegrator::semi_implicit_euler;
+    if (!spec.time_step && !(is_explicit && is_sound("safety"))) spec.end_time = 0.0;
+    if (!is_sound("precision")) spec.precision = physics::Precision::double_precision;
+}
+
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     Scenario scenario;
     scenario.name = file.stem().string();
@@ -144,7 +159,6 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.mesh = read_mesh_spec(root, scenario.folder);
     scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root, scenario.materials);
-    const bool knows_dynamics = root.is_sound("dynamics");
     const double end_time = scenario.dynamics.end_time;
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
@@ -154,7 +168,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.expect = read_expectations(root, held);
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();
-    if (!knows_dynamics) scenario.dynamics = {};
+    keep_sound(root, scenario.dynamics);
     return scenario;
 }
 
@@ -271,7 +285,6 @@ std::vector<Expectation> read_expectations(const TableReader& root,
     const auto expect = root.table("expect", {names});
     if (!expect) return expectations;
     for (const auto& [quantity, value, place] : expect->entries()) {
-        if (complaint(quantity, {names})) continue;  // reported above
         const auto range = expect->table(quantity, {expectation_keys});
         if (!range) continue;
         Expectation expectation{quantity, range->number_if_given("min"),
@@ -291,9 +304,10 @@ std::string read_name(const TableReader& table, const std::string& fallback,
     const std::string name = table.text("name", fallback);
     if (name.empty() || !std::all_of(name.begin(), name.end(), is_name_character))
         table.error("name", in_quotes(name) + " is not allowed: use letters, digits, _ and -");
-    else if (std::find(used.begin(), used.end(), name) != used.end())
+    if (std::find(used.begin(), used.end(), name) == used.end())
+        used.push_back(name);
+    else if (table.is_sound("name"))
         table.error("name", in_quotes(name) + " is taken already: names must differ");
-    used.push_back(name);
     return name;
 }
 
@@ -301,7 +315,7 @@ void check_times(const TableReader& table, std::string_view key, std::span<const
                  std::span<const double> times, double end_time) {
     if (table.is_empty_array(key)) table.error(key, "is empty: give at least one time");
     for (std::size_t i = 1; i < times.size(); ++i)
-        if (rows[i].has("time") && !(times[i] > times[i - 1]))
+        if (times[i] <= times[i - 1])
             rows[i].error("time", format_number(times[i]) + " is not allowed: must be above " +
                                       format_number(times[i - 1]) + ", the time before it");
     if (end_time > 0.0 && !times.empty() && times.back() > end_time)

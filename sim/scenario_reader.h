@@ -12,8 +12,9 @@
 namespace incise::sim {
 
 struct ScenarioReport {
-    /// If there are errors, only what is sound of it: constraints, loads and tools at fault are
-    /// left out; the mesh, the materials and the dynamics are there as a whole or not at all.
+    /// If there are errors, only what of it check_body can still judge, not to be simulated: of
+    /// constraints, loads, tools and dynamics what is sound; the mesh and the materials as a whole
+    /// or not at all.
     Scenario scenario;
     /// Each complete in itself: "FILE:line:column: key 'material[1].poisson': 0.6 is not allowed:
     /// must be above -1 and below 0.5". In the order of the file.

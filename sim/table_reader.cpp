@@ -21,27 +21,30 @@ std::string text_of(const IntegerLimits& limits) {
     return "from " + std::to_string(limits.low) + " to " + std::to_string(limits.high);
 }
 
+std::string text_of_unknown(std::string_view meant, const Names& names) {
+    std::string text = "is not known; did you mean " + in_quotes(meant) + "?";
+    if (names.supported.size() > 1) text += " Known here: " + list_of(names.supported);
+    return text;
+}
+
 }  // namespace
 
 std::optional<std::string> complaint(std::string_view name, const Names& names) {
-    if (std::find(names.supported.begin(), names.supported.end(), name) != names.supported.end())
-        return std::nullopt;
-    std::string text =
-        "is not known; did you mean " + in_quotes(nearest(name, names.supported)) + "?";
-    if (names.supported.size() > 1) text += " Known here: " + list_of(names.supported);
-    return text;
+    if (std::ranges::find(names.supported, name) != names.supported.end()) return std::nullopt;
+    return text_of_unknown(nearest(name, names.supported), names);
 }
 
 TableReader::TableReader(const Table& table, const Place& place, std::string path,
                          const Names& keys, Diagnostics& diagnostics)
     : table_(table), place_(place), path_(std::move(path)), diagnostics_(diagnostics) {
+    std::vector<std::string_view> likely(keys.supported.begin(), keys.supported.end());
+    std::ranges::stable_partition(likely, [&](std::string_view key) { return !find(table_, key); });
     for (const auto& entry : table_) {
-        const auto text = complaint(entry.key, keys);
-        if (!text) continue;
-        diagnostics_.unknown_key_error(entry.place, path_of(entry.key), *text);
-        const std::string_view meant = nearest(entry.key, keys.supported);
-        if (!has(meant) && is_misspelt(entry.key, meant))
-            misspelt_.emplace_back(meant, &entry.value);
+        if (std::ranges::find(likely, entry.key) != likely.end()) continue;
+        const std::string_view meant = nearest(entry.key, likely);
+        diagnostics_.unknown_key_error(entry.place, path_of(entry.key),
+                                       text_of_unknown(meant, keys));
+        if (is_misspelt(entry.key, meant)) misspelt_.emplace_back(meant, &entry.value);
     }
 }
 
@@ -135,8 +138,7 @@ std::vector<std::int64_t> TableReader::integers(std::string_view key, const Inte
         if (!number) return;
         result.push_back(*number);
         if (repeats == Repeats::refused && !before.insert(*number).second)
-            diagnostics_.key_error(element.place, path,
-                                   std::to_string(*number) + " is there twice");
+            report(element.place, path, std::to_string(*number) + " is there twice");
     };
     if (const auto* values = value->get<Array>()) {
         for (std::size_t i = 0; i < values->size(); ++i)
@@ -175,14 +177,14 @@ std::vector<std::size_t> TableReader::choices(std::string_view key, const Names&
         if (name == nullptr) {
             report_type(value, path, "text in quotes");
         } else if (const auto wrong = complaint(*name, names)) {
-            diagnostics_.key_error(value.place, path, in_quotes(*name) + ": " + *wrong);
+            report(value.place, path, in_quotes(*name) + ": " + *wrong);
         } else {
             const auto found = std::find(names.supported.begin(), names.supported.end(), *name);
             const auto index = static_cast<std::size_t>(found - names.supported.begin());
             if (std::find(result.begin(), result.end(), index) == result.end())
                 result.push_back(index);
             else
-                diagnostics_.key_error(value.place, path, in_quotes(*name) + " is there twice");
+                report(value.place, path, in_quotes(*name) + " is there twice");
         }
     }
     return result;
@@ -191,25 +193,42 @@ std::vector<std::size_t> TableReader::choices(std::string_view key, const Names&
 std::optional<TableReader> TableReader::table(std::string_view key, const Names& keys) const {
     const Value* value = value_of(key);
     if (value == nullptr) return std::nullopt;
-    if (const auto* entries = value->get<Table>())
-        return TableReader(*entries, value->place, path_of(key), keys, diagnostics_);
-    report_type(*value, path_of(key), "a table");
-    return std::nullopt;
+    const auto* entries = value->get<Table>();
+    if (entries == nullptr) {
+        report_type(*value, path_of(key), "a table");
+        const auto* elements = value->get<Array>();
+        if (elements != nullptr && !elements->empty()) entries = elements->front().get<Table>();
+    }
+    if (entries == nullptr) return std::nullopt;
+    return TableReader(*entries, value->place, path_of(key), keys, diagnostics_);
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key, const Names& keys) const {
     std::vector<TableReader> result;
-    const Array* values =
-        array(key, path_.empty() ? "an array of tables, as in [[" + std::string(key) + "]]"
-                                 : "an array of tables, as in [{ ... }, { ... }]");
-    if (values == nullptr) return result;
-    for (std::size_t i = 0; i < values->size(); ++i) {
-        const Value& value = (*values)[i];
-        const std::string path = element_path(path_of(key), i);
+    std::size_t num_elements = 0;
+    const auto add = [&](const Value& value) {
+        const std::string path = element_path(path_of(key), num_elements++);
         if (const auto* entries = value.get<Table>())
             result.emplace_back(*entries, value.place, path, keys, diagnostics_);
         else
             report_type(value, path, "a table");
+    };
+    const Value* given = value_of(key);
+    if (given == nullptr) return result;
+    if (const auto* elements = given->get<Array>()) {
+        std::ranges::for_each(*elements, add);
+    } else {
+        report_type(*given, path_of(key),
+                    path_.empty() ? "an array of tables, as in [[" + std::string(key) + "]]"
+                                  : "an array of tables, as in [{ ... }, { ... }]");
+        if (given->get<Table>() != nullptr) add(*given);
+    }
+    for (const auto& [meant, value] : misspelt_) {
+        const bool is_more = path_.empty() && meant == key && value != given;
+        const auto* elements = is_more ? value->get<Array>() : nullptr;
+        if (elements == nullptr) continue;
+        for (const Value& element : *elements)
+            if (element.get<Table>() != nullptr) add(element);
     }
     return result;
 }
@@ -242,7 +261,7 @@ std::string TableReader::place_text(std::string_view key) const {
 }
 
 void TableReader::error(std::string_view key, const std::string& text) const {
-    diagnostics_.key_error(place_of(key), path_of(key), text);
+    report(place_of(key), path_of(key), text);
 }
 
 void TableReader::warning(std::string_view key, const std::string& text) const {
@@ -270,9 +289,8 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
     }
     if (limits.contains(number)) return number;
     const char* finite = std::isinf(number) && limits.excludes_infinity() ? "finite, " : "";
-    diagnostics_.key_error(
-        value.place, path,
-        io::format_number(number) + " is not allowed: must be " + finite + limits.text());
+    report(value.place, path,
+           io::format_number(number) + " is not allowed: must be " + finite + limits.text());
     return std::nullopt;
 }
 
@@ -284,9 +302,8 @@ std::optional<std::int64_t> TableReader::integer_of(const Value& value, const st
         return std::nullopt;
     }
     if (*integer >= limits.low && *integer <= limits.high) return *integer;
-    diagnostics_.key_error(
-        value.place, path,
-        std::to_string(*integer) + " is not allowed: must be " + text_of(limits));
+    report(value.place, path,
+           std::to_string(*integer) + " is not allowed: must be " + text_of(limits));
     return std::nullopt;
 }
 
@@ -308,8 +325,21 @@ std::optional<Vec3> TableReader::vector_of(const Value& value, const std::string
 
 void TableReader::report_type(const Value& value, const std::string& path,
                               std::string_view wanted) const {
-    diagnostics_.key_error(value.place, path,
-                           "must be " + std::string(wanted) + ", but is " + value.description());
+    report(value.place, path, "must be " + std::string(wanted) + ", but is " + value.description());
+}
+
+void TableReader::report(const Place& place, const std::string& path,
+                         const std::string& text) const {
+    if (is_guess(path))
+        diagnostics_.untold_error(path);
+    else
+        diagnostics_.key_error(place, path, text);
+}
+
+bool TableReader::is_guess(std::string_view path) const {
+    return std::ranges::any_of(misspelt_, [&](const auto& guess) {
+        return !find(table_, guess.first) && is_at_or_below(path, path_of(guess.first));
+    });
 }
 
 }  // namespace incise::sim

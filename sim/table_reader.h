@@ -41,8 +41,9 @@ enum class Repeats { taken_once, refused };
 class TableReader {
   public:
     /// Reports the keys that are not among `keys`; one that is most likely another one misspelt is
-    /// then read as that, so that what follows from it is not missed. All references must outlive
-    /// the reader.
+    /// then read as that, so that what follows from it is not missed. If that does not suit its
+    /// value, the guess was most likely wrong: then nothing more is told of it. All references must
+    /// outlive the reader.
     TableReader(const Table& table, const Place& place, std::string path, const Names& keys,
                 Diagnostics& diagnostics);
 
@@ -70,9 +71,12 @@ class TableReader {
     /// The same for an array of names, each at most once.
     std::vector<std::size_t> choices(std::string_view key, const Names& names) const;
 
-    /// The table below `key`; nothing if it is missing or no table.
+    /// The table below `key`; nothing if it is missing or no table. Of an array of tables, which is
+    /// reported, the first.
     std::optional<TableReader> table(std::string_view key, const Names& keys) const;
-    /// The tables of the array below `key`; with those elements left out that are none.
+    /// The tables of the array below `key`; with those elements left out that are none. A table in
+    /// place of the array, which is reported, counts as an array of one. Of the document's own
+    /// arrays those with misspelt headings follow the others.
     std::vector<TableReader> tables(std::string_view key, const Names& keys) const;
 
     /// Exactly one of the keys must be there; which. Nothing, and a report, otherwise.
@@ -99,12 +103,16 @@ class TableReader {
   private:
     /// Null if it is missing.
     const Value* value_of(std::string_view key) const;
+    /// Whether another key has been taken for the one of that path, or for one that it is below.
+    bool is_guess(std::string_view path) const;
     const Array* array(std::string_view key, std::string_view wanted) const;
     std::optional<double> number_of(const Value& value, const std::string& path,
                                     const Limits& limits) const;
     std::optional<std::int64_t> integer_of(const Value& value, const std::string& path,
                                            const IntegerLimits& limits) const;
     std::optional<Vec3> vector_of(const Value& value, const std::string& path) const;
+    /// Reports "key 'PATH': TEXT" of a key of the table or what is below it.
+    void report(const Place& place, const std::string& path, const std::string& text) const;
     void report_type(const Value& value, const std::string& path, std::string_view wanted) const;
 
     const Table& table_;

@@ -38,7 +38,6 @@ Pose read_pose(const TableReader& row) {
 
 Carver read_carver(const TableReader& tool) {
     Carver carver;
-    tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
     const auto shape = tool.table("shape", {shape_keys});
     if (!shape) return carver;
     shape->one_of({"sphere", "capsule", "box"});
@@ -64,10 +63,9 @@ Carver read_carver(const TableReader& tool) {
     return carver;
 }
 
-Blade read_blade(const TableReader& tool) {
+Blade read_blade(const TableReader& tool, std::optional<double> snap) {
     Blade blade;
-    if (tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]"))
-        blade.edge = tool.vectors("edge");
+    blade.edge = tool.vectors("edge");
     const bool knows_edge = tool.is_sound("edge");  // else points are left out
     if (tool.has("edge") && knows_edge && blade.edge.size() < 2)
         tool.error("edge", "must have at least 2 points");
@@ -77,26 +75,29 @@ Blade read_blade(const TableReader& tool) {
                                    " (from 0) are the same: leave one out");
     if (const auto mode = tool.has("mode") ? tool.choice("mode", {modes}) : std::nullopt)
         blade.mode = static_cast<CutMode>(*mode);
-    blade.snap = tool.number_if_given("snap", snap_limits);
+    blade.snap = snap;
     if (blade.snap && blade.mode == CutMode::separate)
         tool.error("snap", "belongs to mode = \"split\": leave it out");
     return blade;
 }
 
-Cut read_cut(const TableReader& tool, const std::filesystem::path& folder) {
+Cut read_cut(const TableReader& tool, std::optional<double> snap,
+             const std::filesystem::path& folder) {
     Cut cut;
-    const auto along = tool.one_of({"plane", "surface"});
     if (const auto plane = tool.table("plane", {plane_keys})) {
         plane->require("point", "a point of the plane, as in point = [0, 0, 0]");
         plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
         cut.along = PlaneSpec{plane->vector("point"), plane->direction("normal", Vec3::UnitZ())};
     }
     cut.place = tool.place_text("surface");
-    if (tool.has("surface"))
-        cut.along = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
+    if (tool.has("surface")) {
+        auto file = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
+        if (tool.is_sound("surface")) cut.along = std::move(file);
+    }
     cut.scale = tool.number("scale", 1.0, limits::positive);
-    if (tool.has("scale") && along == "plane") tool.error("scale", "is for surfaces: leave it out");
-    cut.snap = tool.number_if_given("snap", snap_limits);
+    if (tool.has("scale") && tool.has("plane") && !tool.has("surface"))
+        tool.error("scale", "is for surfaces: leave it out");
+    cut.snap = snap;
     return cut;
 }
 
@@ -106,10 +107,26 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
         if (tool.has(key)) tool.error(key, "belongs to " + owner + ": leave it out");
 }
 
-/// A cut has a time instead of a path.
-std::vector<TimeKey<Pose>> read_time(const TableReader& tool) {
-    tool.require("time", "when it cuts, seconds, as in time = 0.5");
-    return {{tool.number("time", 0.0, limits::non_negative), {}}};
+/// Reports the keys that a tool of the kind lacks, and those that belong to other kinds.
+void check_keys(const TableReader& tool, Keys kind) {
+    if (kind == "carver")
+        tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
+    else
+        refuse(tool, {"shape"}, "a carver");
+    if (kind == "blade")
+        tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]");
+    else
+        refuse(tool, {"edge", "mode"}, "a blade");
+    if (kind == "carver") refuse(tool, {"snap"}, "a blade");
+    if (kind == "cut") {
+        tool.one_of({"plane", "surface"});
+        refuse(tool, {"path"}, "a blade");
+        tool.require("time", "when it cuts, seconds, as in time = 0.5");
+    } else {
+        refuse(tool, {"time", "plane", "surface", "scale"}, "a cut");
+        tool.require("path",
+                     "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = [0, 0, 0] }]");
+    }
 }
 
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
@@ -131,34 +148,30 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
     std::array<int, std::size(kinds)> counts{};
     for (const auto& tool : root.tables("tool", {tool_keys})) {
         tool.require("kind", "must be one of " + list_of(kinds));
-        const auto kind = tool.choice("kind", {kinds});
-        if (!kind) continue;
+        const auto index = tool.choice("kind", {kinds});
+        const Keys kind = index ? kinds[*index] : Keys();  // empty: not known
+        const auto may_be = [&](Keys one) { return kind.empty() || kind == one; };
         ToolSpec spec;
         spec.place = tool.place_text();
-        spec.name = read_name(
-            tool, std::string(kinds[*kind]) + "_" + std::to_string(++counts[*kind]), names);
-        if (kinds[*kind] == "carver") {
-            spec.kind = read_carver(tool);
-            refuse(tool, {"edge", "mode", "snap"}, "a blade");
-        } else if (kinds[*kind] == "blade") {
-            spec.kind = read_blade(tool);
-            refuse(tool, {"shape"}, "a carver");
-        } else {
-            spec.kind = read_cut(tool, folder);
-            refuse(tool, {"shape"}, "a carver");
-            refuse(tool, {"edge", "mode", "path"}, "a blade");
+        const std::string usual_name =
+            index ? std::string(kind) + "_" + std::to_string(++counts[*index]) : "";
+        if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
+        if (index) check_keys(tool, kind);
+        std::optional<double> snap;
+        if (kind != "carver") snap = tool.number_if_given("snap", snap_limits);
+        if (may_be("carver")) spec.kind = read_carver(tool);
+        if (may_be("blade")) spec.kind = read_blade(tool, snap);
+        if (may_be("cut")) {
+            spec.kind = read_cut(tool, snap, folder);
+            const double time = tool.number("time", 0.0, limits::non_negative);
+            if (tool.is_sound("time")) spec.path = {{time, {}}};
         }
-        if (kinds[*kind] == "cut") {
-            spec.path = read_time(tool);
-        } else {
-            refuse(tool, {"time", "plane", "surface", "scale"}, "a cut");
-            tool.require("path",
-                         "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = "
-                         "[0, 0, 0] }]");
+        if (kind != "cut")
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
-        }
+        if (!index) continue;
         check_path(tool, spec, end_time);
-        if (tool.is_sound()) specs.push_back(std::move(spec));
+        if (!tool.is_sound()) spec.path.clear();
+        specs.push_back(std::move(spec));
     }
     return specs;
 }

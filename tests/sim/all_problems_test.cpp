@@ -64,7 +64,7 @@ TEST(AllProblems, OfTheTextDoNotHideThoseOfTheBody) {
     for (const std::string other :
          {"titel = 'a'\n", "[output]\ninterval = -1\n", "[[tool]]\nkind = 'knife'\n",
           "[[tool]]\nkind = 'cut'\ntime = 0.01\nsurface = 'missing.stl'\n",
-          "[[load]]\nwhere = { region = 7 }\npressure = 'a'\n"}) {
+          "[[load]]\nwhere = { region = 0 }\npressure = 'a'\n"}) {
         const bool is_root = other[0] == 't';
         const auto errors =
             ScenarioFile((is_root ? other : "") + minimal + two_faults + (is_root ? "" : other))
@@ -286,6 +286,190 @@ TEST(AllProblems, OfAMaterialThatDoesNotSuitItsElementsHaveItsPlace) {
                                                "poisson = 0.3\n")
                             .all_errors()),
               Lines{"10:1"});
+}
+
+/// What `minimal` and the lines after it are told of. The first of them is line 9.
+struct Case {
+    std::string lines;
+    Lines places;
+};
+
+void expect_places(const std::vector<Case>& cases) {
+    for (const auto& [lines, places] : cases)
+        EXPECT_EQ(places_of(ScenarioFile(minimal + lines).all_errors()), places) << lines;
+}
+
+TEST(AllProblems, OfAnItemHideNoneThatItHasBesides) {
+    const std::string no_nodes = "where = { box = { min = [9, 9, 9], max = [9, 9, 9] } }\n";
+    const std::string held = "[[constraint]]\n" + no_nodes;
+    const std::string loaded = "[[load]]\n" + no_nodes;
+    expect_places({
+        // Selections of nothing.
+        {held + "fix = 'w'\n", {"11:7", "10:9"}},
+        {held + "name = 'a b'\nfix = 'x'\n", {"11:8", "10:9"}},
+        {held, {"9:1", "10:9"}},
+        {held + "move = [{ time = 1, by = [0, 0, 0] }, { time = 0, by = [0, 0, 0] }]\n",
+         {"11:48", "10:9"}},
+        {loaded + "pressure = 'a'\n", {"11:12", "10:9"}},
+        {loaded + "pressure = 1\nfactor = []\n", {"12:10", "10:9"}},
+        {loaded, {"9:1"}},  // of what, is not known
+        {"[[constraint]]\nwhere = { nodes = -1 }\nfix = 'w'\n", {"10:19", "11:7"}},
+        // Supports that hold the same, as far as is known what they hold.
+        {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'x'\n[[constraint]]\nname = '?'\nwhere = { "
+         "nodes = 1 }\nfix = 'x'\n",
+         {"13:8", "14:9"}},
+        {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'xx'\n[[constraint]]\nwhere = { "
+         "nodes = 1 }\nfix = 'x'\n",
+         {"11:7"}},
+        // Files of surfaces.
+        {"[[tool]]\nkind = 'cut'\ntime = -1\nsurface = 'liver.vtu'\n", {"11:8", "12:11"}},
+        {"[[tool]]\nkind = 'cut'\ntime = 1\nsurface = 'none.stl'\nscale = 0\n", {"12:11", "13:9"}},
+        // The time step.
+        {"time_step = 5\ndamping = -1\n", {"10:11", "9:13"}},
+        {"time_step = 5\nseed = 'a'\n", {"10:8", "9:13"}},
+        {"time_step = 5\nmode = 'statc'\n", {"10:8"}},
+        {"time_step = 5\nintegrator = 1\n", {"10:14"}},
+        {"time_step = 1e-300\nseed = 'a'\n", {"10:8", "9:13"}},
+    });
+    // Without end there is no number of steps, and without safety none of their length.
+    const auto places = [](const std::string& dynamics) {
+        const std::string rest = minimal_rest.substr(0, minimal_rest.find("end_time"));
+        return places_of(ScenarioFile(minimal_mesh + rest + dynamics).all_errors());
+    };
+    EXPECT_EQ(places("end_time = -1\ntime_step = 5"), (Lines{"8:12", "9:13"}));
+    EXPECT_EQ(places("end_time = 1e12\n[output]\ninterval = 0"), Lines{"8:12"});
+    EXPECT_EQ(places("end_time = 1e12\nsafety = 2\n[output]\ninterval = 0"), Lines{"9:10"});
+}
+
+TEST(AllProblems, OfAToolOfNoKnownKindAreThoseOfItsKeys) {
+    const std::string keys = R"(name = "?"
+path = [{ time = -1, at = 0 }]
+shape = { sphere = { radius = 0 } }
+edge = [[0, 0, 0]]
+mode = "tear"
+snap = 2
+time = -1
+plane = { point = 0, normal = [0, 0, 0] }
+surface = "none.stl"
+scale = 0
+)";
+    const Lines faults = {"11:8", "12:18", "12:27", "13:31", "14:8",  "15:8",
+                          "16:8", "17:8",  "18:19", "18:31", "19:11", "20:9"};
+    for (const std::string kind : {"kind = 'knife'", "kind = 3"}) {
+        Lines all = {"10:8"};
+        all.insert(all.end(), faults.begin(), faults.end());
+        expect_places({{"[[tool]]\n" + kind + "\n" + keys, all}});
+    }
+    // Nothing is said of what only one of a kind must have or must not have.
+    expect_places({{"[[tool]]\nkind = 'knife'\n", {"10:8"}},
+                   {"[[tool]]\nkind = 'knife'\nsnap = 0.5\nscale = 2\n", {"10:8"}},
+                   {"[[tool]]\npath = [{ time = 0, at = [0, 0, 0] }]\n", {"9:1"}}});
+}
+
+TEST(AllProblems, OfOneHeadingInPlaceOfAnArrayAndOfAnArrayInPlaceOfOne) {
+    expect_places({
+        {"[constraint]\nwhere = { nodes = 99 }\nfix = 'w'\n", {"9:1", "11:7", "10:9"}},
+        {"[load]\npresure = 1\n", {"9:1", "10:1"}},
+        {"[tool]\nkind = 'blade'\nedge = 1\npath = { time = -1, at = 0 }\n",
+         {"9:1", "11:8", "12:8", "12:17", "12:26"}},
+        {"[[output]]\ninterval = -1\n", {"9:1", "10:12"}},
+        {"[[expect]]\nmas = { max = 'a' }\n", {"9:1", "10:1", "10:15"}},
+        {"[expect]\nmass = [{ max = 'a' }]\nvolume = []\ntime = [1]\n",
+         {"10:8", "10:17", "11:10", "12:8"}},
+    });
+    EXPECT_EQ(
+        places_of(ScenarioFile(minimal_mesh + "[material]\ndensity = -1\nyoung = 1\npoisson = 0.3\n"
+                                              "[[dynamics]]\nend_time = 1\nseed = -1\n")
+                      .all_errors()),
+        (Lines{"3:1", "4:11", "7:1", "9:8"}));
+}
+
+TEST(AllProblems, OfMisspeltHeadingsBesideTheRightOne) {
+    const std::string more = R"([[materials]]
+regions = 1
+density = -1000
+preset = "fat"
+[[constraint]]
+name = "a"
+where = { nodes = 1 }
+fix = "x"
+[[constraints]]
+name = "b"
+where = { nodes = 99 }
+fix = "x"
+[expect]
+reaction_b_x = { min = 0 }
+)";
+    expect_places({{more, {"9:3", "11:11", "17:3", "19:9"}}});
+    // Nothing else is joined: the times of one would not ascend from those of the other.
+    expect_places(
+        {{"[[constraint]]\nwhere = { nodes = 1 }\nmove = [{ time = 1, by = [0, 0, 0] }]\n"
+          "moves = [{ time = 0, by = [0, 0, 0] }]\n",
+          {"12:1"}}});
+}
+
+TEST(AllProblems, AreNotToldOfKeysThatWereGuessedWrong) {
+    expect_places({
+        {"step = 0.01\n", {"9:1"}},
+        {"step = 10\n", {"9:1"}},  // a load step, of what is no statics
+        {"step = 0.01\ntime_step = 5\n", {"9:1", "10:13"}},
+        {"dampin = -1\n", {"9:1"}},
+        {"gravty = 9.81\n", {"9:1"}},
+        {"tool = 3\n", {"9:1"}},
+        {"[[load]]\npressur = [0, 0, 1]\n", {"10:1"}},
+        {"[[constraint]]\nwher = 1\nfix = 'w'\n", {"10:1", "11:7"}},
+        {"[outputs]\ninterval = -1\n", {"9:2", "10:12"}},  // but of what is in its table
+    });
+}
+
+TEST(AllProblems, AreNotToldOfWhatDependsOnAKeyAtFault) {
+    expect_places({
+        {"mode = 'statc'\nsteps = 10\n", {"9:8"}},
+        {"mode = 'statc'\nsteps = 0\n", {"9:8", "10:9"}},
+        {"mode = 'statc'\nprecision = 'single'\n", {"9:8"}},
+        {"integrator = 'implicit-eulr'\n", {"9:14"}},
+        {"integrator = 'implicit-euler'\ntime_step = 'a'\n", {"10:13"}},
+        {"[[load]]\nwhere = { box = { min = 'a', max = [-1, -1, -1] } }\npressure = 1\n",
+         {"10:25"}},
+        {"[[load]]\nwhere = { box = { min = [1, 1, 1], max = 'a' } }\npressure = 1\n", {"10:42"}},
+        {"[[load]]\npressure = 1\nfactor = [{ time = 0, value = 0 }, { time = 'a', value = 1 }]\n",
+         {"11:45"}},
+        {"[[load]]\npressure = 1\nfactor = [{ time = 'a', value = 0 }, { time = 0, value = 1 }]\n",
+         {"11:20"}},
+    });
+    EXPECT_EQ(places_of(ScenarioFile("[mesh]\nbox = { size = [1, 1, 1], element = 'hexa', cells = "
+                                     "[1000, 1000, 90] }\n" +
+                                     minimal_rest)
+                            .all_errors()),
+              Lines{"2:37"});
+}
+
+TEST(AllProblems, OfFibresShowWhateverTheLaw) {
+    const auto places = [](const std::string& line) {
+        return places_of(ScenarioFile(minimal_mesh + "[[material]]\n" + line +
+                                      "\ndensity = 1\nfibre = [0, 0, 0]\nfibre_array = ''\n"
+                                      "prony_rule = 'nodal'\n[dynamics]\nend_time = 1\n")
+                             .all_errors());
+    };
+    for (const std::string line : {"preset = 'livr'", "method = 'hml'"})
+        EXPECT_EQ(places(line), (Lines{"4:" + std::to_string(line.find('\'') + 1), "6:9", "7:15"}))
+            << line;
+    EXPECT_EQ(places("law = 'holzapfl'"), (Lines{"4:7", "6:9", "7:15", "8:14"}));
+}
+
+TEST(AllProblems, OfExpectedRangesShowUnderNamesThatAreNotKnown) {
+    expect_places({{"[expect]\nmas = { min = 2, max = 1 }\nx = 3\ny = {}\n",
+                    {"10:1", "10:7", "11:1", "11:5", "12:1", "12:5"}}});
+    // What is there already was hardly meant.
+    EXPECT_EQ(ScenarioFile(minimal + "[expect]\nmass = { min = 2, mix = 3 }\n").errors(),
+              Lines{"scene.toml:10:19: key 'expect.mass.mix': is not known; did you mean 'max'? "
+                    "Known here: min, max"});
+    // Each quantity is known once.
+    const std::string held = "[[constraint]]\nname = 'a'\nwhere = { nodes = 1 }\nfix = 'x'\n";
+    const auto errors =
+        ScenarioFile(minimal + held + held + "[expect]\nx = { min = 0 }\n").errors();
+    ASSERT_EQ(places_of(errors), (Lines{"14:8", "18:1"}));
+    EXPECT_EQ(errors[1].find("reaction_a_x"), errors[1].rfind("reaction_a_x"));
 }
 
 }  // namespace

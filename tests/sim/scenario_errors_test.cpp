@@ -365,7 +365,7 @@ TEST(ScenarioErrors, OfLoads) {
 }
 
 TEST(ScenarioErrors, OfTools) {
-    EXPECT_EQ(error_of("[[tool]]\nedge = []\n"),
+    EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
               "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
@@ -450,7 +450,7 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
     EXPECT_EQ(error_of(floor + "[expect]\nreaction_floor_z = { min = 0 }\n"), "");
     EXPECT_EQ(error_of("[output]\ninterval = -1\n" + floor +
                        "[expect]\ntime = { max = \"x\" }\nreaction_flor_z = { min = 0 }\n"
-                       "mas = { mn = 0 }\n"),
+                       "mas = { min = 0 }\n"),
               "scene.toml:10:12: key 'output.interval': -1 is not allowed: must be at least 0 | "
               "scene.toml:16:16: key 'expect.time.max': must be a number, but is the text \"x\" | "
               "scene.toml:17:1: key 'expect.reaction_flor_z': is not known; did you mean "

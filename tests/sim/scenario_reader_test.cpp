@@ -309,5 +309,11 @@ TEST(ScenarioReader, RefusesAFileNameThatCannotNameFilesOfARun) {
     EXPECT_EQ(ScenarioFile(minimal, "Münze & Co.toml").errors(), Lines{});
 }
 
+TEST(ScenarioReader, KeepsTheEndOfStaticsWithKeysOfNoEffect) {
+    const ScenarioFile file(minimal + "mode = 'static'\nintegrator = 'implicit-euler'\n");
+    EXPECT_EQ(file.errors(), std::vector<std::string>{});
+    EXPECT_EQ(file.read().scenario.dynamics.end_time, 1.0);
+}
+
 }  // namespace
 }  // namespace incise::sim
