@@ -28,7 +28,7 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
                                              std::vector<std::string>& names);
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
-/// Those of a known kind; without path if anything is at fault with them.
+/// Those of a known kind; without path if it is not known where they are.
 /// @param folder  what the names of surface files are relative to
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
                                  double end_time);

@@ -1,5 +1,7 @@
 // The [[tool]] sections.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
 #include "io/number_format.h"
 #include "sim/scenario_sections.h"
 
@@ -129,6 +131,12 @@ void check_keys(const TableReader& tool, Keys kind) {
     }
 }
 
+bool knows_where(const TableReader& tool, Keys kind) {
+    constexpr Keys keys[] = {"path", "shape", "edge", "plane", "surface", "scale"};
+    return std::ranges::all_of(keys, [&](Keys key) { return tool.is_sound(key); }) &&
+           (kind != "cut" || tool.has("plane") != tool.has("surface"));
+}
+
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<Blade>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
@@ -170,7 +178,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
         if (!index) continue;
         check_path(tool, spec, end_time);
-        if (!tool.is_sound()) spec.path.clear();
+        if (!knows_where(tool, kind)) spec.path.clear();
         specs.push_back(std::move(spec));
     }
     return specs;

@@ -366,6 +366,26 @@ scale = 0
                    {"[[tool]]\npath = [{ time = 0, at = [0, 0, 0] }]\n", {"9:1"}}});
 }
 
+TEST(AllProblems, OfAToolLeaveTheWarningThatItTouchesNothing) {
+    const auto num_warnings = [](const std::string& lines) {
+        const ScenarioFile file(minimal + "[[tool]]\n" + lines);
+        EXPECT_EQ(file.errors().size(), 1u) << lines;
+        return check_body(file.read().scenario).warnings.size();
+    };
+    const std::string far = "path = [{ time = 0, at = [9, 9, 9] }, { time = 1, at = [9, 8, 9] }]\n";
+    const std::string ball = "shape = { sphere = { radius = 1 } }\n";
+    const std::string plane = "plane = { point = [9, 9, 9], normal = [1, 0, 0] }\n";
+    EXPECT_EQ(num_warnings("kind = 'carver'\nname = '?'\n" + ball + far), 1u);
+    EXPECT_EQ(num_warnings("kind = 'blade'\nsnap = 3\nedge = [[0, 0, 0], [1, 0, 0]]\n" + far), 1u);
+    EXPECT_EQ(num_warnings("kind = 'cut'\nsnap = 3\ntime = 0\n" + plane), 1u);
+    // Unless it is not known where it is.
+    EXPECT_EQ(num_warnings("kind = 'carver'\nshape = { sphere = { radius = 0 } }\n" + far), 0u);
+    EXPECT_EQ(num_warnings("kind = 'carver'\npath = []\n" + ball), 0u);
+    EXPECT_EQ(num_warnings("kind = 'blade'\n" + far), 0u);
+    EXPECT_EQ(num_warnings("kind = 'cut'\ntime = 0\n"), 0u);
+    EXPECT_EQ(num_warnings("kind = 'craver'\n" + ball + far), 0u);
+}
+
 TEST(AllProblems, OfOneHeadingInPlaceOfAnArrayAndOfAnArrayInPlaceOfOne) {
     expect_places({
         {"[constraint]\nwhere = { nodes = 99 }\nfix = 'w'\n", {"9:1", "11:7", "10:9"}},
