@@ -38,7 +38,8 @@ TableReader::TableReader(const Table& table, const Place& place, std::string pat
                          const Names& keys, Diagnostics& diagnostics)
     : table_(table), place_(place), path_(std::move(path)), diagnostics_(diagnostics) {
     std::vector<std::string_view> likely(keys.supported.begin(), keys.supported.end());
-    std::ranges::stable_partition(likely, [&](std::string_view key) { return !find(table_, key); });
+    std::stable_partition(likely.begin(), likely.end(),
+                          [&](std::string_view key) { return !find(table_, key); });
     for (const auto& entry : table_) {
         if (std::ranges::find(likely, entry.key) != likely.end()) continue;
         const std::string_view meant = nearest(entry.key, likely);
