@@ -87,8 +87,15 @@ int report(const std::exception_ptr& exception) {
 /// Of several threads that fail at the same time one tells; the others wait for the end.
 int report_once(const std::exception_ptr& exception) {
     static std::atomic_flag is_told;
+    thread_local bool is_telling = false;
+    if (is_telling) return fail_for_memory();  // nothing else can fail about that
     while (is_told.test_and_set()) ::pause();
-    return report(exception);
+    is_telling = true;
+    try {
+        return report(exception);
+    } catch (...) {
+        return fail_for_memory();
+    }
 }
 
 }  // namespace

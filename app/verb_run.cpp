@@ -104,14 +104,21 @@ std::optional<OutputError> refusal_of(const std::filesystem::path& folder) {
     }
 }
 
-/// What read() returns. If it throws InputError, the refusal is told with it.
+/// What read() returns. If it throws, the refusal is told with that.
 template <class Read>
 auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
+    if (!refusal) return read();
+    const auto both = [&](const std::exception& error) {
+        return std::string(error.what()) + "\n" + refusal->what();
+    };
     try {
         return read();
     } catch (const InputError& error) {
-        if (!refusal) throw;
-        throw InputError(std::string(error.what()) + "\n" + refusal->what());
+        throw InputError(both(error));
+    } catch (const PhysicsError& error) {
+        throw PhysicsError(both(error));
+    } catch (const MemoryError& error) {
+        throw MemoryError(both(error));
     }
 }
 
@@ -228,11 +235,11 @@ int run(const RunOptions& options) {
     }
 
     const auto built = with_refusal(refusal, [&] { return build(scenario, options.scenario); });
-    if (refusal) throw OutputError(*refusal);
     sim::Simulation& simulation = *built;
-    if (!options.dry_run) simulation.set_num_threads(num_threads(options));
+    if (!options.dry_run && !refusal) simulation.set_num_threads(num_threads(options));
     if (stopped) stopped->checkpoint.restore(simulation);
     for (const std::string& warning : simulation.warnings()) print_warning(warning);
+    if (refusal) throw OutputError(*refusal);
     if (!options.quiet) {
         std::cerr << scenario.name << ": " << describe(simulation) << '\n';
         if (stopped)

@@ -88,6 +88,9 @@ std::string_view nearest(std::string_view name, std::span<const std::string_view
 }
 
 bool is_misspelt(std::string_view name, std::string_view candidate) {
+    constexpr std::size_t shortest = 3;
+    const std::size_t common = std::min(name.size(), candidate.size());
+    if (common >= shortest && name.substr(0, common) == candidate.substr(0, common)) return true;
     return 3 * edit_distance(name, candidate) <= std::max(name.size(), candidate.size());
 }
 

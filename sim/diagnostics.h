@@ -63,7 +63,8 @@ bool is_at_or_below(std::string_view path, std::string_view owner);
 /// neighbours to make of `name`; the first of equals. Empty without candidates.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);
 
-/// Whether `name` is most likely the candidate misspelt: by one slip in three letters at most.
+/// Whether `name` is most likely the candidate misspelt: by one slip in three letters at most, or
+/// one of the two is the beginning of the other, of three letters at least.
 bool is_misspelt(std::string_view name, std::string_view candidate);
 
 /// The text between single quotes.

@@ -109,6 +109,7 @@ TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
           {"young", "yuong", "6:1"},
           {"dynamics", "dynamic", "8:2"},
           {"end_time", "endtime", "9:1"},
+          {"fix =", "fixed =", "14:1"},
           {"[[constraint]]\nname", "[[constraint]]\nnmae", "12:1"}}) {
         auto errors = places(scaled, known, given);
         EXPECT_EQ(std::erase(errors, place), 1u) << given;
