@@ -335,11 +335,13 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
     }
     try {
         Value document = read_document(file);
-        for (std::size_t i = 0; i < overrides.size(); ++i) try {
+        for (std::size_t i = 0; i < overrides.size(); ++i) {
+            try {
                 apply_override(document, overrides[i], static_cast<int>(i));
             } catch (const DocumentError& failure) {
                 diagnostics.error(failure.place, failure.text);
             }
+        }
         const TableReader root(*document.get<Table>(), Place{}, "", {root_keys}, diagnostics);
         report.scenario = read_all(root, file);
         report.scenario.hash = content_hash(document);

@@ -176,9 +176,10 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         }
         if (kind != "cut")
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
-        if (!index) continue;
-        check_path(tool, spec, end_time);
-        if (!knows_where(tool, kind)) spec.path.clear();
+        // Without a kind what is left to judge is the file of a surface.
+        if (!index && !tool.has("surface")) continue;
+        if (index) check_path(tool, spec, end_time);
+        if (!index || !knows_where(tool, kind)) spec.path.clear();
         specs.push_back(std::move(spec));
     }
     return specs;

@@ -466,5 +466,16 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
                   more);
 }
 
+TEST(ScenarioErrors, OfAToolsKindDoNotHideItsSurface) {
+    for (const std::string kind : {"", "kind = 'cat'\n"}) {
+        const auto errors =
+            ScenarioFile(minimal + "[[tool]]\n" + kind + "time = 0.1\nsurface = 'liver.vtu'\n")
+                .all_errors();
+        ASSERT_EQ(errors.size(), 2u) << kind;
+        EXPECT_NE(errors[0].find("key 'tool[0].kind': "), std::string::npos) << errors[0];
+        EXPECT_NE(errors[1].find(": liver.vtu: "), std::string::npos) << errors[1];
+    }
+}
+
 }  // namespace
 }  // namespace incise::sim
