@@ -233,7 +233,7 @@ EditRate measure_split(CutCube& cube) {
     cutting::Scars scars;
     return time_tool({"split", "element crossed"}, cube, [&](CutCube& c, int step) {
         const cutting::SweptEdge way(edge_of_blade(step), edge_of_blade(step + 1));
-        const auto done = cutting::split(c.mesh, c.at_rest(), way, front, options, &scars);
+        const auto done = cutting::split(c.mesh, c.at_rest(), way, front, options, scars);
         c.follow(done.changes);
         return done.report.elements_crossed;
     });

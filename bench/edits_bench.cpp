@@ -93,7 +93,7 @@ void split(benchmark::State& state) {
         for (int step = 0; step < num_steps; ++step) {
             const cutting::TissueMotion tissue{mesh, model.positions(), model.positions(), &boxes};
             auto done = cutting::split(mesh, tissue, cutting::SweptEdge(edge(step), edge(step + 1)),
-                                       front, options, &scars);
+                                       front, options, scars);
             model.apply(done.changes);
             boxes.follow(mesh, model.positions(), done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);

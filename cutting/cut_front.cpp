@@ -7,8 +7,8 @@ namespace incise::cutting {
 
 using topology::NodeId;
 
-void CutFront::put_on(NodeId n, bool is_exact, double reach) {
-    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach});
+void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
+    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach, rank});
     place->second.reach = std::max(place->second.reach, reach);
     num_new_ += is_new;
     has_changed_ = true;

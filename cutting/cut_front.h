@@ -25,13 +25,25 @@ namespace incise::cutting {
 /// it, stands for itself.
 class CutFront {
   public:
-    /// Counts the node as on the cut. A node made on the cut lies there exactly; others have
-    /// been near it. `reach` is the size of the elements there, m.
-    void put_on(topology::NodeId n, bool is_exact, double reach);
+    /// A cut begins: the ranks (scars.h) of its nodes are not below this one.
+    void begin(std::uint64_t rank) { first_rank_ = rank; }
+    /// Whether a node that has the rank has it from this cut, not from an earlier one.
+    bool is_own(std::uint64_t rank) const { return rank >= first_rank_; }
+
+    /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
+    /// it, on one side. `reach` is the size of the elements there, m. Of a node that is on the cut
+    /// already only that can change, to more.
+    void put_on(topology::NodeId n, bool is_exact, double reach, std::uint64_t rank);
     bool is_on(topology::NodeId n) const { return nodes_.contains(n.value); }
     bool is_near(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);
         return place != nodes_.end() && !place->second.is_exact;
+    }
+
+    /// How the nodes on the cut came to be so, one after the other; 0 for others.
+    std::uint64_t rank(topology::NodeId n) const {
+        const auto place = nodes_.find(n.value);
+        return place != nodes_.end() ? place->second.rank : 0;
     }
 
     /// Size of the elements at a node on the cut, m; 0 for others.
@@ -81,18 +93,20 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.crossed_, self.num_new_, self.has_changed_);
+        ar(self.nodes_, self.crossed_, self.first_rank_, self.num_new_, self.has_changed_);
     }
 
   private:
     struct Node {
         bool is_exact = false;
         double reach = 0.0;
-        static void archive(auto& ar, auto& self) { ar(self.is_exact, self.reach); }
+        std::uint64_t rank = 0;
+        static void archive(auto& ar, auto& self) { ar(self.is_exact, self.reach, self.rank); }
     };
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
+    std::uint64_t first_rank_ = 0;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };

@@ -24,13 +24,17 @@ std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdg
 }
 
 Passage passage_at(const Crossing& crossing, const CutSurface& surface, const CrossableEdge& edge,
-                   const Vec3& normal_at_rest, double near) {
+                   const Vec3& normal_at_rest) {
     const double size = normal_at_rest.norm() * edge.at_rest.norm();
     const double steepness = size > 0.0 ? std::abs(normal_at_rest.dot(edge.at_rest)) / size : 1.0;
     const Vec3 &a = edge.a[1], &b = edge.b[1];
-    Passage passage{
-        crossing.place, crossing.place * steepness,   (1.0 - crossing.place) * steepness, near,
-        crossing.time,  a + crossing.place * (b - a), crossing.normal.normalized()};
+    Passage passage{crossing.place,
+                    crossing.place * steepness,
+                    (1.0 - crossing.place) * steepness,
+                    crossing.time,
+                    a + crossing.place * (b - a),
+                    crossing.normal.normalized(),
+                    normal_at_rest.normalized()};
     // Where the surface bends away its plane at the crossing would say too little.
     const double length = (b - a).norm(), at_a = surface.distance(a) / length;
     if (!std::isnan(at_a)) {
@@ -39,6 +43,25 @@ Passage passage_at(const Crossing& crossing, const CutSurface& surface, const Cr
         passage.from_b = std::max(passage.from_b, std::min(at_b, 1.0 - passage.place));
     }
     return passage;
+}
+
+bool is_near(const topology::Mesh& mesh, const EdgeEnd& end, const Vec3& normal_at_rest,
+             const NearLimits& limits) {
+    const Vec3 x = mesh.rest_position(end.node), edge = mesh.rest_position(end.other) - x;
+    const double distance = end.from * edge.norm();
+    if (distance >= limits.farthest) return false;
+    if (end.place < 0.5 && end.from < limits.share) return true;
+    const Vec3 towards = std::copysign(1.0, normal_at_rest.dot(edge)) * normal_at_rest;
+    std::vector<topology::ElementId> star;
+    topology::collect_star(mesh, end.node, end.element, star);
+    const auto is_long = [&](topology::NodeId n) {
+        const Vec3 other = mesh.rest_position(n) - x;
+        return towards.dot(other) > 2.0 * distance && distance < limits.share * other.norm();
+    };
+    return std::any_of(star.begin(), star.end(), [&](topology::ElementId e) {
+        const auto corners = mesh.corners(e);
+        return std::any_of(corners.begin(), corners.end(), is_long);
+    });
 }
 
 }  // namespace incise::cutting

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cutting/cut_surface.h"
+#include "topology/mesh.h"
 
 namespace incise::cutting {
 
@@ -14,17 +15,13 @@ struct CrossableEdge {
     Vec3 at_rest;      ///< from a to b, m
 };
 
-/// Where the surface passes through an edge, how far away its ends are from it there, and how near
-/// an end counts as on it; all in units of the edge's length at rest.
+/// Where the surface passes through an edge, and how far away its ends are from it there, in units
+/// of the edge's length at rest.
 struct Passage {
-    double place, from_a, from_b, near;
-    double time;         ///< 0 before the step, 1 after it
-    Vec3 point, normal;  ///< after the step; the normal of unit length, or zero if not known
-
-    /// Whether the end is so near that it counts as on the surface. Of an edge that lies all but in
-    /// the surface both might be; only the nearer one is, or whole layers of elements would.
-    bool is_near_a() const { return from_a < near && place < 0.5; }
-    bool is_near_b() const { return from_b < near && place > 0.5; }
+    double place, from_a, from_b;
+    double time;          ///< 0 before the step, 1 after it
+    Vec3 point, normal;   ///< after the step; the normal of unit length, or zero if not known
+    Vec3 normal_at_rest;  ///< the same in the frame of rest
 };
 using Passages = std::vector<Passage>;  // in ascending order of places
 
@@ -35,8 +32,30 @@ std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdg
 
 /// @param normal_at_rest  of the surface at the crossing, in the frame of rest and of any length;
 ///                        zero if not known: the surface then counts as perpendicular to the edge
-/// @param near  see Passage
 Passage passage_at(const Crossing& crossing, const CutSurface& surface, const CrossableEdge& edge,
-                   const Vec3& normal_at_rest, double near);
+                   const Vec3& normal_at_rest);
+
+/// An end of an edge that the surface passes through, and where, seen from there.
+struct EdgeEnd {
+    topology::NodeId node, other;
+    topology::ElementId element;  ///< one of those that have the edge
+    double place, from;           ///< as in Passage
+};
+
+/// How near a node has to be to count as on the surface.
+struct NearLimits {
+    double share;     ///< of an edge at the node that the surface passes through
+    double farthest;  ///< m, at rest
+};
+
+/// Whether the end is so near that it counts as on the surface. It is that for all of its edges at
+/// once, from the first of them on that the surface comes to: so those of them count that the
+/// surface passes through if it goes on straight, and it does not matter into how many steps the
+/// way of a blade is taken. Of an edge that lies all but in the surface both ends might be near;
+/// that edge speaks for the nearer one only, or whole layers of elements would lie on the surface.
+/// @param normal_at_rest  of the surface, of unit length, or zero if not known: only the edge
+/// counts Cost: a look at the elements round the node, if the edge alone is not long enough.
+bool is_near(const topology::Mesh& mesh, const EdgeEnd& end, const Vec3& normal_at_rest,
+             const NearLimits& limits);
 
 }  // namespace incise::cutting

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
@@ -14,10 +15,13 @@ namespace incise::cutting {
 
 /// A node that counted as lying on a cut, and where that passed by it.
 struct Scar {
-    Vec3 normal;      ///< of the cut, of unit length
-    Vec3 to_surface;  ///< from the node to where the cut passed through an edge, m
-    bool is_exact;    ///< the node was made there
-    static void archive(auto& ar, auto& self) { ar(self.normal, self.to_surface, self.is_exact); }
+    Vec3 normal;         ///< of the cut, of unit length
+    Vec3 to_surface;     ///< from the node to where the cut passed through an edge, m
+    bool is_exact;       ///< the node was made there
+    std::uint64_t rank;  ///< of the node on that cut: Scars::next_rank
+    static void archive(auto& ar, auto& self) {
+        ar(self.normal, self.to_surface, self.is_exact, self.rank);
+    }
 };
 
 /// Nodes that counted as lying on a cut, and where it really was. A cut that passes by at the same
@@ -33,6 +37,10 @@ class Scars {
     std::span<const Scar> of(topology::NodeId n) const;
     bool is_empty() const { return scars_.empty(); }
 
+    /// Nodes of all cuts are numbered in the order in which they come to count as on one.
+    std::uint64_t next_rank() const { return next_rank_; }
+    std::uint64_t take_rank() { return next_rank_++; }
+
     /// The element stayed with the other side of its cut, as there was too little of it.
     void add_crumb(topology::ElementId e) { crumbs_.insert(e.value); }
     bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e.value); }
@@ -40,7 +48,7 @@ class Scars {
     /// Copies of a node, and parts of an element, are what it is.
     void follow(const topology::ChangeSet& changes);
 
-    static void archive(auto& ar, auto& self) { ar(self.scars_, self.crumbs_); }
+    static void archive(auto& ar, auto& self) { ar(self.scars_, self.crumbs_, self.next_rank_); }
 
     /// In units of the size of elements: nearer than this is the same place.
     static constexpr double rounding = 1e-6;
@@ -48,6 +56,7 @@ class Scars {
   private:
     std::unordered_map<std::int32_t, std::vector<Scar>> scars_;
     std::unordered_set<std::int32_t> crumbs_;
+    std::uint64_t next_rank_ = 1;
 };
 
 }  // namespace incise::cutting

@@ -71,7 +71,9 @@ class Splitter {
           options_(options),
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
-          num_old_nodes_(mesh.node_capacity()) {}
+          num_old_nodes_(mesh.node_capacity()) {
+        if (front.is_empty()) front.begin(scars.next_rank());
+    }
 
     Split run() {
         find_crossed_edges();
@@ -138,24 +140,26 @@ class Splitter {
         return n.index() < num_old_nodes_ ? 0 : generations_[n.index() - num_old_nodes_];
     }
 
-    double rest_length(const Edge& edge) const {
-        return (mesh_.rest_position(edge.a) - mesh_.rest_position(edge.b)).norm();
+    Vec3 rest_edge(NodeId from, NodeId to) const {
+        return mesh_.rest_position(to) - mesh_.rest_position(from);
     }
+    double rest_length(const Edge& edge) const { return rest_edge(edge.a, edge.b).norm(); }
 
     void find_crossed_edges();
     Passages passages(const Edge& edge, ElementId element) const;
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
     Scar scar_at(NodeId n, const Passage& passage) const;
-    bool is_at(NodeId n, bool is_near, const Passage& passage) const;
+    bool is_at(const EdgeEnd& end, const Passage& passage) const;
     void settle(const Edge& edge, const Passages& passages);
-    bool is_to_be_divided(const Edge& edge, Passages& passages);
+    bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
     void divide_next();
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
-    NodeId divide(const Edge& edge, ElementId element, double place);
-    void place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
+    NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
+    void place_on_side(NodeId a, NodeId b, NodeId middle, const std::vector<NodeId>& ring,
                        const std::vector<Passages>& to_ring, const Passages& to_b);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
+    void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
     void recognize(const std::vector<std::pair<Edge, ElementId>>& edges);
 
@@ -192,15 +196,13 @@ Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
 }
 
 Passages Splitter::passages(const Edge& edge, ElementId element) const {
-    const CrossableEdge crossable{point(edge.a), point(edge.b),
-                                  mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)};
-    const double near = std::min(snap_, farthest_ / rest_length(edge));
+    const CrossableEdge crossable{point(edge.a), point(edge.b), rest_edge(edge.a, edge.b)};
     const bool is_tetrahedron = mesh_.kind(element) == CellKind::tetrahedron;
     Passages passages;
     for (const Crossing& crossing : crossings_of(surface_, crossable, snap_)) {
         const Vec3 normal =
             is_tetrahedron ? normal_at_rest(element, crossing.normal) : Vec3(Vec3::Zero());
-        passages.push_back(passage_at(crossing, surface_, crossable, normal, near));
+        passages.push_back(passage_at(crossing, surface_, crossable, normal));
     }
     return passages;
 }
@@ -246,14 +248,7 @@ void Splitter::find_crossed_edges() {
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
-    // Which nodes are near comes first: it decides about all edges at them.
     if (!found.empty()) recognize(edges);
-    for (const Found& f : found) {
-        const double length = rest_length(f.edge);
-        const Passage &first = f.passages.front(), &last = f.passages.back();
-        if (is_at(f.edge.a, first.is_near_a(), first)) snap_to(f.edge.a, length);
-        if (is_at(f.edge.b, last.is_near_b(), last)) snap_to(f.edge.b, length);
-    }
     for (const Found& f : found)
         if (f.passages.size() % 2 == 1) front_.toggle(f.edge.a, f.edge.b);
     for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
@@ -283,65 +278,74 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
             const double length = rest_length(edge);
             for (const Scar& scar : scars_.of(n))
                 if (is_there(n, scar, length)) {
-                    front_.put_on(n, scar.is_exact, length);
+                    front_.put_on(n, scar.is_exact, length, scar.rank);
                     break;
                 }
         }
     }
 }
 
+void Splitter::put_on(NodeId n, bool is_exact, double reach) {
+    front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : scars_.take_rank());
+}
+
 void Splitter::snap_to(NodeId n, double reach) {
     if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
-    front_.put_on(n, false, reach);
+    put_on(n, false, reach);
 }
 
 Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
-    return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n)};
+    return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n),
+            front_.rank(n)};
 }
 
-/// Whether a passage through an edge at the node counts as at the node.
-bool Splitter::is_at(NodeId n, bool is_near, const Passage& passage) const {
-    if (is_near) return true;
-    const double size = (point(n)[1] - passage.point).norm();
-    return scars_.has(n, scar_at(n, passage), size);
+/// Whether a passage through an edge counts as at the end.
+bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) const {
+    if (is_near(mesh_, end, passage.normal_at_rest, {snap_, farthest_})) return true;
+    const double size = (point(end.node)[1] - passage.point).norm();
+    return scars_.has(end.node, scar_at(end.node, passage), size);
 }
 
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
-bool Splitter::is_to_be_divided(const Edge& edge, Passages& passages) {
+bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& passages) {
     auto begin = passages.begin(), end = passages.end();
     if (begin != end && front_.is_near(edge.a)) ++begin;
     if (begin != end && front_.is_near(edge.b)) --end;
-    const bool is_on_a = front_.is_on(edge.a), is_on_b = front_.is_on(edge.b);
-    if (is_on_a && is_on_b) return false;  // between them there is nothing but rounding
+    while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
+    while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
+    const auto are_both_on = [&] { return front_.is_on(edge.a) && front_.is_on(edge.b); };
+    if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
-    for (; begin != end && is_at(edge.a, begin->is_near_a(), *begin); ++begin)
-        if (!is_on_a) snap_to(edge.a, length);
-    for (; begin != end && is_at(edge.b, (end - 1)->is_near_b(), *(end - 1)); --end)
-        if (!is_on_b) snap_to(edge.b, length);
-    while (begin != end && is_on_a && begin->place < bend) ++begin;
-    while (begin != end && is_on_b && (end - 1)->place > 1.0 - bend) --end;
-    if (begin == end) return false;
+    const auto is_at_a = [&](const Passage& p) {
+        return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
+    };
+    const auto is_at_b = [&](const Passage& p) {
+        return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
+    };
+    const auto bring = [&](NodeId n, const Passage& passage) {
+        if (front_.is_on(n)) return;
+        snap_to(n, length);
+        scars_.add(n, scar_at(n, passage));
+    };
+    for (; begin != end && is_at_a(*begin); ++begin) bring(edge.a, *begin);
+    for (; begin != end && is_at_b(*(end - 1)); --end) bring(edge.b, *(end - 1));
+    if (begin == end || are_both_on()) return false;
     passages = Passages(begin, end);
     return true;
 }
 
 void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
-    Passages left = passages;
-    if (is_to_be_divided(edge, left)) {
-        queue_.push({middle_of(left).time, rest_length(edge), edge});
-        pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
-    } else {
-        settle(edge, passages);
-    }
+    queue_.push({middle_of(passages).time, rest_length(edge), edge});
+    pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
 }
 
 /// The edge is not divided: what passes through it counts as at its ends.
 void Splitter::settle(const Edge& edge, const Passages& passages) {
     for (const Passage& passage : passages) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
-        if (is_at_a && (passage.is_near_a() || !is_at_b || passage.from_a <= passage.from_b))
+        if (is_at_a && (!is_at_b || passage.from_a <= passage.from_b))
             scars_.add(edge.a, scar_at(edge.a, passage));
-        if (is_at_b && (passage.is_near_b() || !is_at_a || passage.from_b <= passage.from_a))
+        if (is_at_b && (!is_at_a || passage.from_b <= passage.from_a))
             scars_.add(edge.b, scar_at(edge.b, passage));
     }
 }
@@ -353,11 +357,11 @@ void Splitter::divide_next() {
     Pending pending = std::move(place->second);
     pending_.erase(place);
     Passages left = pending.passages;
-    if (is_to_be_divided(edge, left)) {
+    if (is_to_be_divided(edge, pending.element, left)) {
         const Passage& passage = middle_of(left);
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
-            const NodeId middle = divide(edge, pending.element, t);
+            const NodeId middle = divide(edge, pending.element, t, passage);
             scars_.add(middle, scar_at(middle, passage));
             return;
         }
@@ -377,7 +381,7 @@ double Splitter::place_to_divide(const Edge& edge, ElementId element, const Pass
 }
 
 /// Returns the new node.
-NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
+NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Passage& passage) {
     const double reach = rest_length(edge);
     const MovingPoint from = point(edge.a), to = point(edge.b);
     const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
@@ -402,7 +406,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
     inherit_scars(edge.a, edge.b, middle);
     inherit_scars(edge.b, edge.a, middle);
-    front_.put_on(middle, true, reach);
+    put_on(middle, t == passage.place, reach);
 
     const auto holder = [&](NodeId other) {
         ElementId found;
@@ -417,7 +421,10 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
     std::vector<Passages> to_ring;
     for (const NodeId n : ring) to_ring.push_back(ask(n));
     Passages to_a = ask(edge.a), to_b = ask(edge.b);
-    place_on_side(edge, middle, ring, to_ring, to_b);
+    if (t < passage.place)
+        place_on_side(edge.b, edge.a, middle, ring, to_ring, to_a);
+    else
+        place_on_side(edge.a, edge.b, middle, ring, to_ring, to_b);
     const auto take = [&](NodeId other, Passages&& passed) {
         if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
     };
@@ -430,25 +437,24 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t) {
 // The middle counts as on the side of the end b. Round a triangle the crossings are odd in number
 // if the border of the sweep runs through it, and in no other case, now and after each later step:
 // rounding has moved the middle off the edge, so nothing of this may be left to its place.
-void Splitter::place_on_side(const Edge& edge, NodeId middle, const std::vector<NodeId>& ring,
+void Splitter::place_on_side(NodeId a, NodeId b, NodeId middle, const std::vector<NodeId>& ring,
                              const std::vector<Passages>& to_ring, const Passages& to_b) {
     const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
         return surface_.ends_inside({point(p), point(q), point(r)});
     };
-    const bool is_crossed = front_.is_crossed(edge.a, edge.b);
+    const bool is_crossed = front_.is_crossed(a, b);
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const NodeId n = ring[i];
-        const bool at_a = front_.is_crossed(edge.a, n), at_b = front_.is_crossed(edge.b, n);
+        const bool at_a = front_.is_crossed(a, n), at_b = front_.is_crossed(b, n);
         bool is_crossed_to_n = at_b;
-        if (const auto border = has_border(middle, edge.b, n))
+        if (const auto border = has_border(middle, b, n))
             is_crossed_to_n = at_b != *border;
         else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
             is_crossed_to_n = (to_ring[i].size() + to_b.size()) % 2 == 1;
         if (is_crossed_to_n) front_.toggle(middle, n);
     }
-    if (is_crossed) front_.toggle(edge.a, edge.b);
-    if (is_crossed != has_border(edge.a, middle, edge.b).value_or(false))
-        front_.toggle(edge.a, middle);
+    if (is_crossed) front_.toggle(a, b);
+    if (is_crossed != has_border(a, middle, b).value_or(false)) front_.toggle(a, middle);
 }
 
 /// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by
@@ -460,10 +466,10 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
     for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
         const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
         if (place < 1.0 && place * edge.norm() > half.norm()) {
-            scars_.add(middle, {scar.normal, place * edge - half, false});
+            scars_.add(middle, {scar.normal, place * edge - half, false, scar.rank});
             continue;
         }
-        const Scar at_end{scar.normal, scar.to_surface - edge, false};
+        const Scar at_end{scar.normal, scar.to_surface - edge, false, scar.rank};
         if (!scars_.has(to, at_end, edge.norm())) continue;
         scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
         scars_.add(middle, scar);
@@ -475,9 +481,8 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
 double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-            const SplitOptions& options, Scars* scars) {
-    Scars own;
-    return Splitter(mesh, tissue, surface, front, options, scars ? *scars : own).run();
+            const SplitOptions& options, Scars& scars) {
+    return Splitter(mesh, tissue, surface, front, options, scars).run();
 }
 
 }  // namespace incise::cutting

@@ -57,12 +57,11 @@ struct Split {
 ///
 /// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
 ///               brought up to date
-/// @param scars  of all cuts of this body so far; brought up to date. Without it a cut along an
-///               earlier one may shave off what that one left standing.
+/// @param scars  of all cuts of this body so far; brought up to date
 /// Throws InputError, and leaves the mesh as it was, if a crossed element is no tetrahedron.
 /// Cost: a few microseconds for each element that is crossed, and the search for them: what is near
 /// the surface, if the motion has boxes, else O(#elements).
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-            CutFront& front, const SplitOptions& options, Scars* scars = nullptr);
+            CutFront& front, const SplitOptions& options, Scars& scars);
 
 }  // namespace incise::cutting

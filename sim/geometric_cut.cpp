@@ -278,7 +278,7 @@ class Cutter {
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
         const cutting::Split result =
-            cutting::split(mesh_, tissue, surface, front, split_options_, &scars_);
+            cutting::split(mesh_, tissue, surface, front, split_options_, scars_);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;

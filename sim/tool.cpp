@@ -200,7 +200,7 @@ cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
     const auto before = edge_at(blade, from), after = edge_at(blade, to);
     if (blade.mode == CutMode::split)
         return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_,
-                              &scars);
+                              scars);
     cutting::CutPlan plan;
     plan.faces_to_open = cutting::faces_to_open(tissue, before, after);
     return carry_out(plan, mesh);
@@ -209,7 +209,7 @@ cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
 cutting::Split Tool::cut_with(const Cut&, topology::Mesh& mesh, const cutting::TissueMotion& tissue,
                               cutting::Scars& scars, double, double) {
     cutting::CutFront front;
-    return cutting::split(mesh, tissue, *surface_, front, options_, &scars);
+    return cutting::split(mesh, tissue, *surface_, front, options_, scars);
 }
 
 }  // namespace incise::sim

@@ -37,21 +37,33 @@ ChangeSet additions(std::initializer_list<std::pair<std::size_t, std::size_t>> c
 TEST(CutFront, KnowsItsNodes) {
     CutFront front;
     EXPECT_TRUE(front.is_empty());
-    front.put_on(node(3), true, 0.5);
-    front.put_on(node(5), false, 0.5);
+    front.put_on(node(3), true, 0.5, 4);
+    front.put_on(node(5), false, 0.5, 6);
     EXPECT_EQ(front.size(), 2u);
     EXPECT_TRUE(front.is_on(node(3)) && front.is_on(node(5)));
     EXPECT_FALSE(front.is_on(node(4)));
     EXPECT_FALSE(front.is_near(node(3)));  // but on it
     EXPECT_TRUE(front.is_near(node(5)));
     EXPECT_FALSE(front.is_near(node(4)));
-    // What is on it exactly stays so; the reach is the larger one.
-    front.put_on(node(3), false, 2.0);
+    // What is on it exactly stays so, with its rank; the reach is the larger one.
+    front.put_on(node(3), false, 2.0, 7);
+    EXPECT_EQ(front.rank(node(3)), 4u);
+    EXPECT_EQ(front.rank(node(5)), 6u);
+    EXPECT_EQ(front.rank(node(4)), 0u);
     EXPECT_FALSE(front.is_near(node(3)));
     EXPECT_EQ(front.size(), 2u);
     EXPECT_EQ(front.reach(node(3)), 2.0);
     EXPECT_EQ(front.reach(node(5)), 0.5);
     EXPECT_EQ(front.reach(node(4)), 0.0);
+}
+
+TEST(CutFront, KnowsItsOwnRanks) {
+    CutFront front;
+    front.begin(5);
+    EXPECT_FALSE(front.is_own(4));
+    EXPECT_TRUE(front.is_own(5));
+    front.put_on(node(3), false, 0.5, 2);  // of an earlier cut, at the same place
+    EXPECT_FALSE(front.is_own(front.rank(node(3))));
 }
 
 TEST(CutFront, TogglesEdgesWhicheverWayTheyAreAskedFor) {
@@ -74,8 +86,8 @@ TEST(CutFront, TogglesEdgesWhicheverWayTheyAreAskedFor) {
 
 TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
     CutFront front;
-    front.put_on(node(1), true, 1.0);
-    front.put_on(node(2), false, 1.0);
+    front.put_on(node(1), true, 1.0, 1);
+    front.put_on(node(2), false, 1.0, 2);
     front.toggle(node(1), node(7));
     front.toggle(node(2), node(8));
     front.toggle(node(2), node(7));
@@ -89,6 +101,7 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
 
     EXPECT_TRUE(front.is_on(node(20)) && !front.is_near(node(20)));
     EXPECT_TRUE(front.is_on(node(21)) && front.is_near(node(21)));
+    EXPECT_EQ(front.rank(node(21)), 2u);
     EXPECT_FALSE(front.is_on(node(22)));
     EXPECT_FALSE(front.is_on(node(23)));  // whoever makes a node says that it is on the cut
     EXPECT_TRUE(front.is_crossed(node(20), node(7)));
@@ -106,7 +119,7 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
 TEST(CutFront, ForgetsWhatIsLeftBehind) {
     CutFront front;
     for (const std::size_t n : {1u, 2u, 3u})
-        front.put_on(node(n), true, 0.1 * static_cast<double>(n));
+        front.put_on(node(n), true, 0.1 * static_cast<double>(n), n);
     front.toggle(node(1), node(7));  // an edge to a node that is not on the cut
     front.toggle(node(1), node(2));  // one to a node that is
     front.toggle(node(3), node(7));
@@ -124,7 +137,7 @@ TEST(CutFront, ForgetsWhatIsLeftBehind) {
 }
 
 /// Of a cut that passed by the node at this distance along the normal.
-Scar scar(const Vec3& normal, double distance) { return {normal, distance * normal, false}; }
+Scar scar(const Vec3& normal, double distance) { return {normal, distance * normal, false, 1}; }
 
 TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     Scars scars;
@@ -133,8 +146,8 @@ TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     scars.add(n, scar(z, 0.2));
     scars.add(n, scar(x, -0.1));
     EXPECT_TRUE(scars.has(n, scar(z, 0.2), 1.0));
-    EXPECT_TRUE(scars.has(n, scar(-z, -0.2), 1.0));                   // from the other side
-    EXPECT_TRUE(scars.has(n, {z, Vec3(0.5, 0.3, 0.2), false}, 1.0));  // elsewhere in its plane
+    EXPECT_TRUE(scars.has(n, scar(-z, -0.2), 1.0));                      // from the other side
+    EXPECT_TRUE(scars.has(n, {z, Vec3(0.5, 0.3, 0.2), false, 1}, 1.0));  // elsewhere in its plane
     EXPECT_TRUE(scars.has(n, scar(x, -0.1 + 1e-9), 1.0));
     EXPECT_FALSE(scars.has(n, scar(z, 0.19), 1.0));
     EXPECT_FALSE(scars.has(n, scar(z, -0.2), 1.0));

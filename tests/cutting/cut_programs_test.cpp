@@ -111,7 +111,7 @@ class Patient {
                          const std::vector<Vec3>& positions_before) {
         const Balance before(model_, table_);
         const Split done = split(mesh_, {mesh_, positions_before, model_.positions()}, surface,
-                                 front, options_, &scars_);
+                                 front, options_, scars_);
         model_.apply(done.changes);
         if (!done.changes.is_empty()) check(before);
         return done;

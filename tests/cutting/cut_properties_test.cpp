@@ -207,7 +207,7 @@ class Patient {
         const Balance before(model_, table_);
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
         const ChangeSet changes =
-            split(mesh_, {mesh_, still, still}, surface, front, options_, &scars_).changes;
+            split(mesh_, {mesh_, still, still}, surface, front, options_, scars_).changes;
         model_.apply(changes);
         if (changes.is_empty()) return;
         done_.push_back(changes);

@@ -98,7 +98,7 @@ SplitBody::SplitBody(const topology::MeshData& data)
 
 Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
                      const std::vector<Vec3>& moved) {
-    const Split done = split(mesh, {mesh, positions, moved}, surface, front, options, &scars);
+    const Split done = split(mesh, {mesh, positions, moved}, surface, front, options, scars);
     positions = followed(moved, done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
     if (!done.changes.is_empty()) {

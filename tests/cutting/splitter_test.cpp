@@ -244,8 +244,10 @@ TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
                     centre = TissueMotion::centre(mesh, ElementId(i), x);
             const MeshSnapshot before(mesh);
             CutFront front;
+            Scars scars;
             try {
-                split(mesh, {mesh, x, x}, Plane(centre, random.vector(1.0)), front, {0.1, {}});
+                split(mesh, {mesh, x, x}, Plane(centre, random.vector(1.0)), front, {0.1, {}},
+                      scars);
                 ADD_FAILURE() << "it was split";
             } catch (const InputError& error) {
                 EXPECT_NE(std::string(error.what()).find("separate"), std::string::npos);
@@ -259,7 +261,8 @@ TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
     Mesh mesh = Mesh::build(test::mesh_families().back().data).mesh;
     const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
     CutFront front;
-    EXPECT_TRUE(split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1, {}})
+    Scars scars;
+    EXPECT_TRUE(split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1, {}}, scars)
                     .changes.is_empty());
 }
 
