@@ -187,7 +187,7 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
 }
 
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                                  Workers& workers, std::span<Vec3> forces) {
+                                  const Workers& workers) {
     if (!changed_blocks_.empty() || ranges_.size() != num_node_ranges(positions.size()))
         number_nodes(positions.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
@@ -201,17 +201,15 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
         places.back() = {};
         blocks_[b]->compute_forces(places, history, parts_[b]);
     });
-    workers.for_each(ranges_.size(), [&](std::size_t r) {
-        const std::size_t first = r * nodes_per_range;
-        const auto range = forces.subspan(first, std::min(nodes_per_range, forces.size() - first));
-        std::fill(range.begin(), range.end(), Vec3::Zero());
-        for (const Piece& piece : ranges_[r]) {
-            const auto nodes = blocks_[piece.block]->nodes();
-            const auto& part = parts_[piece.block];
-            for (std::size_t i = piece.begin; i < piece.end; ++i)
-                forces[nodes[i]] += part[i].vector();
-        }
-    });
+}
+
+void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const {
+    for (std::size_t n = range.begin; n < range.end; ++n) forces[n].setZero();
+    for (const Piece& piece : ranges_[range.number]) {
+        const auto nodes = blocks_[piece.block]->nodes();
+        const auto& part = parts_[piece.block];
+        for (std::size_t i = piece.begin; i < piece.end; ++i) forces[nodes[i]] += part[i].vector();
+    }
 }
 
 std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() const {

@@ -78,11 +78,14 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    Workers& workers, ViscousHistory& history);
 
-    /// Sets `forces` (N, by node id) to those of all elements at `positions` (m), with those of
-    /// viscosity as far as the history goes. A node's force is the sum of those of the blocks, in
-    /// ascending order: the same bits for any number of workers.
+    /// Computes the forces of each block at `positions` (m, by node id), with those of viscosity as
+    /// far as the history goes, for gather_forces.
     void compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                        Workers& workers, std::span<Vec3> forces);
+                        const Workers& workers);
+    /// Sets `forces` (N, by node id) to those last computed, for one range of nodes: a node's force
+    /// is the sum of those of the blocks, in ascending order. For different ranges at the same
+    /// time.
+    void gather_forces(NodeRange range, std::span<Vec3> forces) const;
 
     /// Adds the forces at the end of a step, N, by node id; see ElementBlock.
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const {

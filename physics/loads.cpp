@@ -2,7 +2,8 @@
 #include "physics/loads.h"
 
 #include <Eigen/Geometry>
-#include <array>
+#include <algorithm>
+#include <cassert>
 #include <map>
 
 namespace incise::physics {
@@ -17,84 +18,136 @@ bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
            !mesh.neighbor(f).is_valid();
 }
 
-/// Area vector of a face, outwards; for a quadrilateral that of its bilinear patch.
-Vec3 area_vector(const topology::Mesh& mesh, FaceId f, std::span<const Vec3> x) {
-    const auto at = [&](int p) -> const Vec3& { return x[mesh.face_corner(f, p).index()]; };
-    if (mesh.face_size(f) == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
+/// Area vector of a face that ends there, outwards; for a quadrilateral that of its bilinear patch.
+Vec3 area_vector(const PressedCorner& face, std::span<const Vec3> x) {
+    const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p]]; };
+    if (face.num_corners == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
     return 0.5 * (at(2) - at(0)).cross(at(3) - at(1));
 }
 
-void spread(const topology::Mesh& mesh, FaceId f, const Vec3& force, std::span<Vec3> forces) {
-    const int size = mesh.face_size(f);
-    for (int p = 0; p < size; ++p)
-        forces[mesh.face_corner(f, p).index()] += force / static_cast<double>(size);
+PressedCorner first_corner(const topology::Mesh& mesh, FaceId f) {
+    PressedCorner corner{0, static_cast<std::uint32_t>(mesh.face_size(f)), {}};
+    for (std::uint32_t p = 0; p < corner.num_corners; ++p)
+        corner.corners[p] =
+            static_cast<std::uint32_t>(mesh.face_corner(f, static_cast<int>(p)).index());
+    corner.node = corner.corners[0];
+    return corner;
 }
 
-struct Adder {
-    const LoadedBody& body;
-    double factor;
-    std::span<Vec3> forces;
+template <class Visit>
+void for_loaded(const FaceSet& faces, const topology::Mesh& mesh, Visit visit) {
+    for (const FaceSet::Member& member : faces.members())
+        if (!member.left_to.is_valid() && is_on_boundary(mesh, member.face)) visit(member.face);
+}
 
-    void operator()(const NodalLoad& load) const {
+/// Nodes with shares, in ascending order.
+class ShareSums {
+  public:
+    explicit ShareSums(std::size_t num_nodes) : sums_(num_nodes, 0.0) {}
+
+    void add(NodeId n, double share) { sums_[n.index()] += share; }
+    std::vector<NodeShare> shares() const {
+        std::vector<NodeShare> shares;
+        for (std::size_t n = 0; n < sums_.size(); ++n)
+            if (sums_[n] != 0.0) shares.push_back({static_cast<std::uint32_t>(n), sums_[n]});
+        return shares;
+    }
+
+  private:
+    std::vector<double> sums_;  // by node id
+};
+
+/// What the nodes have of a load, in its own order of summation: that of its members.
+struct ShareFinder {
+    const LoadedBody& body;
+
+    std::vector<NodeShare> operator()(const NodalLoad& load) const {
+        ShareSums sums(body.mesh.node_capacity());
         const auto& members = load.nodes.members();
         for (std::size_t i = 0; i < members.size(); ++i)
-            if (load.shares[i] > 0.0)
-                forces[members[i].node.index()] += factor * load.shares[i] * load.force;
+            if (load.shares[i] > 0.0) sums.add(members[i].node, load.shares[i]);
+        return sums.shares();
     }
-    void operator()(const TractionLoad& load) const {
-        for_loaded(load.faces, [&](FaceId f) {
-            const double area = area_vector(body.mesh, f, body.mesh.rest_positions()).norm();
-            spread(body.mesh, f, factor * area * load.traction, forces);
+    std::vector<NodeShare> operator()(const TractionLoad& load) const {
+        ShareSums sums(body.mesh.node_capacity());
+        for_loaded(load.faces, body.mesh, [&](FaceId f) {
+            const PressedCorner face = first_corner(body.mesh, f);
+            const double area = area_vector(face, body.mesh.rest_positions()).norm();
+            for (std::uint32_t p = 0; p < face.num_corners; ++p)
+                sums.add(NodeId(face.corners[p]), area / face.num_corners);
         });
+        return sums.shares();
     }
-    void operator()(const PressureLoad& load) const {
-        for_loaded(load.faces, [&](FaceId f) {
-            spread(body.mesh, f,
-                   -factor * load.pressure * area_vector(body.mesh, f, body.positions), forces);
-        });
-    }
-    void operator()(const BodyLoad& load) const {
+    std::vector<NodeShare> operator()(const BodyLoad& load) const {
+        ShareSums sums(body.mesh.node_capacity());
         for (const ElementId e : load.elements.members()) {
             if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
             const auto corners = body.mesh.corners(e);
             const double volume = body.elements.block_of(body.mesh, e).rest_volume(e);
             for (const NodeId n : corners)
-                forces[n.index()] +=
-                    factor * volume / static_cast<double>(corners.size()) * load.force;
+                sums.add(n, volume / static_cast<double>(corners.size()));
         }
+        return sums.shares();
     }
-
-    template <class Visit>
-    void for_loaded(const FaceSet& faces, Visit visit) const {
-        for (const FaceSet::Member& member : faces.members())
-            if (!member.left_to.is_valid() && is_on_boundary(body.mesh, member.face))
-                visit(member.face);
-    }
+    std::vector<NodeShare> operator()(const PressureLoad&) const { return {}; }
 };
 
-/// Tangents of one pressure load on one face.
-void visit_tangent(const topology::Mesh& mesh, FaceId f, double pressure, std::span<const Vec3> x,
+/// N for a share of one.
+struct ForcePerShare {
+    Vec3 operator()(const NodalLoad& load) const { return load.force; }
+    Vec3 operator()(const TractionLoad& load) const { return load.traction; }
+    Vec3 operator()(const BodyLoad& load) const { return load.force; }
+    Vec3 operator()(const PressureLoad&) const { return Vec3::Zero(); }
+};
+
+std::vector<PressedCorner> pressed_corners(const FaceSet& faces, const topology::Mesh& mesh) {
+    std::vector<PressedCorner> pressed;
+    for_loaded(faces, mesh, [&](FaceId f) {
+        PressedCorner corner = first_corner(mesh, f);
+        for (std::uint32_t p = 0; p < corner.num_corners; ++p) {
+            corner.node = corner.corners[p];
+            pressed.push_back(corner);
+        }
+    });
+    std::stable_sort(
+        pressed.begin(), pressed.end(),
+        [](const PressedCorner& a, const PressedCorner& b) { return a.node < b.node; });
+    return pressed;
+}
+
+/// Those of a list in ascending order of nodes that are of the range.
+template <class Entry>
+std::span<const Entry> entries_of(const std::vector<Entry>& entries, NodeRange range) {
+    const auto is_before = [](const Entry& entry, std::size_t node) { return entry.node < node; };
+    const auto begin = std::lower_bound(entries.begin(), entries.end(), range.begin, is_before);
+    return {begin, std::lower_bound(begin, entries.end(), range.end, is_before)};
+}
+
+/// Tangents of one pressure load on one face, found by the first of its corners.
+void visit_tangent(const PressedCorner& face, double pressure, std::span<const Vec3> x,
                    TangentSink& sink) {
-    const int size = mesh.face_size(f);
-    std::array<std::uint32_t, 4> nodes{};
-    for (int p = 0; p < size; ++p)
-        nodes[static_cast<std::size_t>(p)] =
-            static_cast<std::uint32_t>(mesh.face_corner(f, p).index());
-    const auto at = [&](int p) -> const Vec3& {
-        return x[nodes[static_cast<std::size_t>(p % size)]];
-    };
+    const std::size_t size = face.num_corners, num_rows = 3 * size;
+    const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p % size]]; };
     // With the area vector's derivative by corner p, v -> edge x v / 2, in all rows alike.
-    Eigen::MatrixXd K(3 * size, 3 * size);
-    for (int p = 0; p < size; ++p) {
+    constexpr int most = 12;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most> K(num_rows,
+                                                                                         num_rows);
+    for (std::size_t p = 0; p < size; ++p) {
         const Vec3 edge = size == 3 ? Vec3(at(p + 2) - at(p + 1)) : Vec3(at(p + 3) - at(p + 1));
         Eigen::Matrix3d by_corner;
         for (int c = 0; c < 3; ++c)
-            by_corner.col(c) = 0.5 * pressure / size * edge.cross(Vec3::Unit(c));
-        for (int row = 0; row < size; ++row) K.block<3, 3>(3 * row, 3 * p) = by_corner;
+            by_corner.col(c) =
+                0.5 * pressure / static_cast<double>(size) * edge.cross(Vec3::Unit(c));
+        for (std::size_t row = 0; row < size; ++row)
+            K.block<3, 3>(static_cast<Eigen::Index>(3 * row), static_cast<Eigen::Index>(3 * p)) =
+                by_corner;
     }
     K = (0.5 * (K + K.transpose())).eval();
-    sink.add(std::span(nodes).first(static_cast<std::size_t>(size)),
-             {K.data(), static_cast<std::size_t>(K.size())});
+    sink.add(std::span(face.corners).first(size), {K.data(), static_cast<std::size_t>(K.size())});
+}
+
+double factor_of(const Load& load, double time) {
+    return load.factor.is_empty() ? 1.0 : load.factor.at(time);
 }
 
 // Anew for every family of copies with a member among `touched`.
@@ -128,24 +181,49 @@ Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move
             for (const auto& member : nodal->nodes.members()) all.push_back(member.node);
             share(*nodal, body, all);
         }
+    update(body);
 }
 
-void Loads::add(const LoadedBody& body, double time, std::span<Vec3> forces) const {
-    for (const Load& load : loads_) {
-        const double factor = load.factor.is_empty() ? 1.0 : load.factor.at(time);
-        if (factor != 0.0) std::visit(Adder{body, factor, forces}, load.kind);
+void Loads::update(const LoadedBody& body) {
+    if (is_up_to_date_) return;
+    burdens_.clear();
+    for (const Load& load : loads_) burdens_.push_back(find_burden(load, body));
+    is_up_to_date_ = true;
+}
+
+Loads::Burden Loads::find_burden(const Load& load, const LoadedBody& body) {
+    Burden burden{std::visit(ShareFinder{body}, load.kind), {}};
+    if (const auto* pressure = std::get_if<PressureLoad>(&load.kind))
+        burden.pressed = pressed_corners(pressure->faces, body.mesh);
+    return burden;
+}
+
+void Loads::add(NodeRange range, std::span<const Vec3> positions, double time,
+                std::span<Vec3> forces) const {
+    assert(is_up_to_date_);
+    for (std::size_t i = 0; i < loads_.size(); ++i) {
+        const double factor = factor_of(loads_[i], time);
+        if (factor == 0.0) continue;
+        const Vec3 force = factor * std::visit(ForcePerShare{}, loads_[i].kind);
+        for (const NodeShare& entry : entries_of(burdens_[i].shares, range))
+            forces[entry.node] += entry.share * force;
+        const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
+        if (!load) continue;
+        const double pressure = factor * load->pressure;
+        for (const PressedCorner& corner : entries_of(burdens_[i].pressed, range))
+            forces[corner.node] -= pressure / corner.num_corners * area_vector(corner, positions);
     }
 }
 
-void Loads::visit_tangents(const LoadedBody& body, double time, TangentSink& sink) const {
-    for (const Load& load : loads_) {
-        const auto* pressure = std::get_if<PressureLoad>(&load.kind);
-        const double factor = load.factor.is_empty() ? 1.0 : load.factor.at(time);
-        if (!pressure || factor == 0.0) continue;
-        for (const FaceSet::Member& member : pressure->faces.members())
-            if (!member.left_to.is_valid() && is_on_boundary(body.mesh, member.face))
-                visit_tangent(body.mesh, member.face, factor * pressure->pressure, body.positions,
-                              sink);
+void Loads::visit_tangents(std::span<const Vec3> positions, double time, TangentSink& sink) const {
+    assert(is_up_to_date_);
+    for (std::size_t i = 0; i < loads_.size(); ++i) {
+        const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
+        const double factor = factor_of(loads_[i], time);
+        if (!load || factor == 0.0) continue;
+        for (const PressedCorner& corner : burdens_[i].pressed)
+            if (corner.node == corner.corners[0])
+                visit_tangent(corner, factor * load->pressure, positions, sink);
     }
 }
 
@@ -165,6 +243,7 @@ void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body,
         void operator()(BodyLoad& load) const { load.elements.apply(changes); }
     };
     for (Load& load : loads_) std::visit(Follower{changes, body, touched}, load.kind);
+    is_up_to_date_ = false;
 }
 
 }  // namespace incise::physics

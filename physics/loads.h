@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <variant>
@@ -52,8 +54,21 @@ struct Load {
 struct LoadedBody {
     const topology::Mesh& mesh;
     const ElementStore& elements;
-    std::span<const Vec3> positions;  ///< current, m, by node id
-    std::span<const double> masses;   ///< lumped, kg, by node id
+    std::span<const double> masses;  ///< lumped, kg, by node id
+};
+
+/// What one node has of all that a load acts on: a part of the members (nodal forces), m2
+/// (traction) or m3 (body forces).
+struct NodeShare {
+    std::uint32_t node;
+    double share;
+};
+
+/// A corner of a face under pressure, with all of the face's corners.
+struct PressedCorner {
+    std::uint32_t node;
+    std::uint32_t num_corners;  ///< 3 or 4
+    std::array<std::uint32_t, 4> corners;
 };
 
 /// All loads on a body.
@@ -61,13 +76,20 @@ class Loads {
   public:
     Loads(std::vector<Load> loads, const LoadedBody& body);
 
-    /// Adds the nodal forces (N, by node id) at `time`. Faces and elements that are gone, and
-    /// faces that have come to lie inside, carry nothing. Cost: proportional to the selections.
-    void add(const LoadedBody& body, double time, std::span<Vec3> forces) const;
+    /// Finds what nodes bear, if there were edits: before add and visit_tangents.
+    /// Cost: nothing without edits, else proportional to the selections and the nodes of the body.
+    void update(const LoadedBody& body);
+
+    /// Adds the forces (N, by node id) at `time` on the nodes of a range. Faces and elements that
+    /// are gone, and faces that have come to lie inside, carry nothing.
+    /// @param positions current, m, by node id
+    /// Cost: proportional to the loaded nodes there.
+    void add(NodeRange range, std::span<const Vec3> positions, double time,
+             std::span<Vec3> forces) const;
 
     /// Hands over the symmetric part of minus the derivative of the forces by the positions: of
     /// pressure, as the others do not depend on these.
-    void visit_tangents(const LoadedBody& body, double time, TangentSink& sink) const;
+    void visit_tangents(std::span<const Vec3> positions, double time, TangentSink& sink) const;
 
     /// Carries the selections through an edit that the body has followed: parts of loaded faces and
     /// elements are loaded as these were.
@@ -76,7 +98,16 @@ class Loads {
                std::span<const topology::NodeId> touched);
 
   private:
+    /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
+    struct Burden {
+        std::vector<NodeShare> shares;
+        std::vector<PressedCorner> pressed;
+    };
+    static Burden find_burden(const Load& load, const LoadedBody& body);
+
     std::vector<Load> loads_;
+    std::vector<Burden> burdens_;  // of each load
+    bool is_up_to_date_ = false;   // the burdens, with the mesh
 };
 
 }  // namespace incise::physics

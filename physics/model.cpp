@@ -36,8 +36,7 @@ Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surrounding
       masses_(mesh.node_capacity(), 0.0),
       supports_(mesh, std::move(surroundings.supports)),
       loads_({}, loaded_body()),
-      reactions_(supports_.size(), Vec3::Zero()),
-      reaction_moments_(supports_.size(), Vec3::Zero()) {
+      reactions_(supports_.size()) {
     resize(mesh.node_capacity());
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(std::move(surroundings.loads), loaded_body());
@@ -76,31 +75,46 @@ void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> vel
 }
 
 void Model::compute_forces(double time) {
-    elements_.compute_forces(positions_, history_, workers_, elastic_forces_);
-    outer_forces_at(positions_, time, outer_forces_);
+    loads_.update(loaded_body());
+    elements_.compute_forces(positions_, history_, workers_);
+    workers_.for_each_range(masses_.size(), [&](NodeRange range) {
+        elements_.gather_forces(range, elastic_forces_);
+        set_outer_forces(range, positions_, time, outer_forces_);
+    });
 }
 
 void Model::outer_forces_at(std::span<const Vec3> positions, double time,
                             std::span<Vec3> forces) const {
-    for (std::size_t n = 0; n < masses_.size(); ++n) forces[n] = masses_[n] * gravity_;
-    loads_.add({mesh_, elements_, positions, masses_}, time, forces);
+    workers_.for_each_range(
+        masses_.size(), [&](NodeRange range) { set_outer_forces(range, positions, time, forces); });
+}
+
+void Model::set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
+                             std::span<Vec3> forces) const {
+    for (std::size_t n = range.begin; n < range.end; ++n) forces[n] = masses_[n] * gravity_;
+    loads_.add(range, positions, time, forces);
 }
 
 void Model::integrate(double time, double dt) {
-    std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
-    std::fill(reaction_moments_.begin(), reaction_moments_.end(), Vec3::Zero());
-    if (!history_.is_empty()) previous_positions_ = positions_;
-    // Nodes with supports afterwards, as these sum up what they do to all of theirs.
-    step_sums_.assign(num_node_ranges(masses_.size()), {});
-    workers_.for_each(step_sums_.size(), [&](std::size_t r) {
-        const std::size_t end = std::min((r + 1) * nodes_per_range, masses_.size());
-        for (std::size_t n = r * nodes_per_range; n < end; ++n)
-            if (masses_[n] != 0.0 && !supports_.of_node(n)) move_node(n, time, dt, step_sums_[r]);
+    const std::size_t num_ranges = num_node_ranges(masses_.size());
+    step_sums_.assign(num_ranges, {});
+    range_reactions_.assign(num_ranges * supports_.size(), {});
+    if (!history_.is_empty()) previous_positions_.resize(positions_.size());
+    workers_.for_each_range(masses_.size(), [&](NodeRange range) {
+        StepSums sums;
+        const auto reactions =
+            std::span(range_reactions_).subspan(range.number * supports_.size(), supports_.size());
+        for (std::size_t n = range.begin; n < range.end; ++n) {
+            if (!history_.is_empty()) previous_positions_[n] = positions_[n];
+            if (masses_[n] != 0.0) move_node(n, time, dt, sums, reactions);
+        }
+        step_sums_[range.number] = sums;
     });
     StepSums sums;
-    for (std::size_t n = 0; n < masses_.size() && supports_.size() > 0; ++n)
-        if (masses_[n] != 0.0 && supports_.of_node(n)) move_node(n, time, dt, sums);
     for (const StepSums& range : step_sums_) sums += range;
+    reactions_.assign(supports_.size(), {});
+    for (std::size_t i = 0; i < range_reactions_.size(); ++i)
+        reactions_[i % supports_.size()] += range_reactions_[i];
     external_work_ += sums.work;
     dissipated_energy_ += sums.dissipated_power * dt;
     largest_move_ = std::sqrt(sums.largest_square) * dt;
@@ -110,30 +124,14 @@ void Model::integrate(double time, double dt) {
             elements_.advance(previous_positions_, positions_, dt, workers_, history_);
 }
 
-void Model::move_node(std::size_t n, double time, double dt, StepSums& sums) {
+void Model::move_node(std::size_t n, double time, double dt, StepSums& sums,
+                      std::span<Reaction> reactions) {
     const double mass = masses_[n], slowing = 1.0 / (1.0 + damping_ * dt);
     const Vec3 x = positions_[n], v = velocities_[n];
     const Vec3 force = elastic_forces_[n] + outer_forces_[n];
     Vec3 v_new = slowing * (v + dt / mass * force);
     Vec3 x_new = x + dt * v_new;
-    if (const auto* support_of = supports_.of_node(n)) {
-        supports_.place(*support_of, mesh_.rest_positions()[n], time + dt, x_new);
-        for (int c = 0; c < 3; ++c) {
-            const int s = (*support_of)[static_cast<std::size_t>(c)];
-            if (s < 0) continue;
-            v_new[c] = (x_new[c] - x[c]) / dt;
-            const double reaction =
-                mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
-            const auto support = static_cast<std::size_t>(s);
-            reactions_[support][c] += reaction;
-            reaction_moments_[support] +=
-                (x_new - supports_.point(support)).cross(reaction * Vec3::Unit(c));
-            // At the mean velocity: a support that sets off at once gives the node just the
-            // kinetic energy that it then has.
-            sums.work +=
-                reaction * (x_new[c] - x[c]) - 0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
-        }
-    }
+    if (supports_.of_node(n)) support_node(n, time, dt, force, x_new, v_new, sums, reactions);
     const double square = v_new.squaredNorm();
     sums.is_finite = sums.is_finite && std::isfinite(square);
     sums.largest_square = std::max(sums.largest_square, square);
@@ -143,9 +141,35 @@ void Model::move_node(std::size_t n, double time, double dt, StepSums& sums) {
     velocities_[n] = v_new;
 }
 
+void Model::support_node(std::size_t n, double time, double dt, const Vec3& force, Vec3& x_new,
+                         Vec3& v_new, StepSums& sums, std::span<Reaction> reactions) const {
+    const auto& support_of = *supports_.of_node(n);
+    const double mass = masses_[n];
+    const Vec3 &x = positions_[n], &v = velocities_[n];
+    supports_.place(support_of, mesh_.rest_positions()[n], time + dt, x_new);
+    for (int c = 0; c < 3; ++c) {
+        const int s = support_of[static_cast<std::size_t>(c)];
+        if (s < 0) continue;
+        v_new[c] = (x_new[c] - x[c]) / dt;
+        const double reaction = mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
+        add_reaction(s, c, reaction, x_new, reactions);
+        // At the mean velocity: a support that sets off at once gives the node just the kinetic
+        // energy that it then has.
+        sums.work +=
+            reaction * (x_new[c] - x[c]) - 0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
+    }
+}
+
+void Model::add_reaction(int support, int component, double force, const Vec3& x,
+                         std::span<Reaction> reactions) const {
+    const auto s = static_cast<std::size_t>(support);
+    reactions[s].force[component] += force;
+    reactions[s].moment += (x - supports_.point(s)).cross(force * Vec3::Unit(component));
+}
+
 void Model::begin_step() {
-    std::fill(reactions_.begin(), reactions_.end(), Vec3::Zero());
-    std::fill(reaction_moments_.begin(), reaction_moments_.end(), Vec3::Zero());
+    loads_.update(loaded_body());
+    reactions_.assign(supports_.size(), {});
     largest_move_ = 0.0;
 }
 
@@ -161,10 +185,7 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
             for (int c = 0; c < 3; ++c) {
                 const int s = (*support_of)[static_cast<std::size_t>(c)];
                 if (s < 0) continue;
-                const auto support = static_cast<std::size_t>(s);
-                reactions_[support][c] += reactions[n][c];
-                reaction_moments_[support] += (positions[n] - supports_.point(support))
-                                                  .cross(reactions[n][c] * Vec3::Unit(c));
+                add_reaction(s, c, reactions[n][c], positions[n], reactions_);
             }
     }
     largest_move_ = largest_move + std::sqrt(largest_square);
@@ -361,17 +382,17 @@ void Model::apply(const ChangeSet& changes) {
 void Model::save(topology::ArchiveWriter& ar) const {
     const auto history = history_.values();
     ar(positions_, velocities_, std::vector<double>(history.begin(), history.end()), reactions_,
-       reaction_moments_, external_work_, dissipated_energy_, largest_move_);
+       external_work_, dissipated_energy_, largest_move_);
 }
 
 void Model::restore(topology::ArchiveReader& ar, double time) {
-    std::vector<Vec3> positions, velocities, reactions, moments;
+    std::vector<Vec3> positions, velocities;
     std::vector<double> history;
-    ar(positions, velocities, history, reactions, moments, external_work_, dissipated_energy_,
+    std::vector<Reaction> reactions;
+    ar(positions, velocities, history, reactions, external_work_, dissipated_energy_,
        largest_move_);
     if (positions.size() != positions_.size() || velocities.size() != velocities_.size() ||
-        history.size() != history_.values().size() || reactions.size() != reactions_.size() ||
-        moments.size() != reaction_moments_.size())
+        history.size() != history_.values().size() || reactions.size() != reactions_.size())
         throw InputError("the state is that of another body");
     const auto is_finite = [](const Vec3& v) { return v.allFinite(); };
     if (!std::all_of(positions.begin(), positions.end(), is_finite) ||
@@ -382,7 +403,6 @@ void Model::restore(topology::ArchiveReader& ar, double time) {
     velocities_ = std::move(velocities);
     history_.set_values(history);
     reactions_ = std::move(reactions);
-    reaction_moments_ = std::move(moments);
     compute_forces(time);
 }
 

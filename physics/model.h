@@ -122,12 +122,13 @@ class Model {
     double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
     std::span<const Vec3> outer_forces() const { return outer_forces_; }  ///< N, loads and gravity
     /// Sets `forces` (N, by node id) to loads and gravity at other positions (m) and `time`.
+    /// @pre compute_forces or begin_step was called since the last edit
     void outer_forces_at(std::span<const Vec3> positions, double time,
                          std::span<Vec3> forces) const;
-    /// See Loads::visit_tangents.
+    /// See Loads::visit_tangents; @pre likewise.
     void visit_load_tangents(std::span<const Vec3> positions, double time,
                              TangentSink& sink) const {
-        loads_.visit_tangents({mesh_, elements_, positions, masses_}, time, sink);
+        loads_.visit_tangents(positions, time, sink);
     }
     /// J; of viscous elements that of the long-time moduli.
     double elastic_energy() const;
@@ -176,9 +177,9 @@ class Model {
     std::size_t num_supports() const { return supports_.size(); }
     const std::string& support_name(std::size_t i) const { return supports_.name(i); }
     /// Force of support `i` on the body during the last step, N.
-    const Vec3& reaction(std::size_t i) const { return reactions_[i]; }
+    const Vec3& reaction(std::size_t i) const { return reactions_[i].force; }
     /// Moment of that force about the support's point, N m.
-    const Vec3& reaction_moment(std::size_t i) const { return reaction_moments_[i]; }
+    const Vec3& reaction_moment(std::size_t i) const { return reactions_[i].moment; }
 
     const topology::Mesh& mesh() const { return mesh_; }
 
@@ -188,6 +189,18 @@ class Model {
     struct Merge {
         NodeId survivor;
         Vec3 position_before, velocity_before, position_after, velocity_after;
+    };
+
+    /// Force (N) and moment about its point (N m) of a support.
+    struct Reaction {
+        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+
+        Reaction& operator+=(const Reaction& o) {
+            force += o.force;
+            moment += o.moment;
+            return *this;
+        }
+        static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
     };
 
     /// What a step adds up over the nodes of a range.
@@ -203,10 +216,22 @@ class Model {
             return *this;
         }
     };
-    /// Integrates one node; of one without supports touches nothing else.
-    void move_node(std::size_t n, double time, double dt, StepSums& sums);
+    /// Integrates one node and touches no other.
+    /// @param reactions of all supports; added to
+    void move_node(std::size_t n, double time, double dt, StepSums& sums,
+                   std::span<Reaction> reactions);
+    /// Leads the supported components of node `n` from x and v to where they have to be at
+    /// time + dt.
+    /// @param force N, on the node without the supports
+    void support_node(std::size_t n, double time, double dt, const Vec3& force, Vec3& x_new,
+                      Vec3& v_new, StepSums& sums, std::span<Reaction> reactions) const;
+    /// Adds what a support does to a component of a node at x, N, to its reaction.
+    void add_reaction(int support, int component, double force, const Vec3& x,
+                      std::span<Reaction> reactions) const;
+    void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
+                          std::span<Vec3> forces) const;
 
-    LoadedBody loaded_body() const { return {mesh_, elements_, positions_, masses_}; }
+    LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
     void carry_state(const topology::ChangeSet& changes);
@@ -232,12 +257,13 @@ class Model {
     StableStep stable_step_;
     Supports supports_;
     Loads loads_;
-    std::vector<Vec3> reactions_, reaction_moments_;
+    std::vector<Reaction> reactions_;  // of each support
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
-    std::map<NodeId, Merge> merges_;        // by the node that was absorbed
-    std::vector<StepSums> step_sums_;       // scratch, by range of nodes
-    std::vector<ElementId> star_;           // scratch
-    std::vector<Vec3> previous_positions_;  // scratch, of viscous bodies only
+    std::map<NodeId, Merge> merges_;         // by the node that was absorbed
+    std::vector<StepSums> step_sums_;        // scratch, by range of nodes
+    std::vector<Reaction> range_reactions_;  // scratch, of all supports by range of nodes
+    std::vector<ElementId> star_;            // scratch
+    std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
 };
 
 }  // namespace incise::physics

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <memory>
@@ -17,6 +18,11 @@ inline constexpr std::size_t nodes_per_range = 512;
 inline std::size_t num_node_ranges(std::size_t num_nodes) {
     return (num_nodes + nodes_per_range - 1) / nodes_per_range;
 }
+
+/// Ids from `begin` to before `end`.
+struct NodeRange {
+    std::size_t number, begin, end;
+};
 
 class Workers {
   public:
@@ -41,6 +47,15 @@ class Workers {
     /// to be worth it; returns when all are done. The first exception thrown comes out.
     /// Takes no memory but what TBB keeps of its tasks.
     void for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const;
+
+    /// Likewise work(range) for each range of so many nodes.
+    template <class Work>
+    void for_each_range(std::size_t num_nodes, Work work) const {
+        for_each(num_node_ranges(num_nodes), [&](std::size_t r) {
+            const std::size_t begin = r * nodes_per_range;
+            work(NodeRange{r, begin, std::min(begin + nodes_per_range, num_nodes)});
+        });
+    }
 
   private:
     struct Arena;
