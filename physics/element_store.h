@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -92,16 +94,20 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
-    /// compute(block) of each block, in ascending order: computed at the same time, and so to be
-    /// added up in the same order whatever the number of workers.
-    /// @param none  in the places where there is no block
-    template <class Value, class Compute>
-    std::vector<Value> of_blocks(const Workers& workers, const Value& none, Compute compute) const {
-        std::vector<Value> values(blocks_.size(), none);
-        workers.for_each(blocks_.size(), [&](std::size_t b) {
-            if (blocks_[b]) values[b] = compute(*blocks_[b]);
-        });
-        return values;
+    /// add(compute(block)) for each block in ascending order: computed at the same time, and so
+    /// added up in the same order whatever the number of workers. Takes no memory.
+    template <class Compute, class Add>
+    void add_up_blocks(const Workers& workers, Compute compute, Add add) const {
+        constexpr std::size_t at_once = 256;
+        std::array<decltype(compute(*blocks_[0])), at_once> values;
+        for (std::size_t first = 0; first < blocks_.size(); first += at_once) {
+            const std::size_t count = std::min(at_once, blocks_.size() - first);
+            workers.for_each(count, [&](std::size_t i) {
+                if (const auto& block = blocks_[first + i]) values[i] = compute(*block);
+            });
+            for (std::size_t i = 0; i < count; ++i)
+                if (blocks_[first + i]) add(values[i]);
+        }
     }
 
     /// Calls visit(block) for each block in ascending order.

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "physics/model.h"
 #include "physics/sum.h"
@@ -34,12 +33,6 @@ Vec3 value_of(const std::array<Sum, 3>& sums) {
     return {sums[0].value(), sums[1].value(), sums[2].value()};
 }
 
-double value_of(const std::vector<Sum>& parts) {
-    Sum sum;
-    for (const Sum& part : parts) sum += part;
-    return sum.value();
-}
-
 }  // namespace
 
 Totals Model::totals() const {
@@ -68,8 +61,11 @@ Totals Model::totals() const {
 
     Totals t;
     t.mass = sums.mass.value();
-    t.rest_volume = value_of(elements_.of_blocks(
-        workers_, Sum(), [](const ElementBlock& block) { return block.rest_volume(); }));
+    Sum rest_volume;
+    elements_.add_up_blocks(
+        workers_, [](const ElementBlock& block) { return block.rest_volume(); },
+        [&](const Sum& of_block) { rest_volume += of_block; });
+    t.rest_volume = rest_volume.value();
     t.kinetic_energy = sums.kinetic_energy.value();
     t.elastic_energy = elastic_energy();
     t.gravity_energy = sums.gravity_energy.value();
@@ -80,9 +76,11 @@ Totals Model::totals() const {
 }
 
 double Model::elastic_energy() const {
-    return value_of(elements_.of_blocks(workers_, Sum(), [&](const ElementBlock& block) {
-        return block.elastic_energy(positions_);
-    }));
+    Sum energy;
+    elements_.add_up_blocks(
+        workers_, [&](const ElementBlock& block) { return block.elastic_energy(positions_); },
+        [&](const Sum& of_block) { energy += of_block; });
+    return energy.value();
 }
 
 double Model::stiffness_energy() const {
@@ -92,12 +90,11 @@ double Model::stiffness_energy() const {
 }
 
 double Model::min_volume_ratio() const {
-    const double none = std::numeric_limits<double>::infinity();
-    const auto of_blocks = elements_.of_blocks(workers_, none, [&](const ElementBlock& block) {
-        return block.min_volume_ratio(positions_);
-    });
-    return std::accumulate(of_blocks.begin(), of_blocks.end(), none,
-                           [](double a, double b) { return std::min(a, b); });
+    double lowest = std::numeric_limits<double>::infinity();
+    elements_.add_up_blocks(
+        workers_, [&](const ElementBlock& block) { return block.min_volume_ratio(positions_); },
+        [&](double of_block) { lowest = std::min(lowest, of_block); });
+    return lowest;
 }
 
 double Model::volume_change() const {

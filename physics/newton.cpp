@@ -37,9 +37,8 @@ void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec
 
 }  // namespace
 
-/// At a state: what is out of balance, by row of the tangent, and how large it all is.
+/// At a state: how much is out of balance, and how large it all is.
 struct NewtonSolver::Forces {
-    Eigen::VectorXd net;
     double imbalance = 0.0, scale = 0.0;
 };
 
@@ -60,7 +59,7 @@ void NewtonSolver::prepare(const Model& model) {
         for (const auto& [node, component] : piece.pins)
             is_free_[node.index()][static_cast<std::size_t>(component)] = false;
     tangent_.set_pattern(mesh, is_free_);
-    for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_})
+    for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_, &increments_})
         scratch->assign(mesh.node_capacity(), Vec3::Zero());
     num_edits_ = model.num_edits();
 }
@@ -90,8 +89,7 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
     std::fill(elastic_.begin(), elastic_.end(), Vec3::Zero());
     model.elements().add_forces({x, model.history(), problem.dt}, elastic_);
     model.outer_forces_at(x, problem.time, outer_);
-    Forces forces;
-    forces.net.setZero(static_cast<Eigen::Index>(tangent_.num_unknowns()));
+    net_.setZero(static_cast<Eigen::Index>(tangent_.num_unknowns()));
     double elastic = 0.0, outer = 0.0, inertial = 0.0;
     for (std::size_t n = 0; n < x.size(); ++n) {
         const double mass = model.masses()[n];
@@ -106,11 +104,9 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
         }
         if (!problem.holding.empty()) net += problem.holding[n];
         for (int c = 0; c < 3; ++c)
-            if (const auto row = tangent_.row_of(n, c); row >= 0) forces.net[row] = net[c];
+            if (const auto row = tangent_.row_of(n, c); row >= 0) net_[row] = net[c];
     }
-    forces.imbalance = forces.net.norm();
-    forces.scale = std::sqrt(elastic) + std::sqrt(outer) + std::sqrt(inertial);
-    return forces;
+    return {net_.norm(), std::sqrt(elastic) + std::sqrt(outer) + std::sqrt(inertial)};
 }
 
 void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
@@ -174,23 +170,26 @@ double NewtonSolver::work_of_loads(const Model& model, const StepProblem& proble
     return work.value();
 }
 
-NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
-                                 std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
-    const double floor = rounding * model.stiffness_energy() / model.size();
-    // Where supports go; the first iteration takes the rest of the body along.
-    std::vector<Vec3> increments(x.size(), Vec3::Zero());
+bool NewtonSolver::find_increments(const Model& model, double time, const std::vector<Vec3>& x) {
+    increments_.assign(x.size(), Vec3::Zero());
     bool supports_move = false;
     for (std::size_t n = 0; n < x.size(); ++n)
         if (const auto* support_of = model.supports().of_node(n);
             support_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.supports().place(*support_of, model.mesh().rest_positions()[n], problem.time,
-                                   target);
-            increments[n] = target - x[n];
-            supports_move = supports_move || !increments[n].isZero(0.0);
+            model.supports().place(*support_of, model.mesh().rest_positions()[n], time, target);
+            increments_[n] = target - x[n];
+            supports_move = supports_move || !increments_[n].isZero(0.0);
         }
+    for (const FreePiece& piece : free_pieces_) follow_supports(piece, model, increments_);
+    return supports_move;
+}
 
-    for (const FreePiece& piece : free_pieces_) follow_supports(piece, model, increments);
+NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
+                                 std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
+    const double floor = rounding * model.stiffness_energy() / model.size();
+    // The first iteration takes the rest of the body along.
+    bool supports_move = find_increments(model, problem.time, x);
 
     NewtonReport report;
     Forces forces = evaluate(model, problem, x);
@@ -209,19 +208,20 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
         last_imbalance = supports_move ? std::numeric_limits<double>::infinity() : forces.imbalance;
 
         factorise(model, problem, x,
-                  supports_move ? std::span<const Vec3>(increments) : std::span<const Vec3>());
-        const Eigen::VectorXd way = tangent_.solve(forces.net + tangent_.load());
+                  supports_move ? std::span<const Vec3>(increments_) : std::span<const Vec3>());
+        way_ = net_ + tangent_.load();
+        tangent_.solve(way_);
         const auto go = [&](double share) {
             for (std::size_t n = 0; n < x.size(); ++n) {
                 trial_[n] = x[n];
                 for (int c = 0; c < 3; ++c)
                     if (const auto row = tangent_.row_of(n, c); row >= 0)
-                        trial_[n][c] += share * way[row];
+                        trial_[n][c] += share * way_[row];
             }
         };
         if (supports_move) {
             go(1.0);
-            for (std::size_t n = 0; n < x.size(); ++n) x[n] = trial_[n] + increments[n];
+            for (std::size_t n = 0; n < x.size(); ++n) x[n] = trial_[n] + increments_[n];
             supports_move = false;
             forces = evaluate(model, problem, x);
             continue;
@@ -229,7 +229,7 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
 
         // Down in energy, as far as rounding lets see; the first trial nearly always does.
         constexpr double enough = 1e-4, shortest = 1e-6;
-        const double slope = -forces.net.dot(way);
+        const double slope = -net_.dot(way_);
         const double start = potential(model, problem, x);
         double share = 1.0;
         for (; share > shortest; share *= 0.5) {

@@ -63,7 +63,10 @@ class NewtonSolver {
   private:
     struct Forces;
     void prepare(const Model& model);
+    /// Sets net_ to what is out of balance at x, and elastic_ and outer_ to the forces there.
     Forces evaluate(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x);
+    /// Sets increments_ to where supports go from x; whether one does.
+    bool find_increments(const Model& model, double time, const std::vector<Vec3>& x);
     void assemble(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x,
                   TangentKind kind, std::span<const Vec3> increments);
     void factorise(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x,
@@ -78,7 +81,8 @@ class NewtonSolver {
     std::vector<std::array<bool, 3>> is_free_;
     std::vector<FreePiece> free_pieces_;
     TangentMatrix tangent_;
-    std::vector<Vec3> elastic_, outer_, middle_, trial_;  // scratch, by node id
+    Eigen::VectorXd net_, way_;  // scratch, by row of the tangent
+    std::vector<Vec3> elastic_, outer_, middle_, trial_, increments_;  // scratch, by node id
 };
 
 }  // namespace incise::physics

@@ -76,9 +76,14 @@ void Supports::index(const topology::Mesh& mesh, NodeId n) {
 
 void Supports::place(const std::array<int, 3>& support_of, const Vec3& X, double time,
                      Vec3& x) const {
+    int last = -1;
+    Vec3 target = X;
     for (int c = 0; c < 3; ++c) {
         const int s = support_of[static_cast<std::size_t>(c)];
-        if (s >= 0) x[c] = supports_[static_cast<std::size_t>(s)].target(X, time)[c];
+        if (s < 0) continue;
+        if (s != last) target = supports_[static_cast<std::size_t>(s)].target(X, time);
+        last = s;
+        x[c] = target[c];
     }
 }
 

@@ -16,15 +16,17 @@ namespace incise::physics {
 
 /// Symmetric and sparse, over the components of positions that are free. Memory: about 1 kB a node
 /// of tetrahedra, and some times that for the factor. Sums run in the order of elements: the same
-/// bits for the same body.
+/// bits for the same body. Rows stand in the order of elimination, so that the factor is made of
+/// the matrix as it is, without a copy of it.
 class TangentMatrix final : public TangentSink {
   public:
     /// Where it has entries: between free components of nodes of one element. The order of
-    /// elimination follows (approximate minimum degree).
+    /// elimination follows: that of nodes by approximate minimum degree, and the components of a
+    /// node stand together, as they have the same neighbours.
     /// @param is_free by node id; of living nodes
     void set_pattern(const topology::Mesh& mesh, std::span<const std::array<bool, 3>> is_free);
 
-    std::size_t num_unknowns() const { return static_cast<std::size_t>(lower_.rows()); }
+    std::size_t num_unknowns() const { return static_cast<std::size_t>(upper_.rows()); }
     /// The row of a component; -1 if it is not free.
     std::int32_t row_of(std::size_t node, int component) const {
         return rows_[node][static_cast<std::size_t>(component)];
@@ -39,14 +41,15 @@ class TangentMatrix final : public TangentSink {
     /// Minus the tangent times the increments, N, by row.
     const Eigen::VectorXd& load() const { return load_; }
 
-    /// False, and no factor, if it is not positive definite.
+    /// False, and no factor, if it is not positive definite. Takes memory for no longer than it
+    /// runs: 12 bytes an unknown, and up to 16 more in bodies of more than some 16,000 unknowns.
     bool factorise();
+    /// Puts the solution in the place of the right side.
     /// @pre factorise() was true
-    Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
-        if (num_unknowns() == 0) return right;
-        return factor_.solve(right);
+    void solve(Eigen::VectorXd& side) const {
+        if (num_unknowns() > 0) side = factor_.solve(side);
     }
-    double largest_diagonal() const { return lower_.diagonal().maxCoeff(); }
+    double largest_diagonal() const { return upper_.diagonal().maxCoeff(); }
     /// Adds `value` to the whole diagonal, N/m.
     void shift(double value);
 
@@ -54,8 +57,8 @@ class TangentMatrix final : public TangentSink {
     using Sparse = Eigen::SparseMatrix<double>;
 
     std::vector<std::array<std::int32_t, 3>> rows_;  // by node id
-    Sparse lower_;
-    Eigen::SimplicialLDLT<Sparse, Eigen::Lower> factor_;
+    Sparse upper_;
+    Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<std::int32_t>> factor_;
     std::span<const Vec3> increments_;
     Eigen::VectorXd load_;
 };
