@@ -184,9 +184,9 @@ struct Lanes {
         const Bits shifted = exponent + std::bit_cast<Bit>(whole_number_shift);
         const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - whole_number_shift;
         const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
-        Lanes tail = 1.0 / Format::log_terms[0];
-        for (std::size_t i = 1; i < Format::log_terms.size(); ++i)
-            tail = tail * z + 1.0 / Format::log_terms[i];
+        Lanes tail = log_coefficients[0];
+        for (std::size_t i = 1; i < log_coefficients.size(); ++i)
+            tail = tail * z + log_coefficients[i];
         const Lanes result =
             k * Format::ln2_high + (2.0 * s + (2.0 * s * z * tail + k * Format::ln2_low));
         const Bits is_normal = (bits >= unit) & (bits < (2 * Format::bias + 1) * unit);
@@ -236,6 +236,12 @@ struct Lanes {
     /// without an instruction for that.
     static constexpr Number whole_number_shift =
         static_cast<Number>(std::int64_t{3} << (Format::mantissa_bits - 1));
+    // As constants: GCC leaves the divisions in the loop.
+    static constexpr auto log_coefficients = [] {
+        auto all = Format::log_terms;
+        for (double& x : all) x = 1.0 / x;
+        return all;
+    }();
     static constexpr std::array<double, Format::exp_degree + 1> inverse_factorials = [] {
         std::array<double, Format::exp_degree + 1> all{1.0};
         double factorial = 1.0;
