@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
+#include <string>
+
 #include "bodies.h"
 
 namespace incise::bench {
@@ -42,6 +44,27 @@ void step(benchmark::State& state) {
     report(state, mesh.num_elements());
 }
 BENCHMARK(step)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000, 1'000'000}});
+
+/// A step of a body whose stress has a memory of so many terms, and its elastic one to compare.
+void viscous_step(benchmark::State& state) {
+    const topology::Mesh mesh = make_cube(state.range(1));
+    auto table = make_material(laws[1]);
+    if (state.range(2) != 0) table.precision = physics::Precision::single_precision;
+    auto& links = std::get<physics::HyperElasticLinks>(table.materials[0].method);
+    for (std::int64_t i = 0; i < state.range(0); ++i)
+        links.prony.push_back({0.3 / static_cast<double>(i + 1), 0.1 * static_cast<double>(i + 1)});
+    physics::Model model(mesh, table,
+                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
+    const double dt = 0.5 * model.stable_step();
+    for (auto _ : state) {
+        model.integrate(0.0, dt);
+        model.compute_forces(0.0);
+    }
+    report(state, mesh.num_elements());
+    state.SetLabel(std::to_string(state.range(0)) + " terms, " +
+                   (state.range(2) != 0 ? "single" : "double") + " precision");
+}
+BENCHMARK(viscous_step)->ArgsProduct({{0, 1, 2}, {20'000, 100'000}, {0, 1}});
 
 }  // namespace
 }  // namespace incise::bench
