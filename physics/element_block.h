@@ -66,7 +66,7 @@ class ElementBlock {
     std::span<const std::uint32_t> nodes() const { return nodes_; }
 
     /// Brings nodes(), and what goes by local numbers, up to the elements as they are: after
-    /// insert, replace and erase, before forces are asked for.
+    /// insert, replace and erase, before forces are asked for or the history advances.
     /// @param local_numbers scratch, by node id; `unnumbered` before and after
     void number_nodes(std::span<std::uint16_t> local_numbers);
 
@@ -83,9 +83,13 @@ class ElementBlock {
     /// Hands over the derivatives of minus these forces, in the order of elements.
     virtual void visit_tangents(const EndOfStep& end, TangentKind kind,
                                 TangentSink& sink) const = 0;
+    /// Whether its elements remember anything.
+    virtual bool has_history() const = 0;
     /// Brings the history of the elements from the positions `before` to `positions`, dt later
-    /// (s). Returns the energy that viscosity took, J; 0 if the material has none.
-    virtual double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
+    /// (s); these as for compute_forces. Returns the energy that viscosity took, J; 0 if the
+    /// material has none.
+    virtual double advance(std::span<const LocalVector> before,
+                           std::span<const LocalVector> positions, double dt,
                            ViscousHistory& history) = 0;
     /// Sum of the elements' elastic energies, J.
     virtual Sum elastic_energy(std::span<const Vec3> positions) const = 0;

@@ -160,6 +160,7 @@ void ElementStore::note_change(std::size_t block) {
 }
 
 void ElementStore::number_nodes(std::size_t num_nodes) {
+    if (changed_blocks_.empty() && ranges_.size() == num_node_ranges(num_nodes)) return;
     std::sort(changed_blocks_.begin(), changed_blocks_.end());
     const auto last = std::unique(changed_blocks_.begin(), changed_blocks_.end());
     changed_blocks_.erase(last, changed_blocks_.end());
@@ -186,20 +187,25 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
     changed_blocks_.clear();
 }
 
+std::span<const LocalVector> ElementStore::local_positions(const ElementBlock& block,
+                                                           std::span<const Vec3> positions,
+                                                           std::vector<LocalVector>& places) {
+    const auto nodes = block.nodes();
+    places.reserve(chunk_size * topology::max_corners + 1);  // of any block
+    places.resize(nodes.size() + 1);
+    for (std::size_t i = 0; i < nodes.size(); ++i) places[i] = positions[nodes[i]];
+    places.back() = {};
+    return places;
+}
+
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   const Workers& workers) {
-    if (!changed_blocks_.empty() || ranges_.size() != num_node_ranges(positions.size()))
-        number_nodes(positions.size());
+    number_nodes(positions.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
-        // For any block, so that a thread takes its memory when it first works, and never again.
         thread_local std::vector<LocalVector> places;
-        places.reserve(chunk_size * topology::max_corners + 1);
-        const auto nodes = blocks_[b]->nodes();
-        places.resize(nodes.size() + 1);
-        for (std::size_t i = 0; i < nodes.size(); ++i) places[i] = positions[nodes[i]];
-        places.back() = {};
-        blocks_[b]->compute_forces(places, history, parts_[b]);
+        blocks_[b]->compute_forces(local_positions(*blocks_[b], positions, places), history,
+                                   parts_[b]);
     });
 }
 
@@ -229,9 +235,14 @@ std::size_t ElementStore::history_size() const {
 
 double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3> positions,
                              double dt, Workers& workers, ViscousHistory& history) {
+    number_nodes(positions.size());
     energies_taken_.assign(blocks_.size(), 0.0);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (blocks_[b]) energies_taken_[b] = blocks_[b]->advance(before, positions, dt, history);
+        if (!blocks_[b] || !blocks_[b]->has_history()) return;
+        thread_local std::vector<LocalVector> old_places, places;
+        energies_taken_[b] =
+            blocks_[b]->advance(local_positions(*blocks_[b], before, old_places),
+                                local_positions(*blocks_[b], positions, places), dt, history);
     });
     return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }

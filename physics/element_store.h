@@ -129,9 +129,14 @@ class ElementStore {
         std::size_t block, begin, end;
     };
 
-    /// Brings the pieces of the blocks that have changed up to date.
+    /// Brings the pieces of the blocks that have changed up to date, if any have.
     void number_nodes(std::size_t num_nodes);
     void note_change(std::size_t block);
+    /// Those of the block's nodes by local number, and a spare one, in `places`: the caller's
+    /// thread keeps that from block to block, so that it takes memory once and never again.
+    static std::span<const LocalVector> local_positions(const ElementBlock& block,
+                                                        std::span<const Vec3> positions,
+                                                        std::vector<LocalVector>& places);
     /// The block, or a copy that takes its place if somebody shares it.
     ElementBlock& editable(std::size_t block);
 

@@ -24,10 +24,18 @@ concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, 
 };
 
 /// A kernel with a fast twin, `Kernel::Lanes`, that does the elastic forces of all elements of a
-/// block: HemlLanes. What the history adds to them comes from the kernel itself.
+/// block: HemlLanes. What a history adds to them comes from the kernel itself or, if it has any,
+/// its MemoryLanes.
 template <class Kernel>
 concept HasLanes = requires {
     typename Kernel::Lanes;
+};
+
+/// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
+/// forces for all elements of a block: ViscousLanes.
+template <class Kernel>
+concept HasMemoryLanes = requires {
+    typename Kernel::MemoryLanes;
 };
 
 /// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
@@ -50,11 +58,11 @@ class KernelBlock final : public ElementBlock {
         assert(is_numbered_ && forces.size() > nodes_.size());
         std::fill(forces.begin(), forces.end(), LocalVector{});
         if constexpr (HasLanes<Kernel>) lanes_.add_forces(kernel_, positions.data(), forces.data());
-        if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
+        if constexpr (HasMemoryLanes<Kernel>)
+            memory_lanes_.add_forces(kernel_, history, positions.data(), forces.data());
+        else if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
             for (std::size_t s = 0; s < elements_.size(); ++s) {
-                Corners x;
-                for (std::size_t k = 0; k < num_corners; ++k)
-                    x[k] = positions[local_nodes_[s][k]].vector();
+                const Corners x = gather(s, positions);
                 Corners f;
                 if constexpr (HasHistory<Kernel>)
                     f = kernel_.forces_of_memory(row(s).rest, x, history.of(elements_[s]));
@@ -96,15 +104,24 @@ class KernelBlock final : public ElementBlock {
         }
     }
 
-    double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
-                   ViscousHistory& history) override {
+    bool has_history() const override { return HasHistory<Kernel>; }
+
+    double advance(std::span<const LocalVector> before, std::span<const LocalVector> positions,
+                   double dt, ViscousHistory& history) override {
+        assert(is_numbered_);
         double energy = 0.0;
         if constexpr (HasHistory<Kernel>) {
             // Which only this function reads: others may share the block.
             kernel_.begin_step(dt);
-            for (std::size_t s = 0; s < elements_.size(); ++s)
-                energy += kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
-                                          history.of(elements_[s]));
+            const auto advance_one = [&](std::size_t s) {
+                return kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
+                                       history.of(elements_[s]));
+            };
+            if constexpr (HasMemoryLanes<Kernel>)
+                energy = memory_lanes_.advance(kernel_, before.data(), positions.data(), history,
+                                               advance_one);
+            else
+                for (std::size_t s = 0; s < elements_.size(); ++s) energy += advance_one(s);
         }
         return energy;
     }
@@ -186,10 +203,15 @@ class KernelBlock final : public ElementBlock {
         local_nodes_.resize(elements_.size());
         if constexpr (HasLanes<Kernel>)
             lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel_);
+        if constexpr (HasMemoryLanes<Kernel>)
+            memory_lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()),
+                                 kernel_);
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             LocalNodes nodes;
             for (std::size_t k = 0; k < num_corners; ++k) nodes[k] = local_numbers[row(s).nodes[k]];
             if constexpr (HasLanes<Kernel>) lanes_.set(s, row(s).rest, nodes);
+            if constexpr (HasMemoryLanes<Kernel>)
+                memory_lanes_.set(s, elements_[s], row(s).rest, nodes);
             local_nodes_[s] = nodes;
         }
     }
@@ -210,6 +232,14 @@ class KernelBlock final : public ElementBlock {
     template <HasLanes K>
     struct LanesOf<K> {
         using Type = typename K::Lanes;
+    };
+    template <class K>
+    struct MemoryLanesOf {
+        using Type = NoLanes;
+    };
+    template <HasMemoryLanes K>
+    struct MemoryLanesOf<K> {
+        using Type = typename K::MemoryLanes;
     };
 
     const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
@@ -276,12 +306,19 @@ class KernelBlock final : public ElementBlock {
         for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[row(s).nodes[k]];
         return x;
     }
+    /// By local number.
+    Corners gather(std::size_t s, std::span<const LocalVector> positions) const {
+        Corners x;
+        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[local_nodes_[s][k]].vector();
+        return x;
+    }
 
     Kernel kernel_;
     double density_;
     std::vector<Row> rows_;              // in no order
     std::vector<std::uint32_t> row_of_;  // by number of the element
     typename LanesOf<Kernel>::Type lanes_;
+    typename MemoryLanesOf<Kernel>::Type memory_lanes_;
     std::vector<LocalNodes> local_nodes_;  // by number of the element
 };
 

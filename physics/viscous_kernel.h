@@ -11,6 +11,7 @@
 
 #include "physics/heml_kernel.h"
 #include "physics/material.h"
+#include "physics/viscous_lanes.h"
 
 namespace incise::physics {
 
@@ -30,14 +31,13 @@ Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& C_minus_1,
 std::array<Vec3, 4> forces_of_stress(const Mat3& S, double volume, const Mat3& inverse_edges,
                                      const std::array<Vec3, 4>& x);
 
-/// What a term of a Prony series does in one step: H' = decay H + gain (S' - S).
-struct PronyStep {
-    double decay, gain;
-};
-
 /// The exact rule for a stress that is linear in time during the step; for dt = 0 its limit, an
 /// instantaneous change.
 PronyStep prony_step(const PronyTerm& term, double dt);
+
+struct ViscousElement : LinkElement {
+    Mat3 inverse_edges;  ///< V^-1, 1/m
+};
 
 /// HEML with a given law and a Prony series, for blocks of tetrahedra (element_block.h). With the
 /// memory (viscous_history.h) as the last step left it, the stress at positions x is
@@ -45,9 +45,8 @@ PronyStep prony_step(const PronyTerm& term, double dt);
 /// which is (1 - sum of alpha_i) S + sum of H_i where S(x) is the one remembered, and answers any
 /// change since then with the instantaneous moduli.
 struct ViscousKernel : HemlKernel {
-    struct Element : LinkElement {
-        Mat3 inverse_edges;  ///< V^-1, 1/m
-    };
+    using Element = ViscousElement;
+    using MemoryLanes = ViscousLanes;
 
     std::vector<PronyTerm> terms;
     std::vector<PronyStep> steps;  ///< of the terms, for the dt last given to begin_step
