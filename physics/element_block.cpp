@@ -3,6 +3,15 @@
 
 namespace incise::physics {
 
+std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions,
+                                                           std::vector<LocalVector>& places) const {
+    places.reserve(max_elements * topology::max_corners + 1);  // of any block
+    places.resize(nodes_.size() + 1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) places[i] = positions[nodes_[i]];
+    places.back() = {};
+    return places;
+}
+
 void ElementBlock::number_nodes(std::span<std::uint16_t> local_numbers) {
     if (is_numbered_) return;
     nodes_.clear();

@@ -56,6 +56,7 @@ enum class TangentKind { exact, positive };  ///< see positive_part
 class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
+    static constexpr std::size_t max_elements = 512;
 
     virtual ~ElementBlock() = default;
     virtual std::shared_ptr<ElementBlock> clone() const = 0;
@@ -66,9 +67,15 @@ class ElementBlock {
     std::span<const std::uint32_t> nodes() const { return nodes_; }
 
     /// Brings nodes(), and what goes by local numbers, up to the elements as they are: after
-    /// insert, replace and erase, before forces are asked for or the history advances.
+    /// insert, replace and erase, before forces, energy or volumes are asked for or the history
+    /// advances.
     /// @param local_numbers scratch, by node id; `unnumbered` before and after
     void number_nodes(std::span<std::uint16_t> local_numbers);
+
+    /// Those of its nodes by local number, and a place more, in `places`: the caller's thread keeps
+    /// that from block to block, so that it takes memory once and never again.
+    std::span<const LocalVector> local_positions(std::span<const Vec3> positions,
+                                                 std::vector<LocalVector>& places) const;
 
     /// Sets `forces` to the sums of the elements' elastic forces, N, at `positions`, m, with those
     /// of viscosity as far as the history goes. Both by local number; each has one place more than

@@ -2,6 +2,7 @@
 #include "physics/element_store.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -85,6 +86,7 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
             require_law(mesh, e);
             insert(mesh, e);
         }
+    number_nodes(mesh.node_capacity());
 }
 
 void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
@@ -115,7 +117,8 @@ void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
 }
 
 std::size_t ElementStore::block_index(ElementId e, int region) const {
-    return e.index() / chunk_size * table_.materials.size() + table_.of_region.at(region);
+    return e.index() / ElementBlock::max_elements * table_.materials.size() +
+           table_.of_region.at(region);
 }
 
 Vec3 ElementStore::fibre_of(ElementId e) const {
@@ -160,7 +163,6 @@ void ElementStore::note_change(std::size_t block) {
 }
 
 void ElementStore::number_nodes(std::size_t num_nodes) {
-    if (changed_blocks_.empty() && ranges_.size() == num_node_ranges(num_nodes)) return;
     std::sort(changed_blocks_.begin(), changed_blocks_.end());
     const auto last = std::unique(changed_blocks_.begin(), changed_blocks_.end());
     changed_blocks_.erase(last, changed_blocks_.end());
@@ -187,24 +189,13 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
     changed_blocks_.clear();
 }
 
-std::span<const LocalVector> ElementStore::local_positions(const ElementBlock& block,
-                                                           std::span<const Vec3> positions,
-                                                           std::vector<LocalVector>& places) {
-    const auto nodes = block.nodes();
-    places.reserve(chunk_size * topology::max_corners + 1);  // of any block
-    places.resize(nodes.size() + 1);
-    for (std::size_t i = 0; i < nodes.size(); ++i) places[i] = positions[nodes[i]];
-    places.back() = {};
-    return places;
-}
-
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   const Workers& workers) {
-    number_nodes(positions.size());
+    assert(changed_blocks_.empty() && ranges_.size() == num_node_ranges(positions.size()));
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
         thread_local std::vector<LocalVector> places;
-        blocks_[b]->compute_forces(local_positions(*blocks_[b], positions, places), history,
+        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions, places), history,
                                    parts_[b]);
     });
 }
@@ -235,14 +226,14 @@ std::size_t ElementStore::history_size() const {
 
 double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3> positions,
                              double dt, Workers& workers, ViscousHistory& history) {
-    number_nodes(positions.size());
+    assert(changed_blocks_.empty());
     energies_taken_.assign(blocks_.size(), 0.0);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b] || !blocks_[b]->has_history()) return;
         thread_local std::vector<LocalVector> old_places, places;
         energies_taken_[b] =
-            blocks_[b]->advance(local_positions(*blocks_[b], before, old_places),
-                                local_positions(*blocks_[b], positions, places), dt, history);
+            blocks_[b]->advance(blocks_[b]->local_positions(before, old_places),
+                                blocks_[b]->local_positions(positions, places), dt, history);
     });
     return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }

@@ -59,6 +59,10 @@ class ElementStore {
     /// @param region of the element, which the mesh may have forgotten by now
     void erase(ElementId e, int region);
 
+    /// Brings the blocks that have changed, and whose nodes they share, up to date: at the end of
+    /// an edit, before anything is asked of the elements but their shares and rest volumes.
+    void number_nodes(std::size_t num_nodes);
+
     const ElementBlock& block_of(const topology::Mesh& mesh, ElementId e) const {
         return *blocks_[block_index(e, mesh.region(e))];
     }
@@ -122,21 +126,12 @@ class ElementStore {
     std::vector<std::shared_ptr<const ElementBlock>> share_blocks() const;
 
   private:
-    static constexpr std::size_t chunk_size = 512;
-
     /// The nodes that a block has in one range, by local number.
     struct Piece {
         std::size_t block, begin, end;
     };
 
-    /// Brings the pieces of the blocks that have changed up to date, if any have.
-    void number_nodes(std::size_t num_nodes);
     void note_change(std::size_t block);
-    /// Those of the block's nodes by local number, and a spare one, in `places`: the caller's
-    /// thread keeps that from block to block, so that it takes memory once and never again.
-    static std::span<const LocalVector> local_positions(const ElementBlock& block,
-                                                        std::span<const Vec3> positions,
-                                                        std::vector<LocalVector>& places);
     /// The block, or a copy that takes its place if somebody shares it.
     ElementBlock& editable(std::size_t block);
 

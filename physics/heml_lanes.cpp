@@ -2,6 +2,7 @@
 #include "physics/heml_lanes.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "physics/heml_kernel.h"
 
@@ -10,15 +11,21 @@ namespace incise::physics {
 namespace plain {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
+HemlEnergies heml_energies;
+HemlVolumeRatios heml_volume_ratios;
 }  // namespace plain
 #ifdef INCISE_HAS_AVX
 namespace avx2 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
+HemlEnergies heml_energies;
+HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx2
 namespace avx512 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
+HemlEnergies heml_energies;
+HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx512
 #endif
 
@@ -33,6 +40,22 @@ AddHemlForces<Number>* heml_forces_for([[maybe_unused]] Processor processor) {
 
 template AddHemlForces<double>* heml_forces_for(Processor processor);
 template AddHemlForces<float>* heml_forces_for(Processor processor);
+
+HemlEnergies* heml_energies_for([[maybe_unused]] Processor processor) {
+#ifdef INCISE_HAS_AVX
+    if (processor == Processor::avx512) return avx512::heml_energies;
+    if (processor == Processor::avx2) return avx2::heml_energies;
+#endif
+    return plain::heml_energies;
+}
+
+HemlVolumeRatios* heml_volume_ratios_for([[maybe_unused]] Processor processor) {
+#ifdef INCISE_HAS_AVX
+    if (processor == Processor::avx512) return avx512::heml_volume_ratios;
+    if (processor == Processor::avx2) return avx2::heml_volume_ratios;
+#endif
+    return plain::heml_volume_ratios;
+}
 
 namespace {
 
@@ -70,6 +93,7 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
 }  // namespace
 
 void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel) {
+    num_elements_ = num_elements;
     const bool is_single = kernel.precision == Precision::single_precision;
     if (is_single != std::holds_alternative<LinkGroups<float>>(groups_)) {
         if (is_single)
@@ -95,6 +119,36 @@ void HemlLanes::add_forces(const HemlKernel& kernel, const LocalVector* position
             add(kernel.law, kernel.inversion_threshold, groups, positions, forces);
         },
         groups_);
+}
+
+template <class Visit>
+void HemlLanes::for_each_element(std::span<const double> of_lanes, Visit visit) const {
+    constexpr std::size_t size = LinkGroup<double>::size;
+    const std::size_t num_groups = of_lanes.size() / size;
+    std::size_t left = num_elements_;
+    for (std::size_t lane = 0; left > 0; ++lane)
+        for (std::size_t g = 0; g < num_groups && left > 0; ++g, --left)
+            visit(of_lanes[g * size + lane]);
+}
+
+Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const {
+    static HemlEnergies* const compute = heml_energies_for(processor());
+    const auto& groups = std::get<LinkGroups<double>>(groups_);
+    std::vector<double> energies(groups.links.size() * LinkGroup<double>::size);
+    compute(kernel.law, kernel.inversion_threshold, groups, positions, energies.data());
+    Sum sum;
+    for_each_element(energies, [&](double energy) { sum += energy; });
+    return sum;
+}
+
+double HemlLanes::min_volume_ratio(const LocalVector* positions) const {
+    static HemlVolumeRatios* const compute = heml_volume_ratios_for(processor());
+    const auto& groups = std::get<LinkGroups<double>>(groups_);
+    std::vector<double> ratios(groups.links.size() * LinkGroup<double>::size);
+    compute(groups, positions, ratios.data());
+    double lowest = std::numeric_limits<double>::infinity();
+    for_each_element(ratios, [&](double ratio) { lowest = std::min(lowest, ratio); });
+    return lowest;
 }
 
 }  // namespace incise::physics

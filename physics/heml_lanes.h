@@ -1,5 +1,6 @@
-// The fast forces of HEML: elements side by side, one a lane. Equal to HemlKernel::forces, the
-// reference, but for rounding: to doubles, or to floats where the kernel has single precision.
+// The fast forces and energies of HEML: elements side by side, one a lane. Equal to those of
+// HemlKernel, the reference, but for rounding: to doubles, or to floats where the kernel has single
+// precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,6 +13,7 @@
 #include "physics/law.h"
 #include "physics/local_nodes.h"
 #include "physics/processor.h"
+#include "physics/sum.h"
 
 namespace incise::physics {
 
@@ -59,6 +61,14 @@ class HemlLanes {
     void add_forces(const HemlKernel& kernel, const LocalVector* positions,
                     LocalVector* forces) const;
 
+    /// Sum of the elements' energies by the law of the kernel, J, in the order of their numbers:
+    /// those of HemlKernel::energy within rounding, zero at rest. The same bits on every processor.
+    /// In double precision only, as floats at rest have strains.
+    /// @param positions m, by local number
+    Sum elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const;
+    /// Of the elements' HemlKernel::volume_ratio, to the bit; also in double precision only.
+    double min_volume_ratio(const LocalVector* positions) const;
+
     /// Those in the numbers that the kernel's precision asks for.
     template <class Number>
     const LinkGroups<Number>& groups() const {
@@ -66,6 +76,11 @@ class HemlLanes {
     }
 
   private:
+    /// Calls visit(value) in the order of elements, from what there is of the lanes of all groups.
+    template <class Visit>
+    void for_each_element(std::span<const double> of_lanes, Visit visit) const;
+
+    std::size_t num_elements_ = 0;
     std::variant<LinkGroups<double>, LinkGroups<float>> groups_;
 };
 
@@ -76,5 +91,14 @@ using AddHemlForces = void(const Law& law, double inversion_threshold,
 /// What HemlLanes calls, by processor; for double and float.
 template <class Number>
 AddHemlForces<Number>* heml_forces_for(Processor processor);
+
+/// Sets what all lanes have, one group after the other.
+using HemlEnergies = void(const Law& law, double inversion_threshold,
+                          const LinkGroups<double>& groups, const LocalVector* positions,
+                          double* energies);
+using HemlVolumeRatios = void(const LinkGroups<double>& groups, const LocalVector* positions,
+                              double* ratios);
+HemlEnergies* heml_energies_for(Processor processor);
+HemlVolumeRatios* heml_volume_ratios_for(Processor processor);
 
 }  // namespace incise::physics

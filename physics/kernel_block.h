@@ -31,6 +31,14 @@ concept HasLanes = requires {
     typename Kernel::Lanes;
 };
 
+/// One whose fast twin, in double precision, also has their energies and volumes.
+template <class Kernel>
+concept HasLanesOfEnergy = HasLanes<Kernel> &&
+    requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
+    lanes.elastic_energy(kernel, x);
+    lanes.min_volume_ratio(x);
+};
+
 /// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
 /// forces for all elements of a block: ViscousLanes.
 template <class Kernel>
@@ -127,6 +135,17 @@ class KernelBlock final : public ElementBlock {
     }
 
     Sum elastic_energy(std::span<const Vec3> positions) const override {
+        assert(is_numbered_);
+        if constexpr (HasLanesOfEnergy<Kernel>) {
+            thread_local std::vector<LocalVector> places;
+            const LocalVector* x = local_positions(positions, places).data();
+            const Sum sum = lanes_in_doubles(
+                [&](const auto& lanes) { return lanes.elastic_energy(kernel_, x); });
+            if constexpr (HasHistory<Kernel>)
+                return kernel_.long_time_share * sum;
+            else
+                return sum;
+        }
         Sum sum;
         for (std::size_t s = 0; s < elements_.size(); ++s)
             sum += kernel_.energy(row(s).rest, gather(s, positions));
@@ -134,9 +153,8 @@ class KernelBlock final : public ElementBlock {
     }
 
     Sum rest_volume() const override {
-        Sum sum;
-        for (std::size_t s = 0; s < elements_.size(); ++s) sum += row(s).rest.volume;
-        return sum;
+        assert(is_numbered_);
+        return rest_volume_;
     }
 
     double stiffness_energy() const override {
@@ -147,6 +165,12 @@ class KernelBlock final : public ElementBlock {
     }
 
     double min_volume_ratio(std::span<const Vec3> positions) const override {
+        assert(is_numbered_);
+        if constexpr (HasLanesOfEnergy<Kernel>) {
+            thread_local std::vector<LocalVector> places;
+            const LocalVector* x = local_positions(positions, places).data();
+            return lanes_in_doubles([&](const auto& lanes) { return lanes.min_volume_ratio(x); });
+        }
         double lowest = std::numeric_limits<double>::infinity();
         for (std::size_t s = 0; s < elements_.size(); ++s)
             lowest = std::min(lowest, kernel_.volume_ratio(row(s).rest, gather(s, positions)));
@@ -201,18 +225,18 @@ class KernelBlock final : public ElementBlock {
 
     void use_numbers(std::span<const std::uint16_t> local_numbers) override {
         local_nodes_.resize(elements_.size());
-        if constexpr (HasLanes<Kernel>)
-            lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel_);
-        if constexpr (HasMemoryLanes<Kernel>)
+        rest_volume_ = {};
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            for (std::size_t k = 0; k < num_corners; ++k)
+                local_nodes_[s][k] = local_numbers[row(s).nodes[k]];
+            rest_volume_ += row(s).rest.volume;
+        }
+        if constexpr (HasLanes<Kernel>) fill(lanes_, kernel_);
+        if constexpr (HasMemoryLanes<Kernel>) {
             memory_lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()),
                                  kernel_);
-        for (std::size_t s = 0; s < elements_.size(); ++s) {
-            LocalNodes nodes;
-            for (std::size_t k = 0; k < num_corners; ++k) nodes[k] = local_numbers[row(s).nodes[k]];
-            if constexpr (HasLanes<Kernel>) lanes_.set(s, row(s).rest, nodes);
-            if constexpr (HasMemoryLanes<Kernel>)
-                memory_lanes_.set(s, elements_[s], row(s).rest, nodes);
-            local_nodes_[s] = nodes;
+            for (std::size_t s = 0; s < elements_.size(); ++s)
+                memory_lanes_.set(s, elements_[s], row(s).rest, local_nodes_[s]);
         }
     }
 
@@ -243,6 +267,24 @@ class KernelBlock final : public ElementBlock {
     };
 
     const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
+
+    template <class Lanes>
+    void fill(Lanes& lanes, const Kernel& kernel) const {
+        lanes.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel);
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            lanes.set(s, row(s).rest, local_nodes_[s]);
+    }
+
+    /// use(lanes), these made anew where those for forces are in floats.
+    template <class Use>
+    auto lanes_in_doubles(Use use) const {
+        if (kernel_.precision == Precision::double_precision) return use(lanes_);
+        Kernel in_doubles = kernel_;
+        in_doubles.precision = Precision::double_precision;
+        typename LanesOf<Kernel>::Type lanes;
+        fill(lanes, in_doubles);
+        return use(lanes);
+    }
 
     Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                  [[maybe_unused]] const Vec3& fibre) const {
@@ -319,6 +361,7 @@ class KernelBlock final : public ElementBlock {
     std::vector<std::uint32_t> row_of_;  // by number of the element
     typename LanesOf<Kernel>::Type lanes_;
     typename MemoryLanesOf<Kernel>::Type memory_lanes_;
+    Sum rest_volume_;
     std::vector<LocalNodes> local_nodes_;  // by number of the element
 };
 

@@ -1,7 +1,6 @@
-// The forces of hyper-elastic links from the edges of as many elements as there are lanes: between
-// fetching positions and adding up forces. For files that are compiled for each kind of processor:
-// see lanes.h.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// Strain and forces of hyper-elastic links from the edges of as many elements as there are lanes:
+// between fetching positions and adding up forces. For files that are compiled for each kind of
+// processor: see lanes.h. SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include "physics/heml_lanes.h"
@@ -19,6 +18,53 @@ struct Symmetric {
 template <class Number>
 using LinkVectors = std::array<Lanes3<Number>, 3>;
 
+/// What forces and energies read of the part of a group that starts at lane `first`, and the strain
+/// there.
+template <class Law, class Number>
+struct StrainedLinks {
+    using Scalar = Lanes<Number>;
+
+    Symmetric<Scalar> G;
+    Scalar p11, p12, p13, p21, p22, p23, p31, p32, p33;  ///< P = G E', E' = V^T (C - 1) V
+    Lanes3<Number> u;                                    ///< of laws with fibres
+    LinkStrain<Scalar> strain;
+
+    /// @param dl changes of the squared links
+    [[gnu::always_inline]] inline StrainedLinks(const LinkGroup<Number>& group,
+                                                [[maybe_unused]] const FibreGroup<Number>* fibres,
+                                                std::size_t first, const std::array<Scalar, 6>& dl,
+                                                Scalar volume_ratio) {
+        const auto load = [first](const auto& row) { return Scalar::load(row + first); };
+        const Symmetric<Scalar> E{dl[0],
+                                  dl[1],
+                                  dl[2],
+                                  0.5 * (dl[0] + dl[1] - dl[3]),
+                                  0.5 * (dl[1] + dl[2] - dl[4]),
+                                  0.5 * (dl[2] + dl[0] - dl[5])};
+        G = {load(group.G[0]), load(group.G[1]), load(group.G[2]),
+             load(group.G[3]), load(group.G[4]), load(group.G[5])};
+        strain.a = G.d1 * E.d1 + G.d2 * E.d2 + G.d3 * E.d3 +
+                   2.0 * (G.s12 * E.s12 + G.s23 * E.s23 + G.s31 * E.s31);
+        p11 = G.d1 * E.d1 + G.s12 * E.s12 + G.s31 * E.s31;
+        p12 = G.d1 * E.s12 + G.s12 * E.d2 + G.s31 * E.s23;
+        p13 = G.d1 * E.s31 + G.s12 * E.s23 + G.s31 * E.d3;
+        p21 = G.s12 * E.d1 + G.d2 * E.s12 + G.s23 * E.s31;
+        p22 = G.s12 * E.s12 + G.d2 * E.d2 + G.s23 * E.s23;
+        p23 = G.s12 * E.s31 + G.d2 * E.s23 + G.s23 * E.d3;
+        p31 = G.s31 * E.d1 + G.s23 * E.s12 + G.d3 * E.s31;
+        p32 = G.s31 * E.s12 + G.s23 * E.d2 + G.d3 * E.s23;
+        p33 = G.s31 * E.s31 + G.s23 * E.s23 + G.d3 * E.d3;
+        strain.b = p11 * p11 + p22 * p22 + p33 * p33 + 2.0 * (p12 * p21 + p23 * p32 + p31 * p13);
+        strain.J = volume_ratio;
+        strain.f = 0.0;
+        if constexpr (HasFibres<Law>) {
+            u = {load(fibres->u[0]), load(fibres->u[1]), load(fibres->u[2])};
+            strain.f = u.x * u.x * E.d1 + u.y * u.y * E.d2 + u.z * u.z * E.d3 +
+                       2.0 * (u.x * u.y * E.s12 + u.y * u.z * E.s23 + u.z * u.x * E.s31);
+        }
+    }
+};
+
 /// Forces on the corners but corner 0, N, of the part of a group that starts at lane `first`.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkVectors<Number> link_forces(
@@ -27,47 +73,17 @@ template <class Law, class Number>
     const LinkVectors<Number>& edges) {
     using Scalar = Lanes<Number>;
     using Vector = Lanes3<Number>;
-    const auto load = [first](const auto& row) { return Scalar::load(row + first); };
     const auto& [v1, v2, v3] = edges;
-
-    // Changes of the squared links, and with them E' = V^T (C - 1) V.
-    const auto dl = [&](const Vector& v, int link) {
-        return rounded_dot(v, v) - load(group.rest_links[link]);
+    const auto dl = [&](const Vector& v, int link) -> Scalar {
+        return rounded_dot(v, v) - Scalar::load(group.rest_links[link] + first);
     };
-    const Scalar l1 = dl(v1, 0), l2 = dl(v2, 1), l3 = dl(v3, 2);
-    const Symmetric<Scalar> E{l1,
-                              l2,
-                              l3,
-                              0.5 * (l1 + l2 - dl(v2 - v1, 3)),
-                              0.5 * (l2 + l3 - dl(v3 - v2, 4)),
-                              0.5 * (l3 + l1 - dl(v1 - v3, 5))};
-    const Symmetric<Scalar> G{load(group.G[0]), load(group.G[1]), load(group.G[2]),
-                              load(group.G[3]), load(group.G[4]), load(group.G[5])};
-
-    LinkStrain<Scalar> strain;
-    strain.a = G.d1 * E.d1 + G.d2 * E.d2 + G.d3 * E.d3 +
-               2.0 * (G.s12 * E.s12 + G.s23 * E.s23 + G.s31 * E.s31);
-    // P = G E' and b = tr(P P).
-    const Scalar p11 = G.d1 * E.d1 + G.s12 * E.s12 + G.s31 * E.s31,
-                 p12 = G.d1 * E.s12 + G.s12 * E.d2 + G.s31 * E.s23,
-                 p13 = G.d1 * E.s31 + G.s12 * E.s23 + G.s31 * E.d3,
-                 p21 = G.s12 * E.d1 + G.d2 * E.s12 + G.s23 * E.s31,
-                 p22 = G.s12 * E.s12 + G.d2 * E.d2 + G.s23 * E.s23,
-                 p23 = G.s12 * E.s31 + G.d2 * E.s23 + G.s23 * E.d3,
-                 p31 = G.s31 * E.d1 + G.s23 * E.s12 + G.d3 * E.s31,
-                 p32 = G.s31 * E.s12 + G.s23 * E.d2 + G.d3 * E.s23,
-                 p33 = G.s31 * E.s31 + G.s23 * E.s23 + G.d3 * E.d3;
-    strain.b = p11 * p11 + p22 * p22 + p33 * p33 + 2.0 * (p12 * p21 + p23 * p32 + p31 * p13);
-    const Scalar volume = load(group.volume);
+    const Scalar volume = Scalar::load(group.volume + first);
     const Vector across1 = cross(v2, v3), across2 = cross(v3, v1), across3 = rounded_cross(v1, v2);
-    strain.J = rounded_dot(across3, v3) / (6.0 * volume);
-    [[maybe_unused]] Vector u;
-    strain.f = 0.0;
-    if constexpr (HasFibres<Law>) {
-        u = {load(fibres->u[0]), load(fibres->u[1]), load(fibres->u[2])};
-        strain.f = u.x * u.x * E.d1 + u.y * u.y * E.d2 + u.z * u.z * E.d3 +
-                   2.0 * (u.x * u.y * E.s12 + u.y * u.z * E.s23 + u.z * u.x * E.s31);
-    }
+    const StrainedLinks<Law, Number> links(
+        group, fibres, first,
+        {dl(v1, 0), dl(v2, 1), dl(v3, 2), dl(v2 - v1, 3), dl(v3 - v2, 4), dl(v1 - v3, 5)},
+        rounded_dot(across3, v3) / (6.0 * volume));
+    const auto& [G, p11, p12, p13, p21, p22, p23, p31, p32, p33, u, strain] = links;
 
     const LawResponse<Scalar> r = law.response(strain, J0);
     // T = -2 Vol (w_a G + 2 w_b G E' G + w_f u u^T), and f_i = sum of T_ij v_j - w_J dvol/dx_i.

@@ -373,6 +373,7 @@ void Model::apply(const ChangeSet& changes) {
         std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
         touched.end());
     resize(changes.node_capacity_after);
+    elements_.number_nodes(masses_.size());
     for (const NodeId n : touched) gather(n);
 
     supports_.apply(mesh_, changes);

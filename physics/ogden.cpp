@@ -14,24 +14,11 @@ std::array<double, 3> squared_stretches(const LinkStrain<double>& s, double floo
     return SquaredStretches<double>(s, 1e-100, floor).all();
 }
 
-/// J^(-alpha/3).
-VolumeTerm<double> isochoric_factor(double J, double alpha, double J0) {
-    return extended([=](double x) { return power_of_volume(x, alpha / 3.0); }, J, J0);
-}
-
 }  // namespace
 
 LawResponse<double> Ogden::response(const LinkStrain<double>& s, double J0) const {
     LawResponse<double> r = response<double>(s, J0);
-    const double floor = J0 * J0;
-    const PowersOfStretches<double> powers(squared_stretches(s, floor), floor, 0.0);
-    r.w = quadratic_volume_term(s.J, bulk_modulus).value;
-    for (std::size_t i = 0; i < num_terms; ++i) {
-        const auto [mu, alpha] = terms[i];
-        std::array<double, 3> unused{};
-        const double sum = powers.add(0.5 * alpha, 1.0, unused);
-        r.w += 2.0 * mu / (alpha * alpha) * (isochoric_factor(s.J, alpha, J0).value * sum - 3.0);
-    }
+    r.w = energy_density(s, J0);
     return r;
 }
 
@@ -79,7 +66,7 @@ LawResponse<Dual> Ogden::response(const LinkStrain<Dual>& strain, double J0) con
     const auto along = [&](const Eigen::Vector3d& by) -> Eigen::Vector4d {
         return by[0] * strain.a.gradient + by[1] * strain.b.gradient + by[2] * strain.J.gradient;
     };
-    return {{response(s, J0).w, along(w_p)},
+    return {{energy_density(s, J0), along(w_p)},
             {w_p[0], along(w_pq.col(0))},
             {w_p[1], along(w_pq.col(1))},
             {w_p[2], along(w_pq.col(2))}};

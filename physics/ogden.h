@@ -37,6 +37,9 @@ struct Ogden {
     LawResponse<T> response(const LinkStrain<T>& s, double J0) const;
     /// The same, with an energy that is zero at rest.
     LawResponse<double> response(const LinkStrain<double>& s, double J0) const;
+    /// That energy, which the forces of lanes do without.
+    template <class T>
+    T energy_density(const LinkStrain<T>& s, double J0) const;
     /// Right in each derivative, as tangents ask for.
     LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const;
 };
@@ -56,7 +59,7 @@ struct PowersOfStretches {
             const T at = max(c[k], T(floor)), under = min(c[k], T(floor));
             logs[k] = log(at) - log_of_unit;
             relative[k] = under / (floor * at);
-            const T d = under * (1.0 / floor) - 1.0;
+            const T d = T(under - floor) * (1.0 / floor);
             below[k] = d * (1.0 + 0.5 * d);
         }
     }
@@ -75,6 +78,12 @@ struct PowersOfStretches {
     }
 };
 
+/// J^(-alpha/3).
+template <class T>
+VolumeTerm<T> isochoric_factor(const T& J, double alpha, double J0) {
+    return extended([=](const T& x) { return power_of_volume(x, alpha / 3.0); }, J, J0);
+}
+
 template <class T>
 LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
     using std::log, std::max, std::min;
@@ -82,8 +91,8 @@ LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
     const T J = max(s.J, T(J0)), per_J = 1.0 / J, log_of_unit = 2.0 / 3.0 * log(J);
     const SquaredStretches<T> stretches(s, double{std::numeric_limits<T>::epsilon()}, floor);
     const PowersOfStretches<T> powers(stretches.all(), floor, log_of_unit);
-    const VolumeTerm<T> v = quadratic_volume_term(s.J, bulk_modulus);
     const T d = min(T(s.J - J0), T(0.0)) * (1.0 / J0);
+    const VolumeTerm<T> v = quadratic_volume_term(s.J, bulk_modulus);
     T w = v.value, w_J = v.first;
     std::array<T, 3> slopes{0.0, 0.0, 0.0};
     for (std::size_t i = 0; i < num_terms; ++i) {
@@ -99,6 +108,25 @@ LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
     for (std::size_t k = 0; k < 3; ++k) slopes[k] *= powers.relative[k];
     const auto by = stretches.derivatives(slopes, s);
     return {w, by.a, by.b, w_J + 2.0 * s.J * by.I3};
+}
+
+// Of stretches to the last digit, also where they coincide: what sets them apart for derivatives
+// would leave an energy at rest.
+template <class T>
+T Ogden::energy_density(const LinkStrain<T>& s, double J0) const {
+    constexpr double rounding = 1e-100;
+    const double floor = J0 * J0;
+    const SquaredStretches<T> stretches(s, rounding, floor);
+    const PowersOfStretches<T> powers(stretches.all(), floor, 0.0);
+    T w = quadratic_volume_term(s.J, bulk_modulus).value;
+    for (std::size_t i = 0; i < num_terms; ++i) {
+        const auto [mu, alpha] = terms[i];
+        std::array<T, 3> unused{0.0, 0.0, 0.0};
+        const T sum = powers.add(0.5 * alpha, 1.0, unused);
+        const T isochoric = isochoric_factor(s.J, alpha, J0).value;
+        w += 2.0 * mu / (alpha * alpha) * (isochoric * sum - 3.0);
+    }
+    return w;
 }
 
 }  // namespace incise::physics

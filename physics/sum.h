@@ -22,6 +22,11 @@ class Sum {
         lost_ += other.lost_;
         return *this;
     }
+    friend Sum operator*(double factor, Sum sum) {
+        sum.sum_ *= factor;
+        sum.lost_ *= factor;
+        return sum;
+    }
     double value() const { return sum_ + lost_; }
 
   private:

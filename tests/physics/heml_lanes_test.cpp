@@ -1,4 +1,4 @@
-// The fast forces against the reference, on each kind of processor at hand.
+// The fast forces and energies against the reference, on each kind of processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/heml_lanes.h"
 
@@ -49,13 +49,14 @@ TYPED_TEST_SUITE(HemlLanesOf, Numbers, );
 /// Tetrahedra that share no node, as lanes have them.
 template <class Number>
 struct Elements {
+    HemlLanes lanes;
     LinkGroups<Number> groups;
     std::vector<LocalVector> positions;
-    std::vector<Tetrahedron> expected;  // by the reference
+    std::vector<Tetrahedron> expected;                     // forces by the reference
+    std::vector<double> volumes, energies, volume_ratios;  // these, too
 
     Elements(const HemlKernel& kernel, const std::vector<Tetrahedron>& rest,
              const std::vector<Tetrahedron>& now) {
-        HemlLanes lanes;
         const auto spare = static_cast<std::uint16_t>(4 * rest.size());
         lanes.assign(rest.size(), spare, kernel);
         for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -67,6 +68,9 @@ struct Elements {
             }
             lanes.set(i, element, nodes);
             expected.push_back(kernel.forces(element, now[i]));
+            volumes.push_back(element.volume);
+            energies.push_back(kernel.energy(element, now[i]));
+            volume_ratios.push_back(kernel.volume_ratio(element, now[i]));
         }
         positions.emplace_back();
         groups = lanes.groups<Number>();
@@ -77,6 +81,17 @@ struct Elements {
         heml_forces_for<Number>(processor)(kernel.law, kernel.inversion_threshold, groups,
                                            positions.data(), f.data());
         return f;
+    }
+
+    /// By number of the element.
+    std::vector<double> lane_energies(const HemlKernel& kernel, Processor processor) const {
+        constexpr std::size_t size = LinkGroup<double>::size;
+        std::vector<double> of_lanes(groups.links.size() * size), result;
+        heml_energies_for(processor)(kernel.law, kernel.inversion_threshold, groups,
+                                     positions.data(), of_lanes.data());
+        for (std::size_t i = 0; i < energies.size(); ++i)
+            result.push_back(of_lanes[i % groups.links.size() * size + i / groups.links.size()]);
+        return result;
     }
 };
 
@@ -228,6 +243,122 @@ TYPED_TEST(HemlLanesOf, PassOnWhatIsNotANumber) {
         const auto f = elements.forces(kernel, processor());
         for (std::size_t i = 0; i < 9; ++i)
             EXPECT_EQ(f[4 * i].vector().allFinite(), i != 3) << "element " << i;
+    });
+}
+
+/// A relative error of a power's base is as many times that of the power.
+double steepness(const Law& law) {
+    const auto* ogden = std::get_if<Ogden>(&law);
+    return ogden ? std::max(1.0, 0.25 * std::abs(ogden->terms[0].alpha)) : 1.0;
+}
+
+void expect_energies_of_reference(const HemlKernel& kernel, const Elements<double>& elements,
+                                  double strain) {
+    const auto energies = elements.lane_energies(kernel, Processor::plain);
+    for (std::size_t i = 0; i < energies.size(); ++i) {
+        const double scale = std::max(std::abs(elements.energies[i]),
+                                      strain * stiffness(kernel) * elements.volumes[i]);
+        EXPECT_NEAR(energies[i], elements.energies[i], 1e-12 * steepness(kernel.law) * scale);
+    }
+}
+
+// Over strained, flattened and inverted states.
+TEST(HemlLanes, HaveTheEnergiesAndVolumesOfTheReference) {
+    test::Random random(11);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        for (const std::size_t n : {std::size_t{1}, std::size_t{7}, std::size_t{203}}) {
+            const auto elements = random_elements<double>(kernel, n, random);
+            expect_energies_of_reference(kernel, elements, 1e-2);
+            Sum sum;
+            double size = 0.0;
+            for (const double energy : elements.energies) sum += energy, size += std::abs(energy);
+            const auto* x = elements.positions.data();
+            EXPECT_NEAR(elements.lanes.elastic_energy(kernel, x).value(), sum.value(),
+                        1e-12 * steepness(kernel.law) * size);
+            EXPECT_EQ(
+                elements.lanes.min_volume_ratio(x),
+                *std::min_element(elements.volume_ratios.begin(), elements.volume_ratios.end()));
+        }
+    });
+    for_each_case_of_ogden([&](const Ogden& law, const Vec3& stretches) {
+        const HemlKernel kernel{law, 0.4};
+        std::vector<Tetrahedron> rest, now;
+        for (int i = 0; i < 8; ++i) {
+            rest.push_back(random_tetrahedron(random, 0.01));
+            now.push_back(deformed(rest.back(), random_deformation(random, stretches)));
+        }
+        expect_energies_of_reference(kernel, Elements<double>(kernel, rest, now), 1e-2);
+    });
+}
+
+// Where parts of shape and of volume cancel, no more is lost than in the reference: by the first
+// power of strain, or what one has for rounding where a law subtracts that.
+TEST(HemlLanes, HaveTheEnergiesOfTheReferenceNearRest) {
+    test::Random random(12);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        for (const double strain : {1e-2, 1e-4, 1e-6, 1e-9}) {
+            std::vector<Tetrahedron> rest, now;
+            for (int i = 0; i < 40; ++i) {
+                rest.push_back(random_tetrahedron(random, 0.01));
+                now.push_back(deformed(
+                    rest.back(), random_deformation(random, Vec3::Ones() + random.vector(strain))));
+            }
+            expect_energies_of_reference(kernel, Elements<double>(kernel, rest, now),
+                                         std::max(strain, 1e-2));
+        }
+    });
+}
+
+TEST(HemlLanes, HaveNoEnergyAtRest) {
+    test::Random random(13);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        for (const double far : {0.0, 1e3}) {
+            std::vector<Tetrahedron> rest;
+            for (int i = 0; i < 50; ++i) {
+                rest.push_back(random_tetrahedron(random, 0.01));
+                for (Vec3& x : rest.back()) x += Vec3(far, -far, 2.0 * far);
+            }
+            const Elements<double> elements(kernel, rest, rest);
+            for (const double energy : elements.lane_energies(kernel, processor()))
+                EXPECT_EQ(energy, 0.0);
+            EXPECT_EQ(elements.lanes.min_volume_ratio(elements.positions.data()), 1.0);
+        }
+    });
+}
+
+TEST(HemlLanes, HaveTheSameBitsOfEnergyOnEachProcessor) {
+    test::Random random(14);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        const auto elements = random_elements<double>(kernel, 100, random);
+        const auto expected = elements.lane_energies(kernel, Processor::plain);
+        std::vector<double> volumes(elements.groups.links.size() * LinkGroup<double>::size);
+        for (const Processor processor : processors_at_hand()) {
+            EXPECT_EQ(elements.lane_energies(kernel, processor), expected)
+                << static_cast<int>(processor);
+            heml_volume_ratios_for(processor)(elements.groups, elements.positions.data(),
+                                              volumes.data());
+            for (std::size_t i = 0; i < elements.volumes.size(); ++i) {
+                const std::size_t num_groups = elements.groups.links.size(),
+                                  place = i % num_groups * LinkGroup<double>::size + i / num_groups;
+                EXPECT_EQ(volumes[place], elements.volume_ratios[i]);
+            }
+        }
+    });
+}
+
+TEST(HemlLanes, PassOnEnergiesThatAreNotNumbers) {
+    test::Random random(15);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        auto elements = random_elements<double>(kernel, 9, random);
+        elements.positions[14].data()[1] = std::nan("");
+        const auto energies = elements.lane_energies(kernel, processor());
+        for (std::size_t i = 0; i < energies.size(); ++i)
+            EXPECT_EQ(std::isfinite(energies[i]), i != 3) << "element " << i;
     });
 }
 

@@ -55,6 +55,25 @@ TYPED_TEST(LanesOf, HaveTheFunctionsThatTheyState) {
     });
 }
 
+// Close to zero, where what is added or taken away would hide them.
+TYPED_TEST(LanesOf, TellSmallExponentialsAndLogarithmsFromNothing) {
+    using L = Lanes<TypeParam>;
+    constexpr bool is_single = sizeof(TypeParam) == sizeof(float);
+    constexpr double tolerance = is_single ? 6e-7 : 2e-15, least = is_single ? -60.0 : -600.0;
+    for (const double sign : {1.0, -1.0})
+        for (const auto& [low, high] : {std::pair{least, 0.0}, {-3.0, std::log(80.0)}})
+            for_many_lanes<TypeParam>(low, high, [&](const L& x, int l) {
+                const double at = sign * x.v[l], exponential = std::expm1(at);
+                EXPECT_NEAR(expm1(sign * x).v[l], exponential, tolerance * std::abs(exponential))
+                    << at;
+                if (at < -0.99) return;
+                const double logarithm = std::log1p(at);
+                EXPECT_NEAR(log1p(sign * x).v[l], logarithm, tolerance * std::abs(logarithm)) << at;
+            });
+    EXPECT_EQ(expm1(L(0.0)).v[0], 0);
+    EXPECT_EQ(log1p(L(0.0)).v[0], 0);
+}
+
 TYPED_TEST(LanesOf, FindCosinesOfAThirdOfAnAngle) {
     using L = Lanes<TypeParam>;
     const double tolerance = sizeof(TypeParam) == sizeof(float) ? 3e-7 : 4e-16;
@@ -71,6 +90,9 @@ TYPED_TEST(LanesOf, PassOnWhatIsNotANumber) {
     for (const double x : {0.0, -1.0, std::nan(""), double{INFINITY}})
         EXPECT_TRUE(std::isnan(log(L(x)).v[0])) << x;
     EXPECT_TRUE(std::isnan(exp(L(std::nan(""))).v[0]));
+    EXPECT_TRUE(std::isnan(expm1(L(std::nan(""))).v[0]));
+    for (const double x : {-1.0, -2.0, std::nan("")})
+        EXPECT_TRUE(std::isnan(log1p(L(x)).v[0])) << x;
     EXPECT_TRUE(std::isnan(cosine_of_third(L(std::nan(""))).v[0]));
     EXPECT_TRUE(std::isfinite(reciprocal_sqrt(L(0.0)).v[0]));
 }

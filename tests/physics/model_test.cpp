@@ -98,6 +98,25 @@ TEST(Model, SumsTheForcesOfItsElements) {
         }
 }
 
+// Its forces are in floats, what is asked of it now and then is not.
+TEST(Model, HasTheEnergyOfDoublesInSinglePrecision) {
+    auto table = table_of_all_materials();
+    ASSERT_TRUE(std::holds_alternative<MassSprings>(table.materials.back().method));
+    table.materials.pop_back();  // which has no forces in floats
+    const Mesh mesh =
+        Mesh::build(with_regions(test::jittered_cube(3, 0.2, 2), table.materials.size())).mesh;
+    Model in_doubles(mesh, table);
+    table.precision = Precision::single_precision;
+    Model in_floats(mesh, table);
+    test::Random random(4);
+    const BodyState state = random_state(mesh, random, 0.02, 0.0);
+    set_state(in_doubles, state);
+    set_state(in_floats, state);
+    EXPECT_NE(in_floats.elastic_forces()[0], in_doubles.elastic_forces()[0]);
+    EXPECT_EQ(in_floats.elastic_energy(), in_doubles.elastic_energy());
+    EXPECT_EQ(in_floats.min_volume_ratio(), in_doubles.min_volume_ratio());
+}
+
 TEST(Model, ReportsTotalsOfARigidMotion) {
     const Mesh mesh =
         Mesh::build(topology::box_mesh(CellKind::tetrahedron, {1, 2, 3}, {2, 2, 2}, {2, 2, 2}))
