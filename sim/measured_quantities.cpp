@@ -28,9 +28,8 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 
 }  // namespace
 
-Quantities history_row(const Simulation& simulation) {
+Quantities history_row(const Simulation& simulation, const Account& account) {
     const physics::Model& model = simulation.model();
-    const Account account = simulation.ledger().account();
     const physics::Totals& t = account.totals;
     Quantities row;
     append(row, history_quantities,

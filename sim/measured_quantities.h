@@ -18,7 +18,11 @@ namespace incise::sim {
 using Quantities = std::vector<std::pair<std::string, double>>;
 
 /// The quantities of a moment by their names in history.csv, in its order.
-Quantities history_row(const Simulation& simulation);
+/// @param account  of this moment
+Quantities history_row(const Simulation& simulation, const Account& account);
+inline Quantities history_row(const Simulation& simulation) {
+    return history_row(simulation, simulation.ledger().account());
+}
 
 /// The quantities of summary.json that an [expect] can name: the last history row and totals over
 /// the run.

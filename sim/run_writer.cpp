@@ -115,8 +115,8 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
     history_.append(header);
 }
 
-void RunWriter::append_history(const Simulation& simulation) {
-    last_row_ = history_row(simulation);
+void RunWriter::append_history(const Simulation& simulation, const Account& account) {
+    last_row_ = history_row(simulation, account);
     std::string line;
     for (const auto& [name, value] : last_row_) {
         if (!line.empty()) line += ',';
@@ -127,12 +127,13 @@ void RunWriter::append_history(const Simulation& simulation) {
 
 // A run without frames still tells how it began and ended.
 void RunWriter::on_start(const Simulation& simulation) {
-    if (simulation.scenario().output.interval == 0.0) append_history(simulation);
+    if (simulation.scenario().output.interval == 0.0)
+        append_history(simulation, simulation.ledger().account());
 }
 
 void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
     edits_.append(line_of(edit));
-    append_history(simulation);
+    append_history(simulation, edit.after);
 }
 
 void RunWriter::on_frame(const Simulation& simulation) {
@@ -143,7 +144,7 @@ void RunWriter::on_frame(const Simulation& simulation) {
     frame_ = std::async(std::launch::async | std::launch::deferred,
                         [this] { series_.add(frame_builder_->finish()); });
     ++num_frames_;
-    append_history(simulation);
+    append_history(simulation, simulation.ledger().account());
 }
 
 void RunWriter::wait_for_frame() {
@@ -185,7 +186,8 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     wait_for_frame();
     // The state that a run failed in is not one to keep: the last row written stands.
     const bool has_failed = outcome.status == "failed";
-    if (!has_failed && simulation.scenario().output.interval == 0.0) append_history(simulation);
+    if (!has_failed && simulation.scenario().output.interval == 0.0)
+        append_history(simulation, simulation.ledger().account());
     history_.sync();
     edits_.sync();
     Json summary;

@@ -59,7 +59,7 @@ class RunWriter : public Observer {
     RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written);
 
     const std::filesystem::path& folder() const { return folder_.path(); }
-    void append_history(const Simulation& simulation);
+    void append_history(const Simulation& simulation, const Account& account);
     void note_checkpoint(const Simulation& simulation);
     void wait_for_frame();
 

@@ -205,7 +205,10 @@ void Simulation::cut(Tool& tool, double from, double to) {
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     edits_(changes);
-    const Account before = ledger_.account();  // the model has not followed yet
+    // The model has not followed yet; and nothing moves between the edits of one step.
+    const auto& edits = ledger_.edits();
+    const bool is_as_left = !edits.empty() && edits.back().step == num_steps_;
+    const Account before = is_as_left ? edits.back().after : ledger_.account();
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
     topology::append_new_nodes(changes, previous_positions_);

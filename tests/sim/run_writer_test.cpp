@@ -98,6 +98,18 @@ TEST_F(RunFiles, HistoryHasItsColumnsAndARowForEachFrameAndEdit) {
     for (int k = 0; k <= 10; ++k) EXPECT_GE(rows_at[k * 0.02], 1) << k;
     for (const EditRecord& edit : edits) EXPECT_GE(rows_at[edit.time], 1);
 
+    // What an edit left is in its row.
+    const auto elastic = static_cast<std::size_t>(
+        std::find(names.begin(), names.end(), "elastic_energy") - names.begin());
+    ASSERT_LT(elastic, names.size());
+    for (const EditRecord& edit : edits)
+        EXPECT_TRUE(std::any_of(lines.begin() + 1, lines.end(), [&](const std::string& line) {
+            const auto cells = split(line);
+            return std::stod(cells[0]) == edit.time &&
+                   std::stoull(cells[3]) == edit.after.elements &&
+                   std::stod(cells[elastic]) == edit.after.totals.elastic_energy;
+        })) << edit.time;
+
     // The first row is the body at rest; the last one that of the end, to the last bit.
     const auto first = split(lines[1]), end = split(lines.back());
     EXPECT_EQ(first[1], "0");

@@ -291,6 +291,8 @@ TEST(Ledger, AccountsForEveryEdit) {
     std::size_t removed = 0, opened = 0;
     double mass_removed = 0.0;
     const Account* last = &simulation.ledger().initial();
+    std::size_t num_in_same_step = 0;
+    std::uint64_t step = 0;
     for (const EditRecord& edit : edits) {
         SCOPED_TRACE(testing::Message() << edit.tool << " at " << edit.time);
         EXPECT_TRUE(edit.tool == "burr" || edit.tool == "knife");
@@ -301,6 +303,14 @@ TEST(Ledger, AccountsForEveryEdit) {
         EXPECT_EQ(edit.before.totals.mass, last->totals.mass);
         EXPECT_EQ(edit.before.totals.rest_volume, last->totals.rest_volume);
         EXPECT_EQ(edit.before.stable_step, last->stable_step);
+        // Between those of one step nothing moves either, and else all does.
+        const bool is_in_same_step = edit.step == step;
+        num_in_same_step += is_in_same_step;
+        EXPECT_EQ(edit.before.totals.kinetic_energy == last->totals.kinetic_energy,
+                  is_in_same_step);
+        EXPECT_EQ(edit.before.totals.elastic_energy == last->totals.elastic_energy,
+                  is_in_same_step);
+        step = edit.step;
         last = &edit.after;
 
         EXPECT_EQ(edit.after.elements + edit.elements_removed, edit.before.elements);
@@ -332,6 +342,7 @@ TEST(Ledger, AccountsForEveryEdit) {
     EXPECT_EQ(removed + simulation.mesh().num_elements(), 162u);
     EXPECT_GT(removed, 5u);
     EXPECT_GT(opened, 5u);
+    EXPECT_GT(num_in_same_step, 0u);
     EXPECT_NEAR(mass_removed + simulation.model().totals().mass, 1.0, 1e-12);
     EXPECT_GE(edits.back().after.components, 2);
 }
