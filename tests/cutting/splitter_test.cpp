@@ -183,6 +183,25 @@ TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
             }
 }
 
+TEST(Split, AlongAPlaneAgainAfterOtherCutsChangesNothing) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double snap : {0.0, 0.2, 0.6})
+            for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
+                SCOPED_TRACE(family->name + ", snap " + std::to_string(snap) + ", seed " +
+                             std::to_string(seed));
+                Random random(seed);
+                SplitBody body(family->data);
+                const SplitOptions options = guarded(body.mesh, snap);
+                const Halves first(body.positions, random), second(body.positions, random);
+                body.cut(first.plane(), options);
+                body.cut(second.plane(), options);
+                const MeshSnapshot once(body.mesh);
+                body.cut(first.plane(), options);
+                body.cut(second.plane(), options);
+                EXPECT_EQ(MeshSnapshot(body.mesh), once);
+            }
+}
+
 TEST(Split, AlongTwoCrossingPlanesLeavesFourPieces) {
     for (const double snap : {0.0, 0.25, 0.6})
         for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
