@@ -71,6 +71,16 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
     }
 }
 
+/// For the local positions of one block: a thread takes their memory when it first needs them, and
+/// never again.
+struct Buffers {
+    std::vector<LocalVector> before, now;
+};
+Buffers& buffers() {
+    thread_local Buffers buffers;
+    return buffers;
+}
+
 }  // namespace
 
 ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
@@ -194,8 +204,7 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
     assert(changed_blocks_.empty() && ranges_.size() == num_node_ranges(positions.size()));
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
-        thread_local std::vector<LocalVector> places;
-        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions, places), history,
+        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions, buffers().now), history,
                                    parts_[b]);
     });
 }
@@ -230,10 +239,9 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
     energies_taken_.assign(blocks_.size(), 0.0);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b] || !blocks_[b]->has_history()) return;
-        thread_local std::vector<LocalVector> old_places, places;
         energies_taken_[b] =
-            blocks_[b]->advance(blocks_[b]->local_positions(before, old_places),
-                                blocks_[b]->local_positions(positions, places), dt, history);
+            blocks_[b]->advance(blocks_[b]->local_positions(before, buffers().before),
+                                blocks_[b]->local_positions(positions, buffers().now), dt, history);
     });
     return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }

@@ -135,13 +135,15 @@ TEST(SteadyState, AllocatesNothing) {
         }
 }
 
-// A thread has a buffer, which it takes when it first gets work: it may come to that in any step.
-// TBB takes memory of its own, not by operator new, for tasks that go to the other thread.
-TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBufferOfTheSecond) {
+// A thread has a buffer for positions, and one more for those before if the body is viscous, which
+// it takes when it first gets work: it may come to that in any step. TBB takes memory of its own,
+// not by operator new, for tasks that go to the other thread.
+TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBuffersOfTheSecond) {
     for (const auto& [name, body] : bodies) {
         SCOPED_TRACE(name);
+        const bool is_viscous = body.find("prony") != std::string::npos;
         EXPECT_LE(allocations_of_steps(body + surroundings + motion("double"), 2, 50, num_news),
-                  1u);
+                  is_viscous ? 2u : 1u);
     }
 }
 
