@@ -12,6 +12,11 @@ std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3>
     return places;
 }
 
+std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions) const {
+    thread_local std::vector<LocalVector> places;
+    return local_positions(positions, places);
+}
+
 void ElementBlock::number_nodes(std::span<std::uint16_t> local_numbers) {
     if (is_numbered_) return;
     nodes_.clear();

@@ -76,6 +76,8 @@ class ElementBlock {
     /// that from block to block, so that it takes memory once and never again.
     std::span<const LocalVector> local_positions(std::span<const Vec3> positions,
                                                  std::vector<LocalVector>& places) const;
+    /// The same in the thread's own place for them, until the next call.
+    std::span<const LocalVector> local_positions(std::span<const Vec3> positions) const;
 
     /// Sets `forces` to the sums of the elements' elastic forces, N, at `positions`, m, with those
     /// of viscosity as far as the history goes. Both by local number; each has one place more than

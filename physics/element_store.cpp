@@ -71,16 +71,6 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
     }
 }
 
-/// For the local positions of one block: a thread takes their memory when it first needs them, and
-/// never again.
-struct Buffers {
-    std::vector<LocalVector> before, now;
-};
-Buffers& buffers() {
-    thread_local Buffers buffers;
-    return buffers;
-}
-
 }  // namespace
 
 ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
@@ -204,8 +194,7 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
     assert(changed_blocks_.empty() && ranges_.size() == num_node_ranges(positions.size()));
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
-        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions, buffers().now), history,
-                                   parts_[b]);
+        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions), history, parts_[b]);
     });
 }
 
@@ -239,9 +228,10 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
     energies_taken_.assign(blocks_.size(), 0.0);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b] || !blocks_[b]->has_history()) return;
+        thread_local std::vector<LocalVector> places_before;
         energies_taken_[b] =
-            blocks_[b]->advance(blocks_[b]->local_positions(before, buffers().before),
-                                blocks_[b]->local_positions(positions, buffers().now), dt, history);
+            blocks_[b]->advance(blocks_[b]->local_positions(before, places_before),
+                                blocks_[b]->local_positions(positions), dt, history);
     });
     return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }

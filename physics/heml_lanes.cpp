@@ -131,10 +131,21 @@ void HemlLanes::for_each_element(std::span<const double> of_lanes, Visit visit) 
             visit(of_lanes[g * size + lane]);
 }
 
+namespace {
+
+/// For one figure an element, until the next call: a thread takes its memory once for all blocks.
+std::span<double> buffer(std::size_t size) {
+    thread_local std::vector<double> figures;
+    figures.resize(size);
+    return figures;
+}
+
+}  // namespace
+
 Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const {
     static HemlEnergies* const compute = heml_energies_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    std::vector<double> energies(groups.links.size() * LinkGroup<double>::size);
+    const std::span<double> energies = buffer(groups.links.size() * LinkGroup<double>::size);
     compute(kernel.law, kernel.inversion_threshold, groups, positions, energies.data());
     Sum sum;
     for_each_element(energies, [&](double energy) { sum += energy; });
@@ -144,7 +155,7 @@ Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* posit
 double HemlLanes::min_volume_ratio(const LocalVector* positions) const {
     static HemlVolumeRatios* const compute = heml_volume_ratios_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    std::vector<double> ratios(groups.links.size() * LinkGroup<double>::size);
+    const std::span<double> ratios = buffer(groups.links.size() * LinkGroup<double>::size);
     compute(groups, positions, ratios.data());
     double lowest = std::numeric_limits<double>::infinity();
     for_each_element(ratios, [&](double ratio) { lowest = std::min(lowest, ratio); });

@@ -119,7 +119,7 @@ class KernelBlock final : public ElementBlock {
         assert(is_numbered_);
         double energy = 0.0;
         if constexpr (HasHistory<Kernel>) {
-            // Which only this function reads: others may share the block.
+            // The values of which only this function uses: others may share the block.
             kernel_.begin_step(dt);
             const auto advance_one = [&](std::size_t s) {
                 return kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
@@ -137,8 +137,7 @@ class KernelBlock final : public ElementBlock {
     Sum elastic_energy(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
         if constexpr (HasLanesOfEnergy<Kernel>) {
-            thread_local std::vector<LocalVector> places;
-            const LocalVector* x = local_positions(positions, places).data();
+            const LocalVector* x = local_positions(positions).data();
             const Sum sum = lanes_in_doubles(
                 [&](const auto& lanes) { return lanes.elastic_energy(kernel_, x); });
             if constexpr (HasHistory<Kernel>)
@@ -167,8 +166,7 @@ class KernelBlock final : public ElementBlock {
     double min_volume_ratio(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
         if constexpr (HasLanesOfEnergy<Kernel>) {
-            thread_local std::vector<LocalVector> places;
-            const LocalVector* x = local_positions(positions, places).data();
+            const LocalVector* x = local_positions(positions).data();
             return lanes_in_doubles([&](const auto& lanes) { return lanes.min_volume_ratio(x); });
         }
         double lowest = std::numeric_limits<double>::infinity();

@@ -309,8 +309,8 @@ struct Lanes3 {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     }
 
-    // As Eigen has them, each product rounded and the third added to the sum of two, which it takes
-    // at once: by these an element at rest is so to the bit.
+    // Each product rounded, and added up as (xx + yy) + zz, as Eigen does: so an element at rest is
+    // at rest to the bit.
     friend Scalar rounded_dot(const Lanes3& a, const Lanes3& b) {
         return (Scalar(a.x * b.x) + Scalar(a.y * b.y)) + Scalar(a.z * b.z);
     }

@@ -1,6 +1,6 @@
 // Strain and forces of hyper-elastic links from the edges of as many elements as there are lanes:
-// between fetching positions and adding up forces. For files that are compiled for each kind of
-// processor: see lanes.h. SPDX-License-Identifier: LGPL-3.0-or-later
+// between fetching positions and adding up forces. Compiled for each kind of processor: lanes.h.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include "physics/heml_lanes.h"

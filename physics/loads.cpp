@@ -40,21 +40,29 @@ void for_loaded(const FaceSet& faces, const topology::Mesh& mesh, Visit visit) {
         if (!member.left_to.is_valid() && is_on_boundary(mesh, member.face)) visit(member.face);
 }
 
-/// Nodes with shares, in ascending order.
+/// Shares of nodes, added up by node in the order in which they come.
 class ShareSums {
   public:
-    explicit ShareSums(std::size_t num_nodes) : sums_(num_nodes, 0.0) {}
-
-    void add(NodeId n, double share) { sums_[n.index()] += share; }
-    std::vector<NodeShare> shares() const {
-        std::vector<NodeShare> shares;
-        for (std::size_t n = 0; n < sums_.size(); ++n)
-            if (sums_[n] != 0.0) shares.push_back({static_cast<std::uint32_t>(n), sums_[n]});
-        return shares;
+    void add(NodeId n, double share) {
+        shares_.push_back({static_cast<std::uint32_t>(n.index()), share});
+    }
+    /// In ascending order of nodes, each once.
+    std::vector<NodeShare> sums() && {
+        std::stable_sort(shares_.begin(), shares_.end(),
+                         [](const NodeShare& a, const NodeShare& b) { return a.node < b.node; });
+        std::size_t num_nodes = 0;
+        for (const NodeShare& next : shares_) {
+            if (num_nodes > 0 && shares_[num_nodes - 1].node == next.node)
+                shares_[num_nodes - 1].share += next.share;
+            else
+                shares_[num_nodes++] = next;
+        }
+        shares_.resize(num_nodes);
+        return std::move(shares_);
     }
 
   private:
-    std::vector<double> sums_;  // by node id
+    std::vector<NodeShare> shares_;
 };
 
 /// What the nodes have of a load, in its own order of summation: that of its members.
@@ -62,32 +70,32 @@ struct ShareFinder {
     const LoadedBody& body;
 
     std::vector<NodeShare> operator()(const NodalLoad& load) const {
-        ShareSums sums(body.mesh.node_capacity());
+        ShareSums shares;
         const auto& members = load.nodes.members();
         for (std::size_t i = 0; i < members.size(); ++i)
-            if (load.shares[i] > 0.0) sums.add(members[i].node, load.shares[i]);
-        return sums.shares();
+            if (load.shares[i] > 0.0) shares.add(members[i].node, load.shares[i]);
+        return std::move(shares).sums();
     }
     std::vector<NodeShare> operator()(const TractionLoad& load) const {
-        ShareSums sums(body.mesh.node_capacity());
+        ShareSums shares;
         for_loaded(load.faces, body.mesh, [&](FaceId f) {
             const PressedCorner face = first_corner(body.mesh, f);
             const double area = area_vector(face, body.mesh.rest_positions()).norm();
             for (std::uint32_t p = 0; p < face.num_corners; ++p)
-                sums.add(NodeId(face.corners[p]), area / face.num_corners);
+                shares.add(NodeId(face.corners[p]), area / face.num_corners);
         });
-        return sums.shares();
+        return std::move(shares).sums();
     }
     std::vector<NodeShare> operator()(const BodyLoad& load) const {
-        ShareSums sums(body.mesh.node_capacity());
+        ShareSums shares;
         for (const ElementId e : load.elements.members()) {
             if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
             const auto corners = body.mesh.corners(e);
             const double volume = body.elements.block_of(body.mesh, e).rest_volume(e);
             for (const NodeId n : corners)
-                sums.add(n, volume / static_cast<double>(corners.size()));
+                shares.add(n, volume / static_cast<double>(corners.size()));
         }
-        return sums.shares();
+        return std::move(shares).sums();
     }
     std::vector<NodeShare> operator()(const PressureLoad&) const { return {}; }
 };

@@ -77,7 +77,7 @@ class Loads {
     Loads(std::vector<Load> loads, const LoadedBody& body);
 
     /// Finds what nodes bear, if there were edits: before add and visit_tangents.
-    /// Cost: nothing without edits, else proportional to the selections and the nodes of the body.
+    /// Cost: nothing without edits, else in proportion to the selections.
     void update(const LoadedBody& body);
 
     /// Adds the forces (N, by node id) at `time` on the nodes of a range. Faces and elements that

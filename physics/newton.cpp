@@ -200,10 +200,10 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
         const double goal = tolerance * forces.scale + floor;
         const bool falls = forces.imbalance < 0.5 * last_imbalance;
         report.has_converged =
-            !supports_move &&
+            !supports_move && std::isfinite(goal) &&
             (forces.imbalance <= goal || (!falls && forces.imbalance <= stagnation * goal));
         if (report.has_converged || report.iterations == max_iterations ||
-            !std::isfinite(forces.imbalance))
+            !std::isfinite(forces.imbalance) || !std::isfinite(goal))
             break;
         last_imbalance = supports_move ? std::numeric_limits<double>::infinity() : forces.imbalance;
 

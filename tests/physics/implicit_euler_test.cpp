@@ -8,6 +8,7 @@
 #include "physics/test_bodies.h"
 #include "support/num_cases.h"
 #include "topology/box_mesh.h"
+#include "topology/error.h"
 #include "topology/mesh_edit.h"
 
 namespace incise::physics {
@@ -53,6 +54,15 @@ TEST(ImplicitEuler, LetsABodyFallAsTheRuleSays) {
         EXPECT_NEAR(model.positions()[n].z(),
                     mesh.rest_positions()[n].z() - 10.0 * dt * dt * (1 + 2 + 3 + 4 + 5), 1e-10);
     }
+}
+
+// Whose norm overflows: infinite is not small beside infinite.
+TEST(ImplicitEuler, RefusesForcesBeyondAllNumbers) {
+    const Mesh mesh = bar();
+    Surroundings s = cantilever(mesh);
+    s.gravity = {0.0, 0.0, -1e200};
+    Model model(mesh, table_of_one_law(soft_law), s);
+    EXPECT_THROW(run(model, 0.1, 1), PhysicsError);
 }
 
 TEST(ImplicitEuler, KeepsMomentumOfAFreeBody) {

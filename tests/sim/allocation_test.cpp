@@ -160,7 +160,7 @@ TEST(SteadyState, OfSolvedStepsAllocatesForFactorsOnly) {
         for (const std::string& mode : modes) {
             std::string body = text;  // smaller, as factors are dear
             if (body.starts_with(hexahedra)) body.replace(0, hexahedra.size(), cube(4, "hex"));
-            if (body.starts_with(tetrahedra)) body.replace(0, tetrahedra.size(), cube(4, "tet"));
+            if (body.starts_with(tetrahedra)) body.replace(0, tetrahedra.size(), cube(6, "tet"));
             SCOPED_TRACE(testing::Message() << name << " in " << mode);
             EXPECT_LE(allocations_of_steps(body + surroundings + mode, 1, num_steps),
                       num_steps * most_per_step);
