@@ -25,14 +25,9 @@ namespace incise::cutting {
 /// it, stands for itself.
 class CutFront {
   public:
-    /// A cut begins: the ranks (scars.h) of its nodes are not below this one.
-    void begin(std::uint64_t rank) { first_rank_ = rank; }
-    /// Whether a node that has the rank has it from this cut, not from an earlier one.
-    bool is_own(std::uint64_t rank) const { return rank >= first_rank_; }
-
     /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
-    /// it, on one side. `reach` is the size of the elements there, m. Of a node that is on the cut
-    /// already only that can change, to more.
+    /// it, on one side. `reach` is the size of the elements there, m; `rank`, see Scars::take_rank.
+    /// Of a node that is on the cut already only the reach can change, to more.
     void put_on(topology::NodeId n, bool is_exact, double reach, std::uint64_t rank);
     bool is_on(topology::NodeId n) const { return nodes_.contains(n.value); }
     bool is_near(topology::NodeId n) const {
@@ -40,7 +35,7 @@ class CutFront {
         return place != nodes_.end() && !place->second.is_exact;
     }
 
-    /// How the nodes on the cut came to be so, one after the other; 0 for others.
+    /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
     std::uint64_t rank(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);
         return place != nodes_.end() ? place->second.rank : 0;
@@ -93,7 +88,7 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.crossed_, self.first_rank_, self.num_new_, self.has_changed_);
+        ar(self.nodes_, self.crossed_, self.num_new_, self.has_changed_);
     }
 
   private:
@@ -106,7 +101,6 @@ class CutFront {
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
-    std::uint64_t first_rank_ = 0;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };

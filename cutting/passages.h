@@ -54,7 +54,8 @@ struct NearLimits {
 /// way of a blade is taken. Of an edge that lies all but in the surface both ends might be near;
 /// that edge speaks for the nearer one only, or whole layers of elements would lie on the surface.
 /// @param normal_at_rest  of the surface, of unit length, or zero if not known: only the edge
-/// counts Cost: a look at the elements round the node, if the edge alone is not long enough.
+///                        counts then
+/// Cost: a look at the elements round the node, if the edge alone is not long enough.
 bool is_near(const topology::Mesh& mesh, const EdgeEnd& end, const Vec3& normal_at_rest,
              const NearLimits& limits);
 

@@ -18,7 +18,7 @@ struct Scar {
     Vec3 normal;         ///< of the cut, of unit length
     Vec3 to_surface;     ///< from the node to where the cut passed through an edge, m
     bool is_exact;       ///< the node was made there
-    std::uint64_t rank;  ///< of the node on that cut: Scars::next_rank
+    std::uint64_t rank;  ///< of the node on that cut: Scars::take_rank
     static void archive(auto& ar, auto& self) {
         ar(self.normal, self.to_surface, self.is_exact, self.rank);
     }
@@ -38,7 +38,6 @@ class Scars {
     bool is_empty() const { return scars_.empty(); }
 
     /// Nodes of all cuts are numbered in the order in which they come to count as on one.
-    std::uint64_t next_rank() const { return next_rank_; }
     std::uint64_t take_rank() { return next_rank_++; }
 
     /// The element stayed with the other side of its cut, as there was too little of it.

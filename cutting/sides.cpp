@@ -16,13 +16,9 @@ using topology::NodeId;
 
 namespace {
 
-/// Pieces of more volume than this share of the cube of the edges there are no crumbs: less than
-/// two elements have before they are divided.
+/// Groups of more volume than this share of the cube of the edges there are pieces, not crumbs:
+/// less than two elements have before they are divided.
 constexpr double largest_crumb = 0.1;
-
-/// The same of what lies between this cut and an earlier one, and is too thin for a node of its
-/// own.
-constexpr double largest_flake = 0.3;
 
 double rest_volume(const Mesh& mesh, ElementId e) {
     const auto corners = mesh.corners(e);
@@ -55,19 +51,12 @@ class Sides {
         bool is_crossed;
     };
 
-    struct Piece {
-        std::vector<ElementId> elements;
-        double size;  ///< volume over the cube of the edges there
-    };
-
     void collect_faces(const std::vector<ElementId>& touched);
     void place_elements_on_cut();
     void place_with_corners(ElementId e);
     void keep_crumbs(Parting& parting);
-    bool collect_piece(ElementId start, Piece& piece);
-    bool is_crumb(const Piece& piece) const;
-    bool is_between_cuts(const Piece& piece) const;
-    bool hangs_by_nodes(const Piece& piece) const;
+    bool collect_piece(ElementId start, std::vector<ElementId>& piece);
+    bool is_crumb(const std::vector<ElementId>& piece) const;
     bool is_on_cut(FaceId f) const;
     NodeId far_corner(ElementId e) const;
     bool is_placed(ElementId e) const;
@@ -150,13 +139,12 @@ void Sides::keep_crumbs(Parting& parting) {
     std::vector<FaceId>& parted = parting.faces;
     parted_ = &parted;
     std::unordered_set<std::int32_t> crumbs;
-    Piece piece;
+    std::vector<ElementId> piece;
     for (const FaceId f : parted)
         for (const ElementId e : {f.element, mesh_.neighbor(f).element}) {
             if (crumbs.contains(e.value) || !collect_piece(e, piece) || !is_crumb(piece)) continue;
-            for (const ElementId member : piece.elements) crumbs.insert(member.value);
-            parting.crumbs.insert(parting.crumbs.end(), piece.elements.begin(),
-                                  piece.elements.end());
+            for (const ElementId member : piece) crumbs.insert(member.value);
+            parting.crumbs.insert(parting.crumbs.end(), piece.begin(), piece.end());
         }
     std::erase_if(parted, [&](FaceId f) {
         return crumbs.contains(f.element.value) != crumbs.contains(mesh_.neighbor(f).element.value);
@@ -164,66 +152,41 @@ void Sides::keep_crumbs(Parting& parting) {
 }
 
 /// What hangs together with `start` once the faces are open; false if that is much.
-bool Sides::collect_piece(ElementId start, Piece& piece) {
-    std::vector<ElementId>& elements = piece.elements;
-    elements.assign(1, start);
+bool Sides::collect_piece(ElementId start, std::vector<ElementId>& piece) {
+    piece.assign(1, start);
     double volume = 0.0, edge = 0.0;
-    for (std::size_t next = 0; next < elements.size(); ++next) {
-        const ElementId e = elements[next];
+    for (std::size_t next = 0; next < piece.size(); ++next) {
+        const ElementId e = piece[next];
         if (!scars_.is_crumb(e)) volume += rest_volume(mesh_, e);
         for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.reach(n));
-        if (large_.contains(e.value) || volume > largest_flake * edge * edge * edge) {
-            for (const ElementId member : elements) large_.insert(member.value);
+        if (large_.contains(e.value) || volume > largest_crumb * edge * edge * edge) {
+            for (const ElementId member : piece) large_.insert(member.value);
             return false;
         }
         for (int f = 0; f < mesh_.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh_.neighbor(face);
             if (!other.is_valid() ||
                 std::binary_search(parted_->begin(), parted_->end(), std::min(face, other)) ||
-                std::find(elements.begin(), elements.end(), other.element) != elements.end())
+                std::find(piece.begin(), piece.end(), other.element) != piece.end())
                 continue;
-            elements.push_back(other.element);
+            piece.push_back(other.element);
         }
     }
-    piece.size = volume / (edge * edge * edge);
     return true;
 }
 
-bool Sides::is_crumb(const Piece& piece) const {
-    const auto is_known = [&](ElementId e) { return scars_.is_crumb(e); };
-    if (std::any_of(piece.elements.begin(), piece.elements.end(), is_known))
+bool Sides::is_crumb(const std::vector<ElementId>& piece) const {
+    if (std::any_of(piece.begin(), piece.end(), [&](ElementId e) { return scars_.is_crumb(e); }))
         return true;  // along an earlier cut
-    return is_between_cuts(piece) || (piece.size <= largest_crumb && hangs_by_nodes(piece));
-}
-
-/// Whether each of its nodes lies on this cut or an earlier one, and both have some.
-bool Sides::is_between_cuts(const Piece& piece) const {
-    bool touches_earlier = false;
-    for (const ElementId e : piece.elements)
-        for (const NodeId n : mesh_.corners(e)) {
-            const auto scars = scars_.of(n);
-            const bool is_on = front_.is_on(n);
-            if (!is_on && scars.empty()) return false;
-            touches_earlier = touches_earlier || !is_on ||
-                              std::any_of(scars.begin(), scars.end(), [&](const Scar& scar) {
-                                  return !front_.is_own(scar.rank);
-                              });
-        }
-    return touches_earlier;
-}
-
-/// Whether it touches its side of the cut at nodes only.
-bool Sides::hangs_by_nodes(const Piece& piece) const {
     std::vector<ElementId> star;
-    for (const ElementId e : piece.elements) {
+    for (const ElementId e : piece) {
         if (mesh_.kind(e) != CellKind::tetrahedron || !is_placed(e)) return false;
         for (const NodeId n : mesh_.corners(e)) {
             if (!front_.is_on(n)) continue;
             star.clear();
             topology::collect_star(mesh_, n, e, star);
             for (const ElementId other : star)
-                if (std::find(piece.elements.begin(), piece.elements.end(), other) ==
-                        piece.elements.end() &&
+                if (std::find(piece.begin(), piece.end(), other) == piece.end() &&
                     is_placed(other) && is_crossed_to(other, n) == is_crossed_to(e, n))
                     return true;
         }

@@ -23,9 +23,9 @@ struct Parting {
 ///
 /// An element is where its corner is that is not on the cut. One that has no such corner is where
 /// the last of its corners is that came to count as on the cut, being near it; if all were made on
-/// the cut, it goes with the neighbour with which it shares the largest face. Pieces of about an
-/// element stay with the other side if they hang on the rest of their side by nodes only, or are so
-/// thin that each of their nodes lies on this cut or an earlier one: snapping leaves such crumbs.
+/// the cut, it goes with the neighbour with which it shares the largest face. Small groups that
+/// hang on the rest of their side by nodes only, which snapping may leave, stay with the other
+/// side: they would be crumbs.
 ///
 /// @param keep_crumbs  whether there are crumbs: an exact cut leaves none
 /// @param touched  the elements to look at, and thereby their faces

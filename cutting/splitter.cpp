@@ -71,9 +71,7 @@ class Splitter {
           options_(options),
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
-          num_old_nodes_(mesh.node_capacity()) {
-        if (front.is_empty()) front.begin(scars.next_rank());
-    }
+          num_old_nodes_(mesh.node_capacity()) {}
 
     Split run() {
         find_crossed_edges();
@@ -434,9 +432,10 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     return middle;
 }
 
-// The middle counts as on the side of the end b. Round a triangle the crossings are odd in number
-// if the border of the sweep runs through it, and in no other case, now and after each later step:
-// rounding has moved the middle off the edge, so nothing of this may be left to its place.
+// The middle counts as on the side of the end b: where it is, if it was made off the surface. Round
+// a triangle the crossings are odd in number if the border of the sweep runs through it, and in no
+// other case, now and after each later step: rounding has moved the middle off the edge, so nothing
+// of this may be left to its place.
 void Splitter::place_on_side(NodeId a, NodeId b, NodeId middle, const std::vector<NodeId>& ring,
                              const std::vector<Passages>& to_ring, const Passages& to_b) {
     const auto has_border = [&](NodeId p, NodeId q, NodeId r) {

@@ -57,15 +57,6 @@ TEST(CutFront, KnowsItsNodes) {
     EXPECT_EQ(front.reach(node(4)), 0.0);
 }
 
-TEST(CutFront, KnowsItsOwnRanks) {
-    CutFront front;
-    front.begin(5);
-    EXPECT_FALSE(front.is_own(4));
-    EXPECT_TRUE(front.is_own(5));
-    front.put_on(node(3), false, 0.5, 2);  // of an earlier cut, at the same place
-    EXPECT_FALSE(front.is_own(front.rank(node(3))));
-}
-
 TEST(CutFront, TogglesEdgesWhicheverWayTheyAreAskedFor) {
     // Against a plain set of pairs.
     std::set<std::pair<std::size_t, std::size_t>> crossed;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <span>
@@ -149,7 +148,7 @@ TEST(SplitByBlade, PartOfTheWayInManyStepsIsAsInOneStep) {
                 }
     // What is left of a piece too small to come off stays joined by all of its faces that would
     // have opened in the last step: in small steps those before have opened.
-    EXPECT_LE(num_with_crumbs, 1 + num_cuts / 20) << "of " << num_cuts;
+    EXPECT_LE(num_with_crumbs, 1 + num_cuts / 40) << "of " << num_cuts;
 }
 
 TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
@@ -404,33 +403,6 @@ TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
         go(inside, {{0.53, 4.4, 0.55}, {0.53, 5.5, 0.55}});
         EXPECT_TRUE(front.is_empty());
     }
-}
-
-// Snapping makes both cuts rough, and where they meet it would pinch pieces off between them.
-TEST(SplitByBlade, AcrossAnEarlierCutLeavesNoFlakes) {
-    const auto data = test::jittered_cube(8, 0.2, 3);
-    for (const double degrees : {30.0, 45.0, 60.0, 90.0})
-        for (const double snap : {0.3, default_snap})
-            for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed)
-                for (const int num_steps : {1, 20}) {
-                    SCOPED_TRACE(testing::Message()
-                                 << degrees << " degrees, snap " << snap << ", seed " << seed
-                                 << ", " << num_steps << " steps");
-                    Random random(seed);
-                    SplitBody body(data);
-                    const SplitOptions options = guarded(body.mesh, snap);
-                    const Vec3 n = random.vector(1.0).normalized(), u = n.unitOrthogonal();
-                    const Vec3 centre = body.box().center() + random.vector(0.05);
-                    for (const double angle : {0.0, degrees * std::numbers::pi / 180.0}) {
-                        const Vec3 along = std::cos(angle) * n.cross(u) + std::sin(angle) * n;
-                        const auto edge = [&](double way) {
-                            return Polyline{centre - 2.0 * u + way * along,
-                                            centre + 2.0 * u + way * along};
-                        };
-                        body.cut(sweep(edge(-1.5), edge(1.5), num_steps), options);
-                    }
-                    EXPECT_EQ(topology::components(body.mesh).count, 4);
-                }
 }
 
 TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
