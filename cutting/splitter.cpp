@@ -56,8 +56,16 @@ struct EdgeHash {
     }
 };
 
-/// Of those through an edge, the one at which it is divided first.
-const Passage& middle_of(const Passages& passages) { return passages[passages.size() / 2]; }
+/// Of those through an edge, the one at which it is divided first: that to which the blade comes
+/// first, as in steps of which each has one of them; of those that it meets at once, the middle.
+const Passage& first_of(const Passages& passages) {
+    const auto is_earlier = [](const Passage& a, const Passage& b) { return a.time < b.time; };
+    const double time = std::min_element(passages.begin(), passages.end(), is_earlier)->time;
+    const auto is_first = [&](const Passage& p) { return p.time == time; };
+    auto skipped = std::count_if(passages.begin(), passages.end(), is_first) / 2;
+    return *std::find_if(passages.begin(), passages.end(),
+                         [&](const Passage& p) { return is_first(p) && skipped-- == 0; });
+}
 
 class Splitter {
   public:
@@ -333,7 +341,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& p
 }
 
 void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
-    queue_.push({middle_of(passages).time, rest_length(edge), edge});
+    queue_.push({first_of(passages).time, rest_length(edge), edge});
     pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
 }
 
@@ -349,14 +357,19 @@ void Splitter::settle(const Edge& edge, const Passages& passages) {
 }
 
 void Splitter::divide_next() {
-    const Edge edge = queue_.top().edge;
+    const auto [time, length, edge] = queue_.top();
     queue_.pop();
     const auto place = pending_.find(edge);
-    Pending pending = std::move(place->second);
+    Passages left = place->second.passages;
+    const bool is_divided = is_to_be_divided(edge, place->second.element, left);
+    if (is_divided && first_of(left).time > time) {
+        queue_.push({first_of(left).time, length, edge});
+        return;
+    }
+    const Pending pending = std::move(place->second);
     pending_.erase(place);
-    Passages left = pending.passages;
-    if (is_to_be_divided(edge, pending.element, left)) {
-        const Passage& passage = middle_of(left);
+    if (is_divided) {
+        const Passage& passage = first_of(left);
         const double t = place_to_divide(edge, pending.element, passage);
         if (t > 0.0) {
             const NodeId middle = divide(edge, pending.element, t, passage);
@@ -423,7 +436,10 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         place_on_side(edge.b, edge.a, middle, ring, to_ring, to_a);
     else
         place_on_side(edge.a, edge.b, middle, ring, to_ring, to_b);
+    // What the blade did before, it did to the edge that was there then: in smaller steps these
+    // would not be asked for it.
     const auto take = [&](NodeId other, Passages&& passed) {
+        std::erase_if(passed, [&](const Passage& p) { return p.time < passage.time; });
         if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
     };
     take(edge.a, std::move(to_a));
