@@ -15,10 +15,21 @@ const physics::Law laws[] = {physics::SaintVenantKirchhoff{6000, 4000},
 const char* const law_names[] = {"Saint Venant-Kirchhoff", "Neo-Hookean", "Mooney-Rivlin"};
 
 void report(benchmark::State& state, std::size_t num_elements) {
-    state.SetLabel(law_names[state.range(0)]);
     state.counters["ns/element"] = benchmark::Counter(
         static_cast<double>(num_elements) * 1e-9,
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void measure_steps(benchmark::State& state, const topology::Mesh& mesh,
+                   const physics::MaterialTable& materials) {
+    physics::Model model(mesh, materials,
+                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
+    const double dt = 0.5 * model.stable_step();
+    for (auto _ : state) {
+        model.integrate(0.0, dt);
+        model.compute_forces(0.0);
+    }
+    report(state, mesh.num_elements());
 }
 
 void forces(benchmark::State& state) {
@@ -29,19 +40,14 @@ void forces(benchmark::State& state) {
         benchmark::DoNotOptimize(model.elastic_forces().data());
     }
     report(state, mesh.num_elements());
+    state.SetLabel(law_names[state.range(0)]);
 }
 BENCHMARK(forces)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000}});
 
 void step(benchmark::State& state) {
     const topology::Mesh mesh = make_cube(state.range(1));
-    physics::Model model(mesh, make_material(laws[state.range(0)]),
-                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
-    const double dt = 0.5 * model.stable_step();
-    for (auto _ : state) {
-        model.integrate(0.0, dt);
-        model.compute_forces(0.0);
-    }
-    report(state, mesh.num_elements());
+    measure_steps(state, mesh, make_material(laws[state.range(0)]));
+    state.SetLabel(law_names[state.range(0)]);
 }
 BENCHMARK(step)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000, 1'000'000}});
 
@@ -53,14 +59,7 @@ void viscous_step(benchmark::State& state) {
     auto& links = std::get<physics::HyperElasticLinks>(table.materials[0].method);
     for (std::int64_t i = 0; i < state.range(0); ++i)
         links.prony.push_back({0.3 / static_cast<double>(i + 1), 0.1 * static_cast<double>(i + 1)});
-    physics::Model model(mesh, table,
-                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
-    const double dt = 0.5 * model.stable_step();
-    for (auto _ : state) {
-        model.integrate(0.0, dt);
-        model.compute_forces(0.0);
-    }
-    report(state, mesh.num_elements());
+    measure_steps(state, mesh, table);
     state.SetLabel(std::to_string(state.range(0)) + " terms, " +
                    (state.range(2) != 0 ? "single" : "double") + " precision");
 }
