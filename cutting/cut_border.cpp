@@ -16,7 +16,7 @@ using topology::NodeId;
 namespace {
 
 /// The share of its nodes by which a front may be larger than it has to be.
-constexpr double growth_before_look = 0.25;
+constexpr double growth_before_look = 0.5;
 
 /// How many edge lengths away from its whole front a blade has probably gone.
 constexpr double far_away = 4.0;

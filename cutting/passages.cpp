@@ -45,23 +45,4 @@ Passage passage_at(const Crossing& crossing, const CutSurface& surface, const Cr
     return passage;
 }
 
-bool is_near(const topology::Mesh& mesh, const EdgeEnd& end, const Vec3& normal_at_rest,
-             const NearLimits& limits) {
-    const Vec3 x = mesh.rest_position(end.node), edge = mesh.rest_position(end.other) - x;
-    const double distance = end.from * edge.norm();
-    if (distance >= limits.farthest) return false;
-    if (end.place < 0.5 && end.from < limits.share) return true;
-    const Vec3 towards = std::copysign(1.0, normal_at_rest.dot(edge)) * normal_at_rest;
-    std::vector<topology::ElementId> star;
-    topology::collect_star(mesh, end.node, end.element, star);
-    const auto is_long = [&](topology::NodeId n) {
-        const Vec3 other = mesh.rest_position(n) - x;
-        return towards.dot(other) > 2.0 * distance && distance < limits.share * other.norm();
-    };
-    return std::any_of(star.begin(), star.end(), [&](topology::ElementId e) {
-        const auto corners = mesh.corners(e);
-        return std::any_of(corners.begin(), corners.end(), is_long);
-    });
-}
-
 }  // namespace incise::cutting

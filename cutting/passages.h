@@ -35,28 +35,4 @@ std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdg
 Passage passage_at(const Crossing& crossing, const CutSurface& surface, const CrossableEdge& edge,
                    const Vec3& normal_at_rest);
 
-/// An end of an edge that the surface passes through, and where, seen from there.
-struct EdgeEnd {
-    topology::NodeId node, other;
-    topology::ElementId element;  ///< one of those that have the edge
-    double place, from;           ///< as in Passage
-};
-
-/// How near a node has to be to count as on the surface.
-struct NearLimits {
-    double share;     ///< of an edge at the node that the surface passes through
-    double farthest;  ///< m, at rest
-};
-
-/// Whether the end is so near that it counts as on the surface. It is that for all of its edges at
-/// once, from the first of them on that the surface comes to: so those of them count that the
-/// surface passes through if it goes on straight, and it does not matter into how many steps the
-/// way of a blade is taken. Of an edge that lies all but in the surface both ends might be near;
-/// that edge speaks for the nearer one only, or whole layers of elements would lie on the surface.
-/// @param normal_at_rest  of the surface, of unit length, or zero if not known: only the edge
-///                        counts then
-/// Cost: a look at the elements round the node, if the edge alone is not long enough.
-bool is_near(const topology::Mesh& mesh, const EdgeEnd& end, const Vec3& normal_at_rest,
-             const NearLimits& limits);
-
 }  // namespace incise::cutting

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <queue>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "cutting/cut_border.h"
 #include "cutting/fitting_place.h"
+#include "cutting/near_nodes.h"
 #include "cutting/passages.h"
 #include "cutting/sides.h"
 #include "topology/error.h"
@@ -44,15 +46,16 @@ constexpr int max_generation = 6;
 /// An edge of the mesh, the lower node first.
 struct Edge {
     NodeId a, b;
-    auto operator<=>(const Edge&) const = default;
+    std::uint64_t key() const { return (static_cast<std::uint64_t>(a.index()) << 32) | b.index(); }
+    bool operator==(const Edge& other) const { return key() == other.key(); }
+    auto operator<=>(const Edge& other) const { return key() <=> other.key(); }
 };
 
 Edge edge_between(NodeId a, NodeId b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 struct EdgeHash {
     std::size_t operator()(const Edge& e) const {
-        const auto key = (static_cast<std::uint64_t>(e.a.index()) << 32) | e.b.index();
-        return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 20);
+        return static_cast<std::size_t>((e.key() * 0x9E3779B97F4A7C15u) >> 20);
     }
 };
 
@@ -79,7 +82,8 @@ class Splitter {
           options_(options),
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
-          num_old_nodes_(mesh.node_capacity()) {}
+          num_old_nodes_(mesh.node_capacity()),
+          near_nodes_(mesh, {snap_, farthest_}) {}
 
     Split run() {
         find_crossed_edges();
@@ -156,7 +160,7 @@ class Splitter {
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, Passages passages);
     Scar scar_at(NodeId n, const Passage& passage) const;
-    bool is_at(const EdgeEnd& end, const Passage& passage) const;
+    bool is_at(const EdgeEnd& end, const Passage& passage);
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
     void divide_next();
@@ -178,6 +182,7 @@ class Splitter {
     const double snap_;      // share of an edge: nearer crossings count as at its end
     const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
     const std::size_t num_old_nodes_;
+    NearNodes near_nodes_;
     std::optional<MeshEdit> edit_;  // from when there is something to do
 
     std::vector<MovingPoint> new_points_;
@@ -306,8 +311,8 @@ Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
 }
 
 /// Whether a passage through an edge counts as at the end.
-bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) const {
-    if (is_near(mesh_, end, passage.normal_at_rest, {snap_, farthest_})) return true;
+bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) {
+    if (near_nodes_.has(end, passage.normal_at_rest)) return true;
     const double size = (point(end.node)[1] - passage.point).norm();
     return scars_.has(end.node, scar_at(end.node, passage), size);
 }

@@ -35,19 +35,23 @@ void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
     for (; faces != 0; faces &= faces - 1) visit(FaceId{e, std::countr_zero(faces)});
 }
 
+/// Whether `e` is among the elements from `begin` on. Stars are small: looking through the whole
+/// list, with no way out before its end, beats marking, and several threads may do it.
+bool is_known(const std::vector<ElementId>& elements, std::size_t begin, ElementId e) {
+    int count = 0;
+    for (std::size_t i = begin; i < elements.size(); ++i) count += elements[i] == e ? 1 : 0;
+    return count != 0;
+}
+
 }  // namespace
 
 void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements) {
-    // Stars are small: looking through the list beats marking, and several threads may do it.
     const std::size_t begin = elements.size();
     elements.push_back(start);
     for (std::size_t next = begin; next < elements.size(); ++next)
         for_faces_at(mesh, elements[next], n, [&](FaceId f) {
             const ElementId other = mesh.neighbor(f).element;
-            if (!other.is_valid()) return;
-            const auto known = elements.begin() + static_cast<std::ptrdiff_t>(begin);
-            if (std::find(known, elements.end(), other) == elements.end())
-                elements.push_back(other);
+            if (other.is_valid() && !is_known(elements, begin, other)) elements.push_back(other);
         });
     std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
 }
@@ -56,14 +60,10 @@ void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
                        std::vector<ElementId>& elements) {
     const std::size_t begin = elements.size();
     elements.push_back(e);
-    const auto is_known = [&](ElementId other) {
-        const auto known = elements.begin() + static_cast<std::ptrdiff_t>(begin);
-        return std::find(known, elements.end(), other) != elements.end();
-    };
     for (std::size_t next = begin; next < elements.size(); ++next)
         for_faces_at(mesh, elements[next], a, [&](FaceId f) {
             const ElementId other = mesh.neighbor(f).element;
-            if (!other.is_valid() || is_known(other)) return;
+            if (!other.is_valid() || is_known(elements, begin, other)) return;
             for (int p = 0; p < mesh.face_size(f); ++p)
                 if (mesh.face_corner(f, p) == b) elements.push_back(other);
         });
