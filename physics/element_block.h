@@ -131,8 +131,12 @@ class ElementBlock {
     virtual void use_numbers(std::span<const std::uint16_t> local_numbers) = 0;
 
     std::size_t slot_of(ElementId e) const {
-        const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
-        assert(place != elements_.end() && *place == e);
+        // Ids ascend: it stands no farther from the first than its id does, and seldom nearer.
+        const auto from_first = static_cast<std::size_t>(e.value - elements_.front().value);
+        const auto last = elements_.begin() +
+                          static_cast<std::ptrdiff_t>(std::min(from_first, elements_.size() - 1));
+        const auto place = *last == e ? last : std::lower_bound(elements_.begin(), last, e);
+        assert(*place == e);
         return static_cast<std::size_t>(place - elements_.begin());
     }
     std::vector<ElementId> elements_;
