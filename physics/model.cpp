@@ -101,14 +101,9 @@ void Model::integrate(double time, double dt) {
     range_reactions_.assign(num_ranges * supports_.size(), {});
     if (!history_.is_empty()) previous_positions_.resize(positions_.size());
     workers_.for_each_range(masses_.size(), [&](NodeRange range) {
-        StepSums sums;
         const auto reactions =
             std::span(range_reactions_).subspan(range.number * supports_.size(), supports_.size());
-        for (std::size_t n = range.begin; n < range.end; ++n) {
-            if (!history_.is_empty()) previous_positions_[n] = positions_[n];
-            if (masses_[n] != 0.0) move_node(n, time, dt, sums, reactions);
-        }
-        step_sums_[range.number] = sums;
+        step_sums_[range.number] = move_nodes(range, time, dt, reactions);
     });
     StepSums sums;
     for (const StepSums& range : step_sums_) sums += range;
@@ -124,40 +119,51 @@ void Model::integrate(double time, double dt) {
             elements_.advance(previous_positions_, positions_, dt, workers_, history_);
 }
 
-void Model::move_node(std::size_t n, double time, double dt, StepSums& sums,
-                      std::span<Reaction> reactions) {
-    const double mass = masses_[n], slowing = 1.0 / (1.0 + damping_ * dt);
-    const Vec3 x = positions_[n], v = velocities_[n];
-    const Vec3 force = elastic_forces_[n] + outer_forces_[n];
-    Vec3 v_new = slowing * (v + dt / mass * force);
-    Vec3 x_new = x + dt * v_new;
-    if (supports_.of_node(n)) support_node(n, time, dt, force, x_new, v_new, sums, reactions);
-    const double square = v_new.squaredNorm();
-    sums.is_finite = sums.is_finite && std::isfinite(square);
-    sums.largest_square = std::max(sums.largest_square, square);
-    sums.work += outer_forces_[n].dot(x_new - x);
-    sums.dissipated_power += damping_ * mass * square;
-    positions_[n] = x_new;
-    velocities_[n] = v_new;
+// What has no address, as neither the sums nor a node's step have, stays in registers.
+Model::StepSums Model::move_nodes(NodeRange range, double time, double dt,
+                                  std::span<Reaction> reactions) {
+    const double slowing = 1.0 / (1.0 + damping_ * dt);
+    StepSums sums;
+    for (std::size_t n = range.begin; n < range.end; ++n) {
+        const double mass = masses_[n];
+        const Vec3 x = positions_[n], v = velocities_[n];
+        if (!history_.is_empty()) previous_positions_[n] = x;
+        if (mass == 0.0) continue;  // dead
+        const Vec3 outer = outer_forces_[n], force = elastic_forces_[n] + outer;
+        NodeStep step;
+        step.v = slowing * (v + dt / mass * force);
+        step.x = x + dt * step.v;
+        step.work = 0.0;
+        if (supports_.of_node(n)) step = support_node(n, time, dt, force, step, reactions);
+        const double square = step.v.squaredNorm();
+        sums.is_finite = sums.is_finite && std::isfinite(square);
+        sums.largest_square = std::max(sums.largest_square, square);
+        sums.work += step.work + outer.dot(step.x - x);
+        sums.dissipated_power += damping_ * mass * square;
+        positions_[n] = step.x;
+        velocities_[n] = step.v;
+    }
+    return sums;
 }
 
-void Model::support_node(std::size_t n, double time, double dt, const Vec3& force, Vec3& x_new,
-                         Vec3& v_new, StepSums& sums, std::span<Reaction> reactions) const {
+Model::NodeStep Model::support_node(std::size_t n, double time, double dt, const Vec3& force,
+                                    NodeStep step, std::span<Reaction> reactions) const {
     const auto& support_of = *supports_.of_node(n);
     const double mass = masses_[n];
     const Vec3 &x = positions_[n], &v = velocities_[n];
-    supports_.place(support_of, mesh_.rest_positions()[n], time + dt, x_new);
+    supports_.place(support_of, mesh_.rest_positions()[n], time + dt, step.x);
     for (int c = 0; c < 3; ++c) {
         const int s = support_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
-        v_new[c] = (x_new[c] - x[c]) / dt;
-        const double reaction = mass * ((v_new[c] - v[c]) / dt + damping_ * v_new[c]) - force[c];
-        add_reaction(s, c, reaction, x_new, reactions);
+        step.v[c] = (step.x[c] - x[c]) / dt;
+        const double reaction = mass * ((step.v[c] - v[c]) / dt + damping_ * step.v[c]) - force[c];
+        add_reaction(s, c, reaction, step.x, reactions);
         // At the mean velocity: a support that sets off at once gives the node just the kinetic
         // energy that it then has.
-        sums.work +=
-            reaction * (x_new[c] - x[c]) - 0.5 * mass * (v_new[c] - v[c]) * (v_new[c] - v[c]);
+        step.work +=
+            reaction * (step.x[c] - x[c]) - 0.5 * mass * (step.v[c] - v[c]) * (step.v[c] - v[c]);
     }
+    return step;
 }
 
 void Model::add_reaction(int support, int component, double force, const Vec3& x,

@@ -216,15 +216,18 @@ class Model {
             return *this;
         }
     };
-    /// Integrates one node and touches no other.
+    struct NodeStep {
+        Vec3 x, v;    ///< at its end
+        double work;  ///< that supports do, J
+    };
+    /// Integrates the nodes of a range, which touches no others.
     /// @param reactions of all supports; added to
-    void move_node(std::size_t n, double time, double dt, StepSums& sums,
-                   std::span<Reaction> reactions);
-    /// Leads the supported components of node `n` from x and v to where they have to be at
-    /// time + dt.
+    StepSums move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions);
+    /// Leads the supported components of node `n` to where they have to be at time + dt.
+    /// @param free  what the node does without supports
     /// @param force N, on the node without the supports
-    void support_node(std::size_t n, double time, double dt, const Vec3& force, Vec3& x_new,
-                      Vec3& v_new, StepSums& sums, std::span<Reaction> reactions) const;
+    NodeStep support_node(std::size_t n, double time, double dt, const Vec3& force, NodeStep free,
+                          std::span<Reaction> reactions) const;
     /// Adds what a support does to a component of a node at x, N, to its reaction.
     void add_reaction(int support, int component, double force, const Vec3& x,
                       std::span<Reaction> reactions) const;
