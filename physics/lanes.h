@@ -414,10 +414,10 @@ Quad quad_of(Lanes<float> a) {
 
 /// The edges from corner 0 of the elements to each of the others, by the places of corners in
 /// `nodes`. Differences are those of doubles, whatever kind of number comes out: a body far from
-/// the origin is as good as one near it. Like scatter_add not for each law anew, which would take
-/// much longer to compile than it gains.
+/// the origin is as good as one near it. Like scatter_add made anew in each loop that calls it, as
+/// vectors that went through memory would take a tenth of the loop's time.
 template <class Number, std::size_t num_corners, std::size_t size>
-std::array<Lanes3<Number>, num_corners - 1> gather_edges(
+[[gnu::always_inline]] inline std::array<Lanes3<Number>, num_corners - 1> gather_edges(
     const LocalVector* nodes, const std::uint16_t (&places)[num_corners][size], std::size_t first) {
     constexpr std::size_t num_parts = sizeof(double) / sizeof(Number), part = num_lanes<double>;
     // Row p has the elements p, p + 4, p + 8, ...
@@ -448,8 +448,10 @@ std::array<Lanes3<Number>, num_corners - 1> gather_edges(
 /// Element by element in fours, corner by corner within: elements may share nodes, and sums must
 /// not depend on how many lanes there are.
 template <class Number, std::size_t num_corners, std::size_t size>
-void scatter_add(const std::array<Lanes3<Number>, num_corners - 1>& f, LocalVector* nodes,
-                 const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+[[gnu::always_inline]] inline void scatter_add(const std::array<Lanes3<Number>, num_corners - 1>& f,
+                                               LocalVector* nodes,
+                                               const std::uint16_t (&places)[num_corners][size],
+                                               std::size_t first) {
     Lanes<Number> rows[num_corners][4];  // of those but corner 0
 #pragma GCC unroll 7
     for (std::size_t k = 1; k < num_corners; ++k) {
