@@ -106,10 +106,6 @@ void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const Heml
         groups_);
 }
 
-std::size_t HemlLanes::num_groups() const {
-    return std::visit([](const auto& groups) { return groups.links.size(); }, groups_);
-}
-
 void HemlLanes::set(std::size_t i, const LinkElement& element,
                     std::span<const std::uint16_t, 4> nodes) {
     std::visit([&](auto& groups) { set_element(groups, i, element, nodes); }, groups_);

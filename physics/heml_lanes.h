@@ -52,8 +52,6 @@ class HemlLanes {
     /// there was.
     /// @param spare  local number of a node that spare lanes work on
     void assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel);
-    /// Element i stands in group i modulo this, each next one of a group in its next lane.
-    std::size_t num_groups() const;
     /// Sets the element of the given number, from 0.
     /// @param nodes its corners by local number
     void set(std::size_t i, const LinkElement& element, std::span<const std::uint16_t, 4> nodes);

@@ -55,10 +55,6 @@ void HybmssLanes::assign(std::size_t num_elements, std::uint16_t spare,
         groups_);
 }
 
-std::size_t HybmssLanes::num_groups() const {
-    return std::visit([](const auto& groups) { return groups.size(); }, groups_);
-}
-
 void HybmssLanes::set(std::size_t i, const HybmssElement& element,
                       std::span<const std::uint16_t, 8> nodes) {
     std::visit(

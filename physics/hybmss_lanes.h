@@ -33,8 +33,6 @@ class HybmssLanes {
     /// Makes room for so many cells, in the kernel's precision, in place of what there was.
     /// @param spare  local number of a node that spare lanes work on
     void assign(std::size_t num_elements, std::uint16_t spare, const HybmssKernel& kernel);
-    /// Cell i stands in group i modulo this, each next one of a group in its next lane.
-    std::size_t num_groups() const;
     /// Sets the cell of the given number, from 0.
     /// @param nodes its corners by local number
     void set(std::size_t i, const HybmssElement& element, std::span<const std::uint16_t, 8> nodes);

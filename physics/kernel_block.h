@@ -233,9 +233,8 @@ class KernelBlock final : public ElementBlock {
         if constexpr (HasMemoryLanes<Kernel>) {
             memory_lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()),
                                  kernel_);
-            for_each_by_groups(memory_lanes_.num_groups(), [&](std::size_t s) {
+            for (std::size_t s = 0; s < elements_.size(); ++s)
                 memory_lanes_.set(s, elements_[s], row(s).rest, local_nodes_[s]);
-            });
         }
     }
 
@@ -270,16 +269,8 @@ class KernelBlock final : public ElementBlock {
     template <class Lanes>
     void fill(Lanes& lanes, const Kernel& kernel) const {
         lanes.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel);
-        for_each_by_groups(lanes.num_groups(),
-                           [&](std::size_t s) { lanes.set(s, row(s).rest, local_nodes_[s]); });
-    }
-
-    /// Calls visit(number of the element) in the order in which they stand in groups of lanes: one
-    /// group after the other is filled, so that it stays in the nearest cache.
-    template <class Visit>
-    void for_each_by_groups(std::size_t num_groups, Visit visit) const {
-        for (std::size_t g = 0; g < num_groups; ++g)
-            for (std::size_t s = g; s < elements_.size(); s += num_groups) visit(s);
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            lanes.set(s, row(s).rest, local_nodes_[s]);
     }
 
     /// use(lanes), these made anew where those for forces are in floats.

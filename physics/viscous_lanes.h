@@ -67,9 +67,7 @@ class ViscousLanes {
     /// Makes room for so many elements, in place of what there was.
     /// @param spare  local number of a node that spare lanes work on
     void assign(std::size_t num_elements, std::uint16_t spare, const ViscousKernel& kernel);
-    /// Element i stands in group i modulo this, each next one of a group in its next lane.
-    std::size_t num_groups() const { return groups_.elements.size(); }
-    /// Sets the element of the given number, from 0; those of a group in ascending order.
+    /// Sets the element of the given number, from 0, in ascending order.
     /// @param nodes its corners by local number
     void set(std::size_t i, ElementId id, const ViscousElement& element,
              std::span<const std::uint16_t, 4> nodes);
