@@ -53,6 +53,9 @@ enum class TangentKind { exact, positive };  ///< see positive_part
 /// Interface of a block; one virtual call serves a whole block. Elements stand in ascending
 /// order of their ids, so that a block's sums do not depend on how it came about. Its nodes have
 /// local numbers, which order them as their ids do.
+///
+/// Edits touch many blocks, and few elements of each: so what the others have stays where it is,
+/// and of these number_nodes() looks at nothing but their local numbers.
 class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
@@ -125,11 +128,27 @@ class ElementBlock {
     virtual void erase(ElementId e) = 0;
 
   protected:
-    /// Node ids of the element of the given number.
-    virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
-    /// Takes over that node n has the local number local_numbers[n].
-    virtual void use_numbers(std::span<const std::uint16_t> local_numbers) = 0;
+    explicit ElementBlock(std::size_t num_corners) : num_corners_(num_corners) {}
 
+    /// Node ids of the element in the given slot.
+    virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
+    /// Takes the local numbers over.
+    /// @param changed  slots whose elements are not what they were when this was last called, in
+    ///                 ascending order; if have_moved_, elements stand in other slots than then
+    virtual void use_numbers(std::span<const std::size_t> changed) = 0;
+
+    /// Local numbers of the nodes of the element in slot s.
+    std::span<std::uint16_t> local_corners(std::size_t s) {
+        return std::span(local_corners_).subspan(s * num_corners_, num_corners_);
+    }
+    std::span<const std::uint16_t> local_corners(std::size_t s) const {
+        return std::span(local_corners_).subspan(s * num_corners_, num_corners_);
+    }
+
+    /// Where a new element stands.
+    std::size_t add_slot(ElementId e);
+    void change_slot(std::size_t s);
+    void remove_slot(std::size_t s);
     std::size_t slot_of(ElementId e) const {
         // Ids ascend: it stands no farther from the first than its id does, and seldom nearer.
         const auto from_first = static_cast<std::size_t>(e.value - elements_.front().value);
@@ -139,9 +158,13 @@ class ElementBlock {
         assert(*place == e);
         return static_cast<std::size_t>(place - elements_.begin());
     }
-    std::vector<ElementId> elements_;
+
+    std::size_t num_corners_;
+    std::vector<ElementId> elements_;  // by slot
     std::vector<std::uint32_t> nodes_;
-    bool is_numbered_ = true;
+    // Local numbers, by slot; unnumbered those of elements that changed.
+    std::vector<std::uint16_t> local_corners_;
+    bool is_numbered_ = true, have_moved_ = false;
 };
 
 }  // namespace incise::physics

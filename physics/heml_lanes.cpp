@@ -60,19 +60,16 @@ HemlVolumeRatios* heml_volume_ratios_for([[maybe_unused]] Processor processor) {
 namespace {
 
 template <class Number>
-void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, std::uint16_t spare,
-                   bool has_fibres) {
+void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, bool has_fibres) {
     constexpr std::size_t size = LinkGroup<Number>::size;
     LinkGroup<Number> unused{};
-    for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
     std::fill(unused.volume, unused.volume + size, Number{1});
     groups.links.assign((num_elements + size - 1) / size, unused);
     groups.fibres.assign(has_fibres ? groups.links.size() : 0, FibreGroup<Number>{});
 }
 
 template <class Number>
-void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element,
-                 std::span<const std::uint16_t, 4> nodes) {
+void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element) {
     const std::size_t g = i % groups.links.size(), lane = i / groups.links.size();
     LinkGroup<Number>& group = groups.links[g];
     for (int k = 0; k < 6; ++k)
@@ -84,7 +81,6 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
         t[0] + t[3] + t[5], t[1] + t[3] + t[4], t[2] + t[4] + t[5], -t[3], -t[4], -t[5]};
     for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
     group.volume[lane] = static_cast<Number>(element.volume);
-    for (std::size_t k = 0; k < 4; ++k) group.nodes[k][lane] = nodes[k];
     if (groups.fibres.empty()) return;
     for (int k = 0; k < 3; ++k)
         groups.fibres[g].u[k][lane] = static_cast<Number>(element.fibre_components[k]);
@@ -92,7 +88,7 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
 
 }  // namespace
 
-void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel) {
+void HemlLanes::assign(std::size_t num_elements, const HemlKernel& kernel) {
     num_elements_ = num_elements;
     const bool is_single = kernel.precision == Precision::single_precision;
     if (is_single != std::holds_alternative<LinkGroups<float>>(groups_)) {
@@ -101,14 +97,16 @@ void HemlLanes::assign(std::size_t num_elements, std::uint16_t spare, const Heml
         else
             groups_.emplace<LinkGroups<double>>();
     }
-    std::visit(
-        [&](auto& groups) { assign_groups(groups, num_elements, spare, has_fibres(kernel.law)); },
-        groups_);
+    std::visit([&](auto& groups) { assign_groups(groups, num_elements, has_fibres(kernel.law)); },
+               groups_);
 }
 
-void HemlLanes::set(std::size_t i, const LinkElement& element,
-                    std::span<const std::uint16_t, 4> nodes) {
-    std::visit([&](auto& groups) { set_element(groups, i, element, nodes); }, groups_);
+void HemlLanes::set(std::size_t i, const LinkElement& element) {
+    std::visit([&](auto& groups) { set_element(groups, i, element); }, groups_);
+}
+
+void HemlLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
+    std::visit([&](auto& groups) { set_nodes_of_lanes(groups.links, corners, spare); }, groups_);
 }
 
 void HemlLanes::add_forces(const HemlKernel& kernel, const LocalVector* positions,

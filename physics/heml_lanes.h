@@ -44,17 +44,16 @@ struct LinkGroups {
     std::vector<FibreGroup<Number>> fibres;  ///< empty without
 };
 
-/// The elements of a block. Neighbours in a block lie in different groups, as far as may be, so
-/// that the lanes of a group seldom add to the same node.
+/// The elements of a block.
 class HemlLanes {
   public:
     /// Makes room for so many elements, of the kernel given and in its precision, in place of what
     /// there was.
-    /// @param spare  local number of a node that spare lanes work on
-    void assign(std::size_t num_elements, std::uint16_t spare, const HemlKernel& kernel);
-    /// Sets the element of the given number, from 0.
-    /// @param nodes its corners by local number
-    void set(std::size_t i, const LinkElement& element, std::span<const std::uint16_t, 4> nodes);
+    void assign(std::size_t num_elements, const HemlKernel& kernel);
+    /// Sets what the element of the given number, from 0, has but its nodes.
+    void set(std::size_t i, const LinkElement& element);
+    /// See set_nodes_of_lanes.
+    void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each element's forces, N, to those of its nodes. The same bits on every processor.
     /// @param positions m; both by local number

@@ -34,8 +34,7 @@ AddHybmssForces<Number>* hybmss_forces_for([[maybe_unused]] Processor processor)
 template AddHybmssForces<double>* hybmss_forces_for(Processor processor);
 template AddHybmssForces<float>* hybmss_forces_for(Processor processor);
 
-void HybmssLanes::assign(std::size_t num_elements, std::uint16_t spare,
-                         const HybmssKernel& kernel) {
+void HybmssLanes::assign(std::size_t num_elements, const HybmssKernel& kernel) {
     using Singles = std::vector<CellGroup<float>>;
     const bool is_single = kernel.precision == Precision::single_precision;
     if (is_single != std::holds_alternative<Singles>(groups_)) {
@@ -48,15 +47,13 @@ void HybmssLanes::assign(std::size_t num_elements, std::uint16_t spare,
         [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
             constexpr std::size_t size = CellGroup<Number>::size;
             CellGroup<Number> unused{};
-            for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
             std::fill(unused.volume, unused.volume + size, Number{1});
             groups.assign((num_elements + size - 1) / size, unused);
         },
         groups_);
 }
 
-void HybmssLanes::set(std::size_t i, const HybmssElement& element,
-                      std::span<const std::uint16_t, 8> nodes) {
+void HybmssLanes::set(std::size_t i, const HybmssElement& element) {
     std::visit(
         [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
             CellGroup<Number>& group = groups[i % groups.size()];
@@ -66,9 +63,12 @@ void HybmssLanes::set(std::size_t i, const HybmssElement& element,
                 group.lengths[g][lane] = static_cast<Number>(element.springs.lengths[g]);
             }
             group.volume[lane] = static_cast<Number>(element.volume);
-            for (std::size_t k = 0; k < 8; ++k) group.nodes[k][lane] = nodes[k];
         },
         groups_);
+}
+
+void HybmssLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
+    std::visit([&](auto& groups) { set_nodes_of_lanes(groups, corners, spare); }, groups_);
 }
 
 void HybmssLanes::add_forces(const HybmssKernel& kernel, const LocalVector* positions,

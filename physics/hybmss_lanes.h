@@ -27,15 +27,15 @@ struct alignas(64) CellGroup {
     std::uint16_t nodes[8][size] = {};  ///< by local number
 };
 
-/// The cells of a block; see HemlLanes.
+/// The cells of a block.
 class HybmssLanes {
   public:
     /// Makes room for so many cells, in the kernel's precision, in place of what there was.
-    /// @param spare  local number of a node that spare lanes work on
-    void assign(std::size_t num_elements, std::uint16_t spare, const HybmssKernel& kernel);
-    /// Sets the cell of the given number, from 0.
-    /// @param nodes its corners by local number
-    void set(std::size_t i, const HybmssElement& element, std::span<const std::uint16_t, 8> nodes);
+    void assign(std::size_t num_elements, const HybmssKernel& kernel);
+    /// Sets what the cell of the given number, from 0, has but its nodes.
+    void set(std::size_t i, const HybmssElement& element);
+    /// See set_nodes_of_lanes.
+    void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each cell's forces, N, to those of its nodes. The same bits on every processor.
     /// @param positions m; both by local number

@@ -54,7 +54,8 @@ class KernelBlock final : public ElementBlock {
     static constexpr std::size_t num_corners = Kernel::num_corners;
     using Corners = std::array<Vec3, num_corners>;
 
-    KernelBlock(const Kernel& kernel, double density) : kernel_(kernel), density_(density) {}
+    KernelBlock(const Kernel& kernel, double density)
+        : ElementBlock(num_corners), kernel_(kernel), density_(density) {}
 
     std::shared_ptr<ElementBlock> clone() const override {
         return std::make_shared<KernelBlock>(*this);
@@ -77,7 +78,7 @@ class KernelBlock final : public ElementBlock {
                 else
                     f = kernel_.forces(row(s).rest, x);
                 for (std::size_t k = 0; k < num_corners; ++k)
-                    forces[local_nodes_[s][k]].vector() += f[k];
+                    forces[local_corners(s)[k]].vector() += f[k];
             }
     }
 
@@ -192,18 +193,18 @@ class KernelBlock final : public ElementBlock {
 
     void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                 const Vec3& fibre) override {
-        const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
-        row_of_.insert(row_of_.begin() + (place - elements_.begin()),
-                       static_cast<std::uint32_t>(rows_.size()));
-        elements_.insert(place, e);
+        const auto s = static_cast<std::ptrdiff_t>(add_slot(e));
+        row_of_.insert(row_of_.begin() + s, static_cast<std::uint32_t>(rows_.size()));
         rows_.push_back(make_row(corners, rest_positions, fibre));
-        is_numbered_ = false;
+        rest_volumes_.insert(rest_volumes_.begin() + s, rows_.back().rest.volume);
     }
 
     void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
                  const Vec3& fibre) override {
-        rows_[row_of_[slot_of(e)]] = make_row(corners, rest_positions, fibre);
-        is_numbered_ = false;
+        const std::size_t s = slot_of(e);
+        rows_[row_of_[s]] = make_row(corners, rest_positions, fibre);
+        rest_volumes_[s] = row(s).rest.volume;
+        change_slot(s);
     }
 
     void erase(ElementId e) override {
@@ -214,28 +215,21 @@ class KernelBlock final : public ElementBlock {
         *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
         rows_.pop_back();
         row_of_.erase(row_of_.begin() + static_cast<std::ptrdiff_t>(s));
-        elements_.erase(elements_.begin() + static_cast<std::ptrdiff_t>(s));
-        is_numbered_ = false;
+        rest_volumes_.erase(rest_volumes_.begin() + static_cast<std::ptrdiff_t>(s));
+        remove_slot(s);
     }
 
   protected:
     std::span<const std::uint32_t> corners_of(std::size_t s) const override { return row(s).nodes; }
 
-    void use_numbers(std::span<const std::uint16_t> local_numbers) override {
-        local_nodes_.resize(elements_.size());
+    void use_numbers(std::span<const std::size_t> changed) override {
         rest_volume_ = {};
-        for (std::size_t s = 0; s < elements_.size(); ++s) {
-            for (std::size_t k = 0; k < num_corners; ++k)
-                local_nodes_[s][k] = local_numbers[row(s).nodes[k]];
-            rest_volume_ += row(s).rest.volume;
-        }
-        if constexpr (HasLanes<Kernel>) fill(lanes_, kernel_);
-        if constexpr (HasMemoryLanes<Kernel>) {
-            memory_lanes_.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()),
-                                 kernel_);
-            for (std::size_t s = 0; s < elements_.size(); ++s)
-                memory_lanes_.set(s, elements_[s], row(s).rest, local_nodes_[s]);
-        }
+        for (const double volume : rest_volumes_) rest_volume_ += volume;
+        if constexpr (HasLanes<Kernel>)
+            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, row(s).rest); });
+        if constexpr (HasMemoryLanes<Kernel>)
+            update(memory_lanes_, changed,
+                   [&](std::size_t s) { memory_lanes_.set(s, elements_[s], row(s).rest); });
     }
 
   private:
@@ -245,7 +239,6 @@ class KernelBlock final : public ElementBlock {
         ElementShares shares;
     };
 
-    using LocalNodes = std::array<std::uint16_t, num_corners>;
     struct NoLanes {};
     template <class K>
     struct LanesOf {
@@ -266,11 +259,18 @@ class KernelBlock final : public ElementBlock {
 
     const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
 
-    template <class Lanes>
-    void fill(Lanes& lanes, const Kernel& kernel) const {
-        lanes.assign(elements_.size(), static_cast<std::uint16_t>(nodes_.size()), kernel);
-        for (std::size_t s = 0; s < elements_.size(); ++s)
-            lanes.set(s, row(s).rest, local_nodes_[s]);
+    /// By set(s), which sets the element in slot s.
+    template <class Lanes, class Set>
+    void fill(Lanes& lanes, const Kernel& kernel, Set set) const {
+        lanes.assign(elements_.size(), kernel);
+        for (std::size_t s = 0; s < elements_.size(); ++s) set(s);
+        lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
+    }
+    template <class Lanes, class Set>
+    void update(Lanes& lanes, std::span<const std::size_t> changed, Set set) const {
+        if (have_moved_) return fill(lanes, kernel_, set);
+        for (const std::size_t s : changed) set(s);
+        lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
     }
 
     /// use(lanes), these made anew where those for forces are in floats.
@@ -280,7 +280,7 @@ class KernelBlock final : public ElementBlock {
         Kernel in_doubles = kernel_;
         in_doubles.precision = Precision::double_precision;
         typename LanesOf<Kernel>::Type lanes;
-        fill(lanes, in_doubles);
+        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest); });
         return use(lanes);
     }
 
@@ -349,18 +349,19 @@ class KernelBlock final : public ElementBlock {
     /// By local number.
     Corners gather(std::size_t s, std::span<const LocalVector> positions) const {
         Corners x;
-        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[local_nodes_[s][k]].vector();
+        for (std::size_t k = 0; k < num_corners; ++k)
+            x[k] = positions[local_corners(s)[k]].vector();
         return x;
     }
 
     Kernel kernel_;
     double density_;
     std::vector<Row> rows_;              // in no order
-    std::vector<std::uint32_t> row_of_;  // by number of the element
+    std::vector<std::uint32_t> row_of_;  // by slot
+    std::vector<double> rest_volumes_;   // by slot, m3
     typename LanesOf<Kernel>::Type lanes_;
     typename MemoryLanesOf<Kernel>::Type memory_lanes_;
     Sum rest_volume_;
-    std::vector<LocalNodes> local_nodes_;  // by number of the element
 };
 
 }  // namespace incise::physics

@@ -70,14 +70,14 @@ double measure_arithmetic(const Law& law) {
     constexpr std::size_t num_elements = num_groups * LinkGroup<double>::size;
     const HemlKernel kernel{law, 0.4};
     HemlLanes lanes;
-    lanes.assign(num_elements, 0, kernel);
+    lanes.assign(num_elements, kernel);
     std::vector<LinkGroupVectors> vectors(num_groups);
     for (std::size_t i = 0; i < num_elements; ++i) {
         // A corner of a cube, stretched in another way each.
         constexpr double edge = 0.01;
         const std::array<Vec3, 4> X{Vec3::Zero(), edge * Vec3::UnitX(), edge * Vec3::UnitY(),
                                     edge * Vec3::UnitZ()};
-        lanes.set(i, kernel.precompute(X), std::array<std::uint16_t, 4>{});
+        lanes.set(i, kernel.precompute(X));
         const double stretch = 0.9 + 0.2 * static_cast<double>(i) / num_elements;
         for (std::size_t k = 0; k < 3; ++k)
             for (int c = 0; c < 3; ++c)

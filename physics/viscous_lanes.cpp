@@ -49,29 +49,30 @@ MemoryRows<Number> rows_from(std::span<Number> first) {
 
 }  // namespace
 
-void ViscousLanes::assign(std::size_t num_elements, std::uint16_t spare,
-                          const ViscousKernel& kernel) {
+void ViscousLanes::assign(std::size_t num_elements, const ViscousKernel& kernel) {
     constexpr std::size_t size = ViscousGroup::size;
     ViscousGroup unused{};
-    for (auto& corner : unused.nodes) std::fill(corner, corner + size, spare);
     std::fill(unused.volume, unused.volume + size, 1.0);
     groups_.elements.assign((num_elements + size - 1) / size, unused);
     groups_.fibres.assign(has_fibres(kernel.law) ? groups_.elements.size() : 0, FibreDirections{});
 }
 
-void ViscousLanes::set(std::size_t i, ElementId id, const ViscousElement& element,
-                       std::span<const std::uint16_t, 4> nodes) {
+void ViscousLanes::set(std::size_t i, ElementId id, const ViscousElement& element) {
     const std::size_t g = i % groups_.elements.size(), lane = i / groups_.elements.size();
     ViscousGroup& group = groups_.elements[g];
     for (int k = 0; k < 6; ++k) group.rest_links[k][lane] = element.rest_links[k];
     for (int k = 0; k < 9; ++k) group.inverse_edges[k][lane] = element.inverse_edges(k / 3, k % 3);
     group.volume[lane] = element.volume;
-    std::fill(group.elements + lane, group.elements + (lane == 0 ? ViscousGroup::size : lane + 1),
-              static_cast<std::uint32_t>(id.index()));
-    for (std::size_t k = 0; k < 4; ++k) group.nodes[k][lane] = nodes[k];
+    const auto number = static_cast<std::uint32_t>(id.index());
+    if (group.num_used == 0) std::fill(group.elements, group.elements + group.size, number);
+    group.elements[lane] = number;
     group.num_used = std::max(group.num_used, static_cast<std::uint32_t>(lane + 1));
     if (groups_.fibres.empty()) return;
     for (int k = 0; k < 3; ++k) groups_.fibres[g].a0[k][lane] = element.fibre[k];
+}
+
+void ViscousLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
+    set_nodes_of_lanes(groups_.elements, corners, spare);
 }
 
 void ViscousLanes::add_forces(const ViscousKernel& kernel, const ViscousHistory& history,

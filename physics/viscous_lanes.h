@@ -61,16 +61,16 @@ struct MemoryRows {
     std::size_t length;
 };
 
-/// The elements of a block, with neighbours in different groups as HemlLanes has them.
+/// The elements of a block.
 class ViscousLanes {
   public:
     /// Makes room for so many elements, in place of what there was.
-    /// @param spare  local number of a node that spare lanes work on
-    void assign(std::size_t num_elements, std::uint16_t spare, const ViscousKernel& kernel);
-    /// Sets the element of the given number, from 0, in ascending order.
-    /// @param nodes its corners by local number
-    void set(std::size_t i, ElementId id, const ViscousElement& element,
-             std::span<const std::uint16_t, 4> nodes);
+    void assign(std::size_t num_elements, const ViscousKernel& kernel);
+    /// Sets what the element of the given number, from 0, has but its nodes; the first time in
+    /// ascending order.
+    void set(std::size_t i, ElementId id, const ViscousElement& element);
+    /// See set_nodes_of_lanes.
+    void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each element's ViscousKernel::forces_of_memory, N, to those of its nodes. The same bits
     /// on every processor.

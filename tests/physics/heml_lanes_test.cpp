@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <numeric>
 
 #include "physics/test_materials.h"
 
@@ -58,15 +59,14 @@ struct Elements {
     Elements(const HemlKernel& kernel, const std::vector<Tetrahedron>& rest,
              const std::vector<Tetrahedron>& now) {
         const auto spare = static_cast<std::uint16_t>(4 * rest.size());
-        lanes.assign(rest.size(), spare, kernel);
+        lanes.assign(rest.size(), kernel);
+        std::vector<std::uint16_t> corners(4 * rest.size());
+        std::iota(corners.begin(), corners.end(), std::uint16_t{0});
+        lanes.set_nodes(corners, spare);
         for (std::size_t i = 0; i < rest.size(); ++i) {
             const auto element = kernel.precompute(rest[i], fibre_direction());
-            std::array<std::uint16_t, 4> nodes;
-            for (std::size_t k = 0; k < 4; ++k) {
-                nodes[k] = static_cast<std::uint16_t>(4 * i + k);
-                positions.emplace_back(now[i][k]);
-            }
-            lanes.set(i, element, nodes);
+            for (const Vec3& x : now[i]) positions.emplace_back(x);
+            lanes.set(i, element);
             expected.push_back(kernel.forces(element, now[i]));
             volumes.push_back(element.volume);
             energies.push_back(kernel.energy(element, now[i]));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "physics/test_bodies.h"
 #include "physics/viscous_kernel.h"
@@ -57,7 +58,10 @@ struct ViscousElements {
                     bool is_crushed)
         : kernel(of), length(ViscousKernel::history_size(kernel.terms.size()) + 5) {
         kernel.begin_step(0.05);
-        lanes.assign(n, static_cast<std::uint16_t>(4 * n), kernel);
+        lanes.assign(n, kernel);
+        std::vector<std::uint16_t> corners(4 * n);
+        std::iota(corners.begin(), corners.end(), std::uint16_t{0});
+        lanes.set_nodes(corners, static_cast<std::uint16_t>(4 * n));
         memory.resize((2 * n + 3) * length);
         for (double& x : memory) x = random.uniform(-1.0, 1.0) * strain * stiffness(kernel.law);
         const auto stretches = [&]() -> Vec3 { return Vec3::Ones() + random.vector(strain); };
@@ -71,9 +75,7 @@ struct ViscousElements {
             now.push_back(deformed(X, random_deformation(random, s)));
             if (is_crushed && i % 5 == 0) std::swap(before.back(), now.back());
             ids.push_back(2 * i + 3);
-            std::array<std::uint16_t, 4> nodes;
-            for (std::size_t k = 0; k < 4; ++k) nodes[k] = static_cast<std::uint16_t>(4 * i + k);
-            lanes.set(i, ElementId(ids[i]), elements[i], nodes);
+            lanes.set(i, ElementId(ids[i]), elements[i]);
         }
     }
     static std::vector<LocalVector> local(const std::vector<Tetrahedron>& tetrahedra) {
@@ -236,9 +238,7 @@ TEST(ViscousLanes, RememberNothingAtRest) {
             const Tetrahedron X = random_tetrahedron(random, 0.01);
             elements.elements[i] = kernel.precompute(X, fibre_direction());
             elements.before[i] = elements.now[i] = X;
-            std::array<std::uint16_t, 4> nodes;
-            for (std::size_t k = 0; k < 4; ++k) nodes[k] = static_cast<std::uint16_t>(4 * i + k);
-            elements.lanes.set(i, ElementId(elements.ids[i]), elements.elements[i], nodes);
+            elements.lanes.set(i, ElementId(elements.ids[i]), elements.elements[i]);
         }
         std::fill(elements.memory.begin(), elements.memory.end(), 0.0);
         Memory memory = elements.memory;
