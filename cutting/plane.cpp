@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "cutting/plane.h"
 
-#include <CGAL/MP_Float.h>
+#include <CGAL/Mpzf.h>
 
 #include <cmath>
 
@@ -23,9 +23,9 @@ int Plane::side(const Vec3& x) const {
         size += std::abs(normal_[c]) * (std::abs(x[c]) + std::abs(point_[c]));
     }
     if (std::abs(value) > 8.0 * 0x1.0p-53 * size && size > 0x1.0p-900) return value > 0.0 ? 1 : -1;
-    CGAL::MP_Float exact(0.0);
+    CGAL::Mpzf exact(0.0);
     for (int c = 0; c < 3; ++c)
-        exact += CGAL::MP_Float(normal_[c]) * (CGAL::MP_Float(x[c]) - CGAL::MP_Float(point_[c]));
+        exact += CGAL::Mpzf(normal_[c]) * (CGAL::Mpzf(x[c]) - CGAL::Mpzf(point_[c]));
     return CGAL::sign(exact) == CGAL::NEGATIVE ? -1 : 1;
 }
 

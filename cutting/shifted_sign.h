@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <CGAL/MP_Float.h>
+#include <CGAL/Mpzf.h>
 #include <CGAL/determinant.h>
 
 #include <array>
@@ -106,7 +106,7 @@ std::optional<ShiftedSign> rounded_sign(const std::array<const ShiftedPoint<n>*,
 
 template <std::size_t n>
 ShiftedSign exact_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
-    const CGAL::MP_Float exact = determinant(reduced<CGAL::MP_Float, n>(points, axis));
+    const CGAL::Mpzf exact = determinant(reduced<CGAL::Mpzf, n>(points, axis));
     return {static_cast<int>(CGAL::sign(exact)), CGAL::to_double(exact)};
 }
 
