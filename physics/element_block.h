@@ -54,8 +54,8 @@ enum class TangentKind { exact, positive };  ///< see positive_part
 /// order of their ids, so that a block's sums do not depend on how it came about. Its nodes have
 /// local numbers, which order them as their ids do.
 ///
-/// Edits touch many blocks, and few elements of each: so what the others have stays where it is,
-/// and of these number_nodes() looks at nothing but their local numbers.
+/// An edit touches many blocks, but few elements of each. What it costs a block follows these, but
+/// for local numbers, and for elements that come or go: then all stand in other slots.
 class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
@@ -132,9 +132,9 @@ class ElementBlock {
 
     /// Node ids of the element in the given slot.
     virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
-    /// Takes the local numbers over.
-    /// @param changed  slots whose elements are not what they were when this was last called, in
-    ///                 ascending order; if have_moved_, elements stand in other slots than then
+    /// Brings what follows elements and their local numbers up to them.
+    /// @param changed  slots whose elements are not what they were when this was last called; if
+    ///                 have_moved_, all may stand in other slots than then
     virtual void use_numbers(std::span<const std::size_t> changed) = 0;
 
     /// Local numbers of the nodes of the element in slot s.
@@ -145,7 +145,7 @@ class ElementBlock {
         return std::span(local_corners_).subspan(s * num_corners_, num_corners_);
     }
 
-    /// Where a new element stands.
+    /// Returns where the new element stands.
     std::size_t add_slot(ElementId e);
     void change_slot(std::size_t s);
     void remove_slot(std::size_t s);
