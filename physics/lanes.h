@@ -365,10 +365,11 @@ template <class Number>
 /// late.
 template <class Group>
 [[gnu::always_inline]] inline void fetch_ahead(std::span<const Group> groups, std::size_t now) {
-    constexpr std::size_t num_rounds = 8, pair_of_lines = 128;  // lines come in pairs
+    constexpr std::size_t num_rounds = 8, cache_line = 64;
+    constexpr int for_reading = 0, to_second_cache = 2;  // the first is full of what is in use
     const Group& group = groups[std::min(now + num_rounds, groups.size() - 1)];
-    for (std::size_t i = 0; i < sizeof(Group); i += pair_of_lines)
-        __builtin_prefetch(reinterpret_cast<const char*>(&group) + i);
+    for (std::size_t i = 0; i < sizeof(Group); i += cache_line)
+        __builtin_prefetch(reinterpret_cast<const char*>(&group) + i, for_reading, to_second_cache);
 }
 
 using Quad = double __attribute__((vector_size(32)));  // a LocalVector
