@@ -70,15 +70,43 @@ const Passage& first_of(const Passages& passages) {
                          [&](const Passage& p) { return is_first(p) && skipped-- == 0; });
 }
 
+/// Counts the crossings of the edges that the middle of the edge from a to b has come to. It counts
+/// as on the side of the end b: where it is, if it was made off the surface. Round a triangle the
+/// crossings are odd in number if the border of the sweep runs through it, and in no other case,
+/// now and after each later step: rounding has moved the middle off the edge, so nothing of this
+/// may be left to its place.
+/// @param has_border  (p, q, r): whether the border runs through a triangle; nothing if the surface
+///                    has a rim instead
+/// @param is_passed_to_b  (i): whether a way from the middle's neighbour ring[i] to b by the middle
+///                        crosses the surface; asked where the rim is in their face
+template <class HasBorder, class IsPassed>
+void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
+                   const std::vector<NodeId>& ring, HasBorder has_border, IsPassed is_passed_to_b) {
+    const bool is_crossed = front.is_crossed(a, b);
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const NodeId n = ring[i];
+        const bool at_a = front.is_crossed(a, n), at_b = front.is_crossed(b, n);
+        bool is_crossed_to_n = at_b;
+        if (const std::optional<bool> border = has_border(middle, b, n))
+            is_crossed_to_n = at_b != *border;
+        else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
+            is_crossed_to_n = is_passed_to_b(i);
+        if (is_crossed_to_n) front.toggle(middle, n);
+    }
+    if (is_crossed) front.toggle(a, b);
+    if (is_crossed != has_border(a, middle, b).value_or(false)) front.toggle(a, middle);
+}
+
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-             const SplitOptions& options, Scars& scars)
+             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
           scars_(scars),
+          resting_(resting),
           options_(options),
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
@@ -95,16 +123,15 @@ class Splitter {
         while (!queue_.empty()) divide_next();
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-        const Parting parting = parted_faces(mesh_, front_, scars_, touched_, options_.snap > 0.0);
-        for (const FaceId f : parting.faces) {
-            report_.cut_area += topology::rest_area(mesh_, f);
-            ++report_.faces_opened;
-            edit_->open(f);
+        std::vector<ElementId> crumbs = part(front_, options_.snap > 0.0);
+        for (const RestingBlade& blade : resting_) {
+            const auto others = part(blade.front, blade.snaps);
+            crumbs.insert(crumbs.end(), others.begin(), others.end());
         }
         Split result{edit_->commit(), report_};
         front_.follow(result.changes);
         scars_.follow(result.changes);
-        for (const ElementId e : parting.crumbs) scars_.add_crumb(e);
+        for (const ElementId e : crumbs) scars_.add_crumb(e);
         leave_behind(result.changes);
         return result;
     }
@@ -125,6 +152,17 @@ class Splitter {
             return length != other.length ? length < other.length : other.edge < edge;
         }
     };
+    /// Opens what lies on the cut of the front; returns the crumbs.
+    std::vector<ElementId> part(const CutFront& front, bool snaps) {
+        Parting parting = parted_faces(mesh_, front, scars_, touched_, snaps);
+        for (const FaceId f : parting.faces) {
+            report_.cut_area += topology::rest_area(mesh_, f);
+            ++report_.faces_opened;
+            edit_->open(f);
+        }
+        return std::move(parting.crumbs);
+    }
+
     MovingPoint point(NodeId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
@@ -166,8 +204,8 @@ class Splitter {
     void divide_next();
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
-    void place_on_side(NodeId a, NodeId b, NodeId middle, const std::vector<NodeId>& ring,
-                       const std::vector<Passages>& to_ring, const Passages& to_b);
+    void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
+              double reach);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
@@ -178,6 +216,7 @@ class Splitter {
     const CutSurface& surface_;
     CutFront& front_;
     Scars& scars_;
+    const std::span<RestingBlade> resting_;
     const SplitOptions& options_;
     const double snap_;      // share of an edge: nearer crossings count as at its end
     const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
@@ -437,10 +476,19 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     std::vector<Passages> to_ring;
     for (const NodeId n : ring) to_ring.push_back(ask(n));
     Passages to_a = ask(edge.a), to_b = ask(edge.b);
+    const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
+        return surface_.ends_inside({point(p), point(q), point(r)});
+    };
+    const auto place = [&](NodeId a, NodeId b, const Passages& towards_b) {
+        place_on_side(front_, a, b, middle, ring, has_border, [&](std::size_t i) {
+            return (to_ring[i].size() + towards_b.size()) % 2 == 1;
+        });
+    };
     if (t < passage.place)
-        place_on_side(edge.b, edge.a, middle, ring, to_ring, to_a);
+        place(edge.b, edge.a, to_a);
     else
-        place_on_side(edge.a, edge.b, middle, ring, to_ring, to_b);
+        place(edge.a, edge.b, to_b);
+    for (const RestingBlade& blade : resting_) tell(blade, edge, middle, ring, reach);
     // What the blade did before, it did to the edge that was there then: in smaller steps these
     // would not be asked for it.
     const auto take = [&](NodeId other, Passages&& passed) {
@@ -453,28 +501,28 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     return middle;
 }
 
-// The middle counts as on the side of the end b: where it is, if it was made off the surface. Round
-// a triangle the crossings are odd in number if the border of the sweep runs through it, and in no
-// other case, now and after each later step: rounding has moved the middle off the edge, so nothing
-// of this may be left to its place.
-void Splitter::place_on_side(NodeId a, NodeId b, NodeId middle, const std::vector<NodeId>& ring,
-                             const std::vector<Passages>& to_ring, const Passages& to_b) {
-    const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
-        return surface_.ends_inside({point(p), point(q), point(r)});
-    };
-    const bool is_crossed = front_.is_crossed(a, b);
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const NodeId n = ring[i];
-        const bool at_a = front_.is_crossed(a, n), at_b = front_.is_crossed(b, n);
-        bool is_crossed_to_n = at_b;
-        if (const auto border = has_border(middle, b, n))
-            is_crossed_to_n = at_b != *border;
-        else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
-            is_crossed_to_n = (to_ring[i].size() + to_b.size()) % 2 == 1;
-        if (is_crossed_to_n) front_.toggle(middle, n);
-    }
-    if (is_crossed) front_.toggle(a, b);
-    if (is_crossed != has_border(a, middle, b).value_or(false)) front_.toggle(a, middle);
+/// A blade that this cut comes across. A middle between two nodes on its cut is on it, too; any
+/// other keeps to an end that is off it, as edges without a node on it are not to stay crossed.
+void Splitter::tell(const RestingBlade& blade, Edge edge, NodeId middle,
+                    const std::vector<NodeId>& ring, double reach) {
+    CutFront& front = blade.front;
+    if (front.is_on(edge.a) && front.is_on(edge.b))
+        front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,
+                     scars_.take_rank());
+    else if (front.is_on(edge.b))
+        std::swap(edge.a, edge.b);
+    place_on_side(
+        front, edge.a, edge.b, middle, ring,
+        [&](NodeId p, NodeId q, NodeId r) {
+            return blade.is_inside({point(p), point(q), point(r)});
+        },
+        [](std::size_t) { return false; });
+    // Its cut ends beyond the middle, and goes through an edge that would have been divided.
+    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](NodeId n) {
+        return !front.is_on(n) && front.is_crossed(middle, n);
+    });
+    if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))
+        front.put_on(middle, false, reach, scars_.take_rank());
 }
 
 /// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by
@@ -501,8 +549,8 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
 double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-            const SplitOptions& options, Scars& scars) {
-    return Splitter(mesh, tissue, surface, front, options, scars).run();
+            const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
+    return Splitter(mesh, tissue, surface, front, options, scars, resting).run();
 }
 
 }  // namespace incise::cutting

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "cutting/cut_front.h"
 #include "cutting/cut_surface.h"
+#include "cutting/resting_blade.h"
 #include "cutting/scars.h"
 #include "cutting/step_length.h"
 #include "cutting/tissue_motion.h"
@@ -58,10 +60,14 @@ struct Split {
 /// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
 ///               brought up to date
 /// @param scars  of all cuts of this body so far; brought up to date
+/// @param resting  the blades that are in the body besides; their fronts know of what is divided,
+///                 but not yet of nodes that the edit copies: CutFront::follow. What comes to lie
+///                 on their cuts behind them opens too.
 /// Throws InputError, and leaves the mesh as it was, if a crossed element is no tetrahedron.
 /// Cost: a few microseconds for each element that is crossed, and the search for them: what is near
 /// the surface, if the motion has boxes, else O(#elements).
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-            CutFront& front, const SplitOptions& options, Scars& scars);
+            CutFront& front, const SplitOptions& options, Scars& scars,
+            std::span<RestingBlade> resting = {});
 
 }  // namespace incise::cutting

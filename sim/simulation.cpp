@@ -193,9 +193,14 @@ void Simulation::warn_of_lost_elements() {
 void Simulation::cut(Tool& tool, double from, double to) {
     if (!tool.is_present(from, to)) return;
     const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions(), &boxes_};
+    std::vector<cutting::RestingBlade> resting;
+    for (Tool& other : tools_)
+        if (&other != &tool)
+            if (const auto blade = other.resting(from, to, &other < &tool))
+                resting.push_back(*blade);
     const cutting::Split done = [&] {
         try {
-            return tool.cut(mesh_, tissue, scars_, from, to);
+            return tool.cut(mesh_, tissue, scars_, resting, from, to);
         } catch (const InputError& error) {
             std::ostringstream text;
             text << "tool '" << tool.name() << "', at t = " << to << " s: " << error.what();

@@ -162,16 +162,23 @@ cutting::Box Tool::swept_box(std::span<const Vec3> points) const {
 }
 
 cutting::Split Tool::cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
-                         cutting::Scars& scars, double from, double to) {
+                         cutting::Scars& scars, std::span<cutting::RestingBlade> resting,
+                         double from, double to) {
     if (!is_present(from, to)) return {};
     return std::visit(
-        [&](const auto& kind) { return cut_with(kind, mesh, tissue, scars, from, to); },
+        [&](const auto& kind) { return cut_with(kind, mesh, tissue, scars, resting, from, to); },
         spec_.kind);
 }
 
+std::optional<cutting::RestingBlade> Tool::resting(double from, double to, bool has_moved) {
+    if (front_.is_empty()) return std::nullopt;
+    const auto edge = edge_at(std::get<Blade>(spec_.kind), has_moved ? to : from);
+    return cutting::RestingBlade{front_, {edge, edge}, has_moved, options_.snap > 0.0};
+}
+
 cutting::Split Tool::cut_with(const Carver& carver, topology::Mesh& mesh,
-                              const cutting::TissueMotion& tissue, cutting::Scars&, double from,
-                              double to) {
+                              const cutting::TissueMotion& tissue, cutting::Scars&,
+                              std::span<cutting::RestingBlade>, double from, double to) {
     cutting::CutPlan plan;
     plan.elements_to_remove =
         cutting::covered_elements(tissue, rigid(carver), pose(from), pose(to));
@@ -194,22 +201,23 @@ cutting::Box Tool::box_at(const Blade& blade, double time) const {
 
 cutting::Split Tool::cut_with(const Blade& blade, topology::Mesh& mesh,
                               const cutting::TissueMotion& tissue, cutting::Scars& scars,
-                              double from, double to) {
+                              std::span<cutting::RestingBlade> resting, double from, double to) {
     if (front_.is_empty() && !tissue.may_meet(box_at(blade, from).merged(box_at(blade, to))))
         return {};
     const auto before = edge_at(blade, from), after = edge_at(blade, to);
     if (blade.mode == CutMode::split)
         return cutting::split(mesh, tissue, cutting::SweptEdge(before, after), front_, options_,
-                              scars);
+                              scars, resting);
     cutting::CutPlan plan;
     plan.faces_to_open = cutting::faces_to_open(tissue, before, after);
     return carry_out(plan, mesh);
 }
 
 cutting::Split Tool::cut_with(const Cut&, topology::Mesh& mesh, const cutting::TissueMotion& tissue,
-                              cutting::Scars& scars, double, double) {
+                              cutting::Scars& scars, std::span<cutting::RestingBlade> resting,
+                              double, double) {
     cutting::CutFront front;
-    return cutting::split(mesh, tissue, *surface_, front, options_, scars);
+    return cutting::split(mesh, tissue, *surface_, front, options_, scars, resting);
 }
 
 }  // namespace incise::sim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,10 +45,16 @@ class Tool {
 
     /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
     /// did, which is nothing if it is not there.
+    /// @param resting  the other tools that are on their way through the body
     cutting::Split cut(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
-                       cutting::Scars& scars, double from, double to);
+                       cutting::Scars& scars, std::span<cutting::RestingBlade> resting, double from,
+                       double to);
 
-    /// Its front keeps up with what another tool did.
+    /// Of a blade that has cut elements in part: what it is while another tool cuts in [from, to],
+    /// before or after its own turn in that step. Refers to its front.
+    std::optional<cutting::RestingBlade> resting(double from, double to, bool has_moved);
+
+    /// Its front keeps up with the nodes that another tool copied.
     void follow(const topology::ChangeSet& changes) { front_.follow(changes); }
 
     /// Whether the mesh has all nodes that it remembers.
@@ -58,14 +65,14 @@ class Tool {
 
   private:
     cutting::Split cut_with(const Carver& carver, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
-                            double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars,
+                            std::span<cutting::RestingBlade> resting, double from, double to);
     cutting::Split cut_with(const Blade& blade, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
-                            double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars,
+                            std::span<cutting::RestingBlade> resting, double from, double to);
     cutting::Split cut_with(const Cut& cut, topology::Mesh& mesh,
-                            const cutting::TissueMotion& tissue, cutting::Scars& scars, double from,
-                            double to);
+                            const cutting::TissueMotion& tissue, cutting::Scars& scars,
+                            std::span<cutting::RestingBlade> resting, double from, double to);
     std::vector<Vec3> edge_at(const Blade& blade, double time) const;
     cutting::Box box_at(const Blade& blade, double time) const;
     cutting::Box swept_box(std::span<const Vec3> points) const;

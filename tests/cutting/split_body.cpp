@@ -97,8 +97,9 @@ SplitBody::SplitBody(const topology::MeshData& data)
       positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {}
 
 Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-                     const std::vector<Vec3>& moved) {
-    const Split done = split(mesh, {mesh, positions, moved}, surface, front, options, scars);
+                     const std::vector<Vec3>& moved, std::span<RestingBlade> resting) {
+    const Split done =
+        split(mesh, {mesh, positions, moved}, surface, front, options, scars, resting);
     positions = followed(moved, done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
     if (!done.changes.is_empty()) {

@@ -26,7 +26,7 @@ class SplitBody {
 
     /// The nodes go to `moved` (m, by node id) meanwhile.
     Split cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-              const std::vector<Vec3>& moved);
+              const std::vector<Vec3>& moved, std::span<RestingBlade> resting = {});
     /// A cut for itself through tissue that is still.
     Split cut(const CutSurface& surface, const SplitOptions& options = {0.0, {}});
 

@@ -157,6 +157,53 @@ path = [{ time = 0.02, at = [0, -0.04, 0] }, { time = 0.13, at = [0, 0.14, 0] }]
     EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
 }
 
+TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
+    // The second one meets the front of the first one all the way, before and after its turn.
+    for (const char* order : {"knife", "other"})
+        for (const char* snap : {"0", "0.6"}) {
+            SCOPED_TRACE(testing::Message() << order << " first, snap " << snap);
+            const auto blade = [&](const std::string& name, const char* edge) {
+                return "[[tool]]\nkind = \"blade\"\nname = \"" + name + "\"\nsnap = " + snap +
+                       "\nedge = " + edge +
+                       "\npath = [{ time = 0, at = [0, 0, 0.113] }, { time = 0.1, at = [0, 0, "
+                       "-0.02] }]\n";
+            };
+            const std::string knife = blade("knife", "[[0.053, -0.1, 0], [0.053, 0.2, 0]]"),
+                              other = blade("other", "[[-0.1, 0.047, 0], [0.2, 0.047, 0.004]]");
+            Simulation simulation(scenario_of(
+                soft_cube + (order == std::string("knife") ? knife + other : other + knife) +
+                dynamics(0.12)));
+            run(simulation);
+            EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+            EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+        }
+}
+
+TEST(SplittingBlade, GoesOnAfterAPlaneHasCutWhatItIsIn) {
+    for (const char* snap : {"0", "0.6"}) {
+        SCOPED_TRACE(testing::Message() << "snap " << snap);
+        Simulation simulation(scenario_of(soft_cube + dynamics(0.12) + R"(
+[[tool]]
+kind = "blade"
+name = "knife"
+edge = [[0.053, -0.1, 0], [0.053, 0.2, 0]]
+path = [
+    { time = 0, at = [0, 0, 0.11] }, { time = 0.04, at = [0, 0, 0.053] },
+    { time = 0.06, at = [0, 0, 0.053] }, { time = 0.1, at = [0, 0, -0.02] },
+]
+snap = )" + snap + R"(
+[[tool]]
+kind = "cut"
+name = "across"
+time = 0.05
+plane = { point = [0, 0.047, 0], normal = [0.1, 1, 0.05] }
+snap = )" + snap + "\n"));
+        run(simulation);
+        EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+        EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+    }
+}
+
 TEST(SplittingBlade, GoesOnWhereItLeftOffWhenItDrawsBack) {
     // Half way in, out again, and then right through.
     Simulation simulation(scenario_of(soft_cube + dynamics(0.3) + R"(
