@@ -21,35 +21,33 @@ constexpr double growth_before_look = 0.5;
 /// How many edge lengths away from its whole front a blade has probably gone.
 constexpr double far_away = 4.0;
 
-/// What is known of nodes, by id: a bit each.
-using Marks = std::vector<std::uint8_t>;
-constexpr std::uint8_t on_cut_mark = 1, border_mark = 2, beside_mark = 4, wide_border_mark = 8,
-                       beside_wide_mark = 16;
+/// How many elements round the border a front remembers. A blade that turns and comes back beside
+/// its way meets what it has cut, and has to find all of it or nothing.
+constexpr std::uint8_t num_rings_kept = 8;
 
-/// Whether one of its corners has all of the bits.
-bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t bits) {
+/// Of nodes, by id.
+using Marks = std::vector<std::uint8_t>;
+
+bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t mark) {
     const auto corners = mesh.corners(e);
     return std::any_of(corners.begin(), corners.end(),
-                       [&](NodeId n) { return (marks[n.index()] & bits) == bits; });
+                       [&](NodeId n) { return marks[n.index()] == mark; });
 }
 
-void mark_corners(const Mesh& mesh, ElementId e, Marks& marks, std::uint8_t bit) {
-    for (const NodeId n : mesh.corners(e)) marks[n.index()] |= bit;
-}
-
-/// The elements that have a node on the cut, which is marked. Those round a node hang together
-/// through faces at it.
-std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front, Marks& marks) {
+/// The elements that have a node on the cut. Those round a node hang together through faces at it.
+std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
+    constexpr std::uint8_t on_cut = 1;
+    Marks marks(mesh.node_capacity());
     std::vector<bool> is_known(mesh.element_capacity());
     std::vector<ElementId> elements;
     const auto add = [&](ElementId e) {
-        if (is_known[e.index()] || !has_corner(mesh, e, marks, on_cut_mark)) return;
+        if (is_known[e.index()] || !has_corner(mesh, e, marks, on_cut)) return;
         is_known[e.index()] = true;
         elements.push_back(e);
     };
     front.for_each([&](NodeId n) {
         if (!mesh.is_alive(n)) return;
-        marks[n.index()] |= on_cut_mark;
+        marks[n.index()] = on_cut;
         add(mesh.anchor(n));
     });
     for (std::size_t next = 0; next < elements.size(); ++next)
@@ -115,29 +113,24 @@ bool has_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& p
     return false;
 }
 
-/// By node id, which nodes of the front are beside the border of the cut. What it says of other
-/// nodes is of no meaning.
-Marks nodes_beside_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                          const CutFront& front, bool snaps) {
-    Marks marks(mesh.node_capacity());
-    const std::vector<ElementId> elements = elements_at(mesh, front, marks);
+/// By node id, which nodes of the front are near the border of the cut: the ring of elements that
+/// each is in, from 1 for those at the border; 0 for those that are farther away. What it says of
+/// other nodes is of no meaning.
+Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                         const CutFront& front) {
+    Marks rings(mesh.node_capacity());
+    const auto reach = [&](ElementId e, std::uint8_t ring) {
+        for (const NodeId n : mesh.corners(e))
+            if (rings[n.index()] == 0) rings[n.index()] = ring;
+    };
+    const std::vector<ElementId> elements = elements_at(mesh, front);
     const CrossedEdges edges(mesh, front);
     for (const ElementId e : elements)
-        if (has_border(mesh, surface, position, edges, e))
-            mark_corners(mesh, e, marks, border_mark);
-    const auto spread = [&](std::uint8_t from, std::uint8_t to) {
+        if (has_border(mesh, surface, position, edges, e)) reach(e, 1);
+    for (std::uint8_t ring = 1; ring < num_rings_kept; ++ring)
         for (const ElementId e : elements)
-            if (has_corner(mesh, e, marks, from)) mark_corners(mesh, e, marks, to);
-    };
-    spread(border_mark, beside_mark);
-    std::uint8_t result = beside_mark;
-    if (snaps) {
-        spread(on_cut_mark | beside_mark, wide_border_mark);
-        spread(wide_border_mark, beside_wide_mark);
-        result = beside_wide_mark;
-    }
-    for (std::uint8_t& mark : marks) mark &= result;
-    return marks;
+            if (has_corner(mesh, e, rings, ring)) reach(e, static_cast<std::uint8_t>(ring + 1));
+    return rings;
 }
 
 /// Each of the nodes comes to be on the side of those of its neighbours that are not on the cut: no
@@ -167,7 +160,7 @@ void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front)
 }  // namespace
 
 void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                  bool has_crossed, bool snaps, CutFront& front) {
+                  bool has_crossed, CutFront& front) {
     if (front.is_empty()) return;
     const auto is_far = [&] {
         bool is_near = false;
@@ -180,9 +173,9 @@ void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf&
     const bool has_grown = static_cast<double>(front.num_new()) >
                            growth_before_look * static_cast<double>(front.size());
     if (has_crossed ? !has_grown : !front.has_changed() && !is_far()) return;
-    const Marks beside = nodes_beside_border(mesh, surface, position, front, snaps);
+    const Marks rings = rings_round_border(mesh, surface, position, front);
     forget(mesh,
-           front.nodes_unless([&](NodeId n) { return mesh.is_alive(n) && beside[n.index()]; }),
+           front.nodes_unless([&](NodeId n) { return mesh.is_alive(n) && rings[n.index()] != 0; }),
            front);
     front.set_reviewed();  // forgetting takes crossings back
 }

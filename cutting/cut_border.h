@@ -14,20 +14,18 @@ namespace incise::cutting {
 using PositionOf = std::function<Vec3(topology::NodeId)>;
 
 /// Forgets the nodes of the front round which the cut is finished: a later passage there is another
-/// cut. Kept are those beside the border at which the sweep has ended, as the cut may go on there:
-/// they have an element in common with a node of an element through which the border runs. The
-/// counts of crossings tell which: round a triangle through which the border runs they are odd in
-/// number. Where they are odd but the blade is no more, it ended in the body and has gone.
+/// cut. Kept are those near the border at which the sweep has ended, as the cut may go on there:
+/// they are a few elements away from one through which the border runs. The counts of crossings
+/// tell which do: round a triangle through which the border runs they are odd in number. Where they
+/// are odd but the blade is no more, it ended in the body and has gone.
 ///
 /// To find this out takes a look at the whole front. So it is done when the front has grown by a
 /// share of its size, and when the sweep crosses nothing any more but has done so, or is far away.
 ///
 /// @param has_crossed  whether the surface passed through any element in this step
-/// @param snaps  whether nodes may come to count as on the cut from an element farther away: then
-///               the elements beside those of the border belong to it too
-/// Cost of a look: proportional to the number of elements at the front, and clearing five bytes for
+/// Cost of a look: proportional to the number of elements at the front, and clearing six bytes for
 /// each node of the mesh and a bit for each element.
 void leave_behind(const topology::Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                  bool has_crossed, bool snaps, CutFront& front);
+                  bool has_crossed, CutFront& front);
 
 }  // namespace incise::cutting

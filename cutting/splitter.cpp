@@ -172,7 +172,7 @@ class Splitter {
     void leave_behind(const topology::ChangeSet& changes) {
         cutting::leave_behind(
             mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
-            !touched_.empty(), options_.snap > 0.0, front_);
+            !touched_.empty(), front_);
     }
 
     /// Of a copy, where its source is.

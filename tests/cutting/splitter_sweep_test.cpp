@@ -495,6 +495,53 @@ TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
         }
 }
 
+/// Whether some piece has nodes of both sides x = 0 and x = 1.
+bool are_sides_joined(const topology::Mesh& mesh) {
+    const topology::Components components = topology::components(mesh);
+    std::set<int> left, right;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const topology::ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        for (const NodeId n : mesh.corners(e)) {
+            const double x = mesh.rest_position(n).x();
+            if (x == 0.0) left.insert(components.of_element[i]);
+            if (x == 1.0) right.insert(components.of_element[i]);
+        }
+    }
+    return std::any_of(left.begin(), left.end(), [&](int piece) { return right.contains(piece); });
+}
+
+// It meets again what it has cut a little earlier, some of which it has left behind by then.
+TEST(SplitByBlade, ThatComesBackBesideItsWayPartsTheBody) {
+    for (const double snap : {0.0, 0.3})
+        for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::num_cases(60));
+             ++seed) {
+            SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
+            Random random(seed);
+            const int n = 3 + static_cast<int>(seed % 4);
+            SplitBody body(seed % 2 == 0
+                               ? test::jittered_cube(n, 0.2, seed)
+                               : topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                                    Vec3::Ones(), {n, n, n}));
+            const bool is_wavering = seed % 3 == 0;
+            std::vector<std::array<double, 2>> way{{random.uniform(0.4, 0.6), 1.3}};
+            if (is_wavering) {
+                for (auto [x, z] = way[0]; z > -0.3;) {
+                    z += random.uniform(-0.3, 0.15);
+                    x = std::clamp(x + random.uniform(-0.02, 0.02), 0.35, 0.65);
+                    way.push_back({x, z});
+                }
+            } else {
+                const double beside = random.uniform(-0.06, 0.06), low = random.uniform(0.2, 0.7);
+                way.push_back({way[0][0], low});
+                way.push_back({way[0][0] + beside, low + random.uniform(0.05, 0.6)});
+                way.push_back({way[0][0] + 2.0 * beside, -0.3});
+            }
+            body.cut(way_of_edge(way, seed % 5 == 0 ? 9.0 : 0.07), guarded(body.mesh, snap));
+            ASSERT_FALSE(are_sides_joined(body.mesh));
+        }
+}
+
 // Where it has been before is another cut.
 TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
     for (std::uint64_t seed = 0; seed < test::num_cases(24); ++seed) {
