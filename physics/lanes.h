@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #ifdef __AVX2__
@@ -45,6 +46,7 @@ struct NumberFormat<double> {
     using Aliasing = Vector __attribute__((may_alias));
     using Bit = std::int64_t;
     using Bits = std::int64_t __attribute__((vector_size(vector_bytes)));
+    using UnsignedBits = std::uint64_t __attribute__((vector_size(vector_bytes)));
     static constexpr int mantissa_bits = 52;
     static constexpr Bit bias = 1023;
     static constexpr Bit root_guess = 0x5fe6eb50c7b537a9;
@@ -62,6 +64,7 @@ struct NumberFormat<float> {
     using Aliasing = Vector __attribute__((may_alias));
     using Bit = std::int32_t;
     using Bits = std::int32_t __attribute__((vector_size(vector_bytes)));
+    using UnsignedBits = std::uint32_t __attribute__((vector_size(vector_bytes)));
     static constexpr int mantissa_bits = 23;
     static constexpr Bit bias = 127;
     static constexpr Bit root_guess = 0x5f3759df;
@@ -117,6 +120,7 @@ struct Lanes {
     using Vector = typename Format::Vector;
     using Bit = typename Format::Bit;
     using Bits = typename Format::Bits;
+    using UnsignedBits = typename Format::UnsignedBits;
     static constexpr int size = num_lanes<Number>;
     Vector v;
 
@@ -171,7 +175,10 @@ struct Lanes {
         // What lies above has the exponent of the power of two that is nearest.
         constexpr Bit low = Format::root_of_half;
         const Bits bits = std::bit_cast<Bits>(a.v);
-        const Bits from_low = bits - low;
+        // Of negative numbers this would leave the range of signed ones.
+        const UnsignedBits difference =
+            std::bit_cast<UnsignedBits>(a.v) - std::make_unsigned_t<Bit>{low};
+        const Bits from_low = std::bit_cast<Bits>(difference);
         const Bits exponent = from_low >> Format::mantissa_bits;
         const Bits scaled = (from_low & mantissa) + low;
         const Lanes m = std::bit_cast<Vector>(scaled);
