@@ -168,10 +168,10 @@ TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
                        "\npath = [{ time = 0, at = [0, 0, 0.113] }, { time = 0.1, at = [0, 0, "
                        "-0.02] }]\n";
             };
-            const std::string knife = blade("knife", "[[0.053, -0.1, 0], [0.053, 0.2, 0]]"),
-                              other = blade("other", "[[-0.1, 0.047, 0], [0.2, 0.047, 0.004]]");
+            const std::string along = blade("knife", "[[0.053, -0.1, 0], [0.053, 0.2, 0]]"),
+                              across = blade("other", "[[-0.1, 0.047, 0], [0.2, 0.047, 0.004]]");
             Simulation simulation(scenario_of(
-                soft_cube + (order == std::string("knife") ? knife + other : other + knife) +
+                soft_cube + (order == std::string("knife") ? along + across : across + along) +
                 dynamics(0.12)));
             run(simulation);
             EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
