@@ -154,7 +154,7 @@ void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front)
         neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
         for (const NodeId other : neighbors) front.toggle(n, other);
     }
-    front.forget(nodes);
+    front.forget(mesh, nodes);
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include "cutting/cut_front.h"
 
 #include <algorithm>
+#include <array>
 
 namespace incise::cutting {
 
+using topology::ElementId;
+using topology::Mesh;
 using topology::NodeId;
 
 void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
@@ -36,6 +39,43 @@ void CutFront::toggle(NodeId a, NodeId b) {
     toggle_from(b, a);
 }
 
+std::optional<CutFront::Place> CutFront::place_of(ElementId e,
+                                                  std::span<const NodeId, 4> corners) const {
+    for (const NodeId n : corners)
+        if (!is_on(n)) return Place{n};
+    // Up to when it came to the cut it was this corner that told. So the element is where it has
+    // been all the time, and faces of it that have opened in earlier steps are as they would be in
+    // a single one.
+    NodeId last;
+    for (const NodeId n : corners)
+        if (is_near(n) && (!last.is_valid() || rank(n) > rank(last))) last = n;
+    if (last.is_valid()) return Place{last};
+    const auto place = places_.find(e.value);
+    if (place == places_.end()) return std::nullopt;
+    const auto& [corner, is_crossed] = place->second;
+    return Place{corners[static_cast<std::size_t>(corner)], is_crossed};
+}
+
+void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
+                            std::span<const topology::MeshEdit::DividedElement> elements) {
+    for (const auto& [kept, added] : elements) {
+        std::array<NodeId, 4> whole;
+        std::ranges::replace_copy(mesh.corners(kept), whole.begin(), middle, b);
+        const std::optional<Place> place = place_of(kept, whole);
+        places_.erase(kept.value);
+        if (!place) continue;
+        for (const auto& [half, lost] : {std::pair(kept, b), std::pair(added, a)}) {
+            const auto corners = mesh.corners(half);
+            if (!std::ranges::all_of(corners, [&](NodeId n) { return is_on(n); })) continue;
+            const bool is_beyond = place->corner == lost;
+            const NodeId corner = is_beyond ? middle : place->corner;
+            places_[half.value] = {
+                mesh.corner_of(half, corner),
+                is_beyond ? place->is_crossed == is_crossed(lost, middle) : place->is_crossed};
+        }
+    }
+}
+
 bool CutFront::is_on(const topology::Mesh& mesh) const {
     return std::all_of(nodes_.begin(), nodes_.end(), [&](const auto& node) {
         const NodeId n(static_cast<std::size_t>(node.first));
@@ -59,7 +99,7 @@ void CutFront::follow(const topology::ChangeSet& changes) {
     }
 }
 
-void CutFront::forget(const std::vector<NodeId>& nodes) {
+void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
     for (const NodeId n : nodes) {
         nodes_.erase(n.value);
         const auto place = crossed_.find(n.value);
@@ -69,6 +109,11 @@ void CutFront::forget(const std::vector<NodeId>& nodes) {
             if (!is_on(other)) toggle(n, other);
         }
     }
+    std::erase_if(places_, [&](const auto& place) {
+        const ElementId e(static_cast<std::size_t>(place.first));
+        if (!mesh.is_alive(e)) return true;
+        return std::ranges::any_of(mesh.corners(e), [&](NodeId n) { return !is_on(n); });
+    });
 }
 
 }  // namespace incise::cutting

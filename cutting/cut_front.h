@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "topology/change_set.h"
 #include "topology/mesh.h"
+#include "topology/mesh_edit.h"
 #include "topology/types.h"
 
 namespace incise::cutting {
@@ -50,6 +52,26 @@ class CutFront {
     bool is_crossed(topology::NodeId a, topology::NodeId b) const;
     void toggle(topology::NodeId a, topology::NodeId b);
 
+    /// Where an element is: whether the way from there to one of its corners crosses the cut.
+    struct Place {
+        topology::NodeId corner;
+        bool is_crossed = false;
+    };
+
+    /// Of a tetrahedron, or of one that was divided, with the corners that it had. An element is
+    /// where its corner is that is not on the cut. One that has no such corner is where it was
+    /// made; if it had one then, where the last of its corners is that came to count as on the cut,
+    /// being near it. Nothing if all were made on the cut and it is not known.
+    std::optional<Place> place_of(topology::ElementId e,
+                                  std::span<const topology::NodeId, 4> corners) const;
+
+    /// Keeps where the halves of elements are that were divided by `middle`, between `a` and `b`,
+    /// once the crossings of its edges are counted: a half that has lost the corner which told is
+    /// on the other side of the cut through the middle.
+    void place_halves(const topology::Mesh& mesh, topology::NodeId a, topology::NodeId b,
+                      topology::NodeId middle,
+                      std::span<const topology::MeshEdit::DividedElement> elements);
+
     /// Whether the mesh has had all nodes on the cut.
     bool is_on(const topology::Mesh& mesh) const;
 
@@ -75,8 +97,9 @@ class CutFront {
     /// The nodes for which keep(node) is false, in ascending order.
     template <class Keep>
     std::vector<topology::NodeId> nodes_unless(Keep keep) const;
-    /// Forgets that they are on the cut, and which edges to nodes off it are crossed.
-    void forget(const std::vector<topology::NodeId>& nodes);
+    /// Forgets that they are on the cut, which edges to nodes off it are crossed, and where
+    /// elements at them are.
+    void forget(const topology::Mesh& mesh, const std::vector<topology::NodeId>& nodes);
 
     /// Of the nodes on the cut, how many are so since the last call of set_reviewed(); whether
     /// anything has changed since.
@@ -88,7 +111,7 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.crossed_, self.num_new_, self.has_changed_);
+        ar(self.nodes_, self.crossed_, self.places_, self.num_new_, self.has_changed_);
     }
 
   private:
@@ -98,9 +121,15 @@ class CutFront {
         std::uint64_t rank = 0;
         static void archive(auto& ar, auto& self) { ar(self.is_exact, self.reach, self.rank); }
     };
+    struct LocalPlace {
+        std::int32_t corner = 0;  // which of the element's: copies of nodes take its place
+        bool is_crossed = false;
+        static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
+    };
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
+    std::unordered_map<std::int32_t, LocalPlace> places_;  // of elements whose corners are all on
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };

@@ -44,16 +44,10 @@ class Sides {
     }
 
   private:
-    /// Where an element lies all of whose corners are on the cut: whether the way to one of its
-    /// corners crosses the cut.
-    struct Place {
-        NodeId corner;
-        bool is_crossed;
-    };
+    using Place = CutFront::Place;
 
     void collect_faces(const std::vector<ElementId>& touched);
     void place_elements_on_cut();
-    void place_with_corners(ElementId e);
     void keep_crumbs(Parting& parting);
     bool collect_piece(ElementId start, std::vector<ElementId>& piece);
     bool is_crumb(const std::vector<ElementId>& piece) const;
@@ -66,9 +60,9 @@ class Sides {
     const Mesh& mesh_;
     const CutFront& front_;
     const Scars& scars_;
-    std::vector<FaceId> faces_;  // joined, on the cut, from their lower side
-    std::unordered_map<std::int32_t, Place> places_;
-    std::unordered_set<std::int32_t> large_;  // elements of large pieces
+    std::vector<FaceId> faces_;                       // joined, on the cut, from their lower side
+    std::unordered_map<std::int32_t, Place> places_;  // of elements all of whose corners are on it
+    std::unordered_set<std::int32_t> large_;          // elements of large pieces
     const std::vector<FaceId>* parted_ = nullptr;
 };
 
@@ -108,7 +102,9 @@ void Sides::place_elements_on_cut() {
     };
     for (const FaceId face : faces_)
         for (const ElementId e : {face.element, mesh_.neighbor(face).element})
-            if (!is_placed(e)) place_with_corners(e);
+            if (!is_placed(e))
+                if (const auto place = front_.place_of(e, mesh_.corners(e).first<4>()))
+                    places_.emplace(e.value, *place);
     for (const FaceId face : faces_) {
         add(face, mesh_.neighbor(face));
         add(mesh_.neighbor(face), face);
@@ -123,16 +119,6 @@ void Sides::place_elements_on_cut() {
         for (int f = 0; f < 4; ++f)
             if (const FaceId next = mesh_.neighbor({e, f}); next.is_valid()) add({e, f}, next);
     }
-}
-
-/// Where its corner was that came to the cut as the last of those near it: up to then it was this
-/// corner that told. So the element is where it has been all the time, and faces of it that have
-/// opened in earlier steps are as they would be in a single one.
-void Sides::place_with_corners(ElementId e) {
-    NodeId last;
-    for (const NodeId n : mesh_.corners(e))
-        if (front_.is_near(n) && (!last.is_valid() || front_.rank(n) > front_.rank(last))) last = n;
-    if (last.is_valid()) places_.emplace(e.value, Place{last, false});
 }
 
 void Sides::keep_crumbs(Parting& parting) {

@@ -21,9 +21,8 @@ struct Parting {
 /// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
 /// the cut ends, they do not agree yet.
 ///
-/// An element is where its corner is that is not on the cut. One that has no such corner is where
-/// the last of its corners is that came to count as on the cut, being near it; if all were made on
-/// the cut, it goes with the neighbour with which it shares the largest face. Small groups that
+/// Where an element is, see CutFront::place_of; one of which it is not known goes with the
+/// neighbour with which it shares the largest face. Small groups that
 /// hang on the rest of their side by nodes only, which snapping may leave, stay with the other
 /// side: they would be crumbs.
 ///

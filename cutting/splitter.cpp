@@ -488,7 +488,11 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         place(edge.b, edge.a, to_a);
     else
         place(edge.a, edge.b, to_b);
-    for (const RestingBlade& blade : resting_) tell(blade, edge, middle, ring, reach);
+    front_.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
+    for (const RestingBlade& blade : resting_) {
+        tell(blade, edge, middle, ring, reach);
+        blade.front.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
+    }
     // What the blade did before, it did to the edge that was there then: in smaller steps these
     // would not be asked for it.
     const auto take = [&](NodeId other, Passages&& passed) {

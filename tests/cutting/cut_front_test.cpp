@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "cutting/scars.h"
 #include "support/mesh_families.h"
+#include "topology/mesh_edit.h"
 
 namespace incise::cutting {
 namespace {
@@ -114,17 +116,82 @@ TEST(CutFront, ForgetsWhatIsLeftBehind) {
     front.toggle(node(1), node(7));  // an edge to a node that is not on the cut
     front.toggle(node(1), node(2));  // one to a node that is
     front.toggle(node(3), node(7));
-    front.forget(front.nodes_unless([](NodeId n) { return n != node(1); }));
+    const auto mesh = topology::Mesh::build(test::jittered_cube(1, 0.0, 1)).mesh;
+    front.forget(mesh, front.nodes_unless([](NodeId n) { return n != node(1); }));
     EXPECT_FALSE(front.is_on(node(1)));
     EXPECT_TRUE(front.is_on(node(2)) && front.is_on(node(3)));
     EXPECT_FALSE(front.is_crossed(node(1), node(7)));
     EXPECT_TRUE(front.is_crossed(node(1), node(2)));  // the other end still needs it
     EXPECT_TRUE(front.is_crossed(node(3), node(7)));
-    front.forget(front.nodes_unless([](NodeId) { return false; }));
+    front.forget(mesh, front.nodes_unless([](NodeId) { return false; }));
     EXPECT_TRUE(front.is_empty());
     for (const auto& [a, b] : {std::pair(1, 2), {1, 7}, {3, 7}})
         EXPECT_FALSE(
             front.is_crossed(node(static_cast<std::size_t>(a)), node(static_cast<std::size_t>(b))));
+}
+
+/// A tetrahedron of a cube with one corner, `far`, that is not on the cut; the others were made
+/// there.
+struct CornersOnCut {
+    topology::Mesh mesh = topology::Mesh::build(test::jittered_cube(1, 0.0, 1)).mesh;
+    topology::MeshEdit edit{mesh};
+    CutFront front;
+    ElementId element{0u};
+    NodeId far = mesh.corners(element)[0], near_end = mesh.corners(element)[1];
+
+    CornersOnCut() {
+        for (const NodeId n : mesh.corners(element).subspan(1)) front.put_on(n, true, 1.0, 1);
+    }
+
+    /// Returns the half that has the end b.
+    ElementId divide(ElementId e, NodeId a, NodeId b, bool is_crossed_from_a) {
+        const auto& halves = edit.bisect(e, a, b, 0.5);
+        front.put_on(halves.node, true, 1.0, 2);
+        if (is_crossed_from_a) front.toggle(a, halves.node);
+        front.place_halves(mesh, a, b, halves.node, halves.elements);
+        ElementId half;
+        for (const auto& [kept, added] : halves.elements)
+            if (kept == e) half = added;
+        EXPECT_GE(mesh.corner_of(half, b), 0);
+        return half;
+    }
+    std::optional<CutFront::Place> place_of(ElementId e) const {
+        return front.place_of(e, mesh.corners(e).first<4>());
+    }
+    void expect_place(ElementId e, NodeId corner, bool is_crossed) const {
+        const auto place = place_of(e);
+        ASSERT_TRUE(place);
+        EXPECT_EQ(place->corner, corner);
+        EXPECT_EQ(place->is_crossed, is_crossed);
+    }
+};
+
+TEST(CutFront, KnowsWhereElementsAreThatHaveNoCornerOffTheCut) {
+    for (const bool is_crossed : {true, false}) {
+        SCOPED_TRACE(is_crossed);
+        CornersOnCut body;
+        body.expect_place(body.element, body.far, false);
+        const ElementId beyond = body.divide(body.element, body.far, body.near_end, is_crossed);
+        body.expect_place(body.element, body.far, false);
+        // The middle is on this side of the cut through it if the way to it crosses the cut.
+        const NodeId middle = body.mesh.corners(beyond)[0];
+        body.expect_place(beyond, middle, !is_crossed);
+
+        // Both halves keep what tells, then one loses it again.
+        const NodeId third = body.mesh.corners(beyond)[2];
+        const ElementId half = body.divide(beyond, body.near_end, third, false);
+        for (const ElementId e : {beyond, half}) body.expect_place(e, middle, !is_crossed);
+        const ElementId last = body.divide(half, middle, third, true);
+        body.expect_place(half, middle, !is_crossed);
+        const NodeId second_middle = body.mesh.corners(last)[0];
+        body.expect_place(last, second_middle, !is_crossed);
+
+        body.front.forget(body.mesh, {third});
+        body.expect_place(last, third, false);
+        body.front.put_on(third, true, 1.0, 3);
+        EXPECT_FALSE(body.place_of(last));
+        body.expect_place(beyond, middle, !is_crossed);
+    }
 }
 
 /// Of a cut that passed by the node at this distance along the normal.
