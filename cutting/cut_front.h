@@ -37,6 +37,14 @@ class CutFront {
         return place != nodes_.end() && !place->second.is_exact;
     }
 
+    /// An earlier cut along the same surface was made all round the node, which is on this one:
+    /// what that has left joined between such nodes stays so.
+    void settle(topology::NodeId n) { nodes_.at(n.value).is_settled = true; }
+    bool is_settled(topology::NodeId n) const {
+        const auto place = nodes_.find(n.value);
+        return place != nodes_.end() && place->second.is_settled;
+    }
+
     /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
     std::uint64_t rank(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);
@@ -119,7 +127,10 @@ class CutFront {
         bool is_exact = false;
         double reach = 0.0;
         std::uint64_t rank = 0;
-        static void archive(auto& ar, auto& self) { ar(self.is_exact, self.reach, self.rank); }
+        bool is_settled = false;
+        static void archive(auto& ar, auto& self) {
+            ar(self.is_exact, self.reach, self.rank, self.is_settled);
+        }
     };
     struct LocalPlace {
         std::int32_t corner = 0;  // which of the element's: copies of nodes take its place

@@ -21,10 +21,18 @@ void Scars::add(topology::NodeId n, const Scar& scar) {
     if (!has(n, scar, scar.to_surface.norm())) scars_[n.value].push_back(scar);
 }
 
-bool Scars::has(topology::NodeId n, const Scar& scar, double size) const {
+const Scar* Scars::find(topology::NodeId n, const Scar& scar, double size) const {
     const auto known = of(n);
-    return std::any_of(known.begin(), known.end(),
-                       [&](const Scar& other) { return is_same(other, scar, size); });
+    const auto place = std::find_if(known.begin(), known.end(),
+                                    [&](const Scar& other) { return is_same(other, scar, size); });
+    return place == known.end() ? nullptr : &*place;
+}
+
+void Scars::settle(topology::NodeId n, std::uint64_t rank) {
+    const auto place = scars_.find(n.value);
+    if (place == scars_.end()) return;
+    for (Scar& scar : place->second)
+        if (scar.rank == rank) scar.is_settled = true;
 }
 
 std::span<const Scar> Scars::of(topology::NodeId n) const {

@@ -15,12 +15,13 @@ namespace incise::cutting {
 
 /// A node that counted as lying on a cut, and where that passed by it.
 struct Scar {
-    Vec3 normal;         ///< of the cut, of unit length
-    Vec3 to_surface;     ///< from the node to where the cut passed through an edge, m
-    bool is_exact;       ///< the node was made there
-    std::uint64_t rank;  ///< of the node on that cut: Scars::take_rank
+    Vec3 normal;              ///< of the cut, of unit length
+    Vec3 to_surface;          ///< from the node to where the cut passed through an edge, m
+    bool is_exact;            ///< the node was made there
+    std::uint64_t rank;       ///< of the node on that cut: Scars::take_rank
+    bool is_settled = false;  ///< the cut was made all round the node: it does not end there
     static void archive(auto& ar, auto& self) {
-        ar(self.normal, self.to_surface, self.is_exact, self.rank);
+        ar(self.normal, self.to_surface, self.is_exact, self.rank, self.is_settled);
     }
 };
 
@@ -31,11 +32,16 @@ struct Scar {
 class Scars {
   public:
     void add(topology::NodeId n, const Scar& scar);
-    /// Whether a cut that passes by the node as `scar` says is there again.
+    /// The scar that a cut left that passed by the node as `scar` says; null if none did.
     /// @param size  of the elements there, m, which rounding is measured by
-    bool has(topology::NodeId n, const Scar& scar, double size) const;
+    const Scar* find(topology::NodeId n, const Scar& scar, double size) const;
+    bool has(topology::NodeId n, const Scar& scar, double size) const {
+        return find(n, scar, size) != nullptr;
+    }
     std::span<const Scar> of(topology::NodeId n) const;
     bool is_empty() const { return scars_.empty(); }
+    /// The cut on which the node has the rank was made all round it.
+    void settle(topology::NodeId n, std::uint64_t rank);
 
     /// Nodes of all cuts are numbered in the order in which they come to count as on one.
     std::uint64_t take_rank() { return next_rank_++; }

@@ -40,6 +40,7 @@ class Sides {
         for (const FaceId f : faces_)
             if (is_parted(f)) result.faces.push_back(f);
         if (has_crumbs) keep_crumbs(result);
+        std::erase_if(result.faces, [&](FaceId f) { return is_settled(f); });
         return result;
     }
 
@@ -56,6 +57,7 @@ class Sides {
     bool is_placed(ElementId e) const;
     bool is_crossed_to(ElementId e, NodeId n) const;
     bool is_parted(FaceId f) const;
+    bool is_settled(FaceId f) const;
 
     const Mesh& mesh_;
     const CutFront& front_;
@@ -126,12 +128,14 @@ void Sides::keep_crumbs(Parting& parting) {
     parted_ = &parted;
     std::unordered_set<std::int32_t> crumbs;
     std::vector<ElementId> piece;
-    for (const FaceId f : parted)
+    for (const FaceId f : parted) {
+        if (is_settled(f)) continue;
         for (const ElementId e : {f.element, mesh_.neighbor(f).element}) {
             if (crumbs.contains(e.value) || !collect_piece(e, piece) || !is_crumb(piece)) continue;
             for (const ElementId member : piece) crumbs.insert(member.value);
             parting.crumbs.insert(parting.crumbs.end(), piece.begin(), piece.end());
         }
+    }
     std::erase_if(parted, [&](FaceId f) {
         return crumbs.contains(f.element.value) != crumbs.contains(mesh_.neighbor(f).element.value);
     });
@@ -211,6 +215,13 @@ bool Sides::is_parted(FaceId f) const {
         const NodeId n = mesh_.face_corner(f, p);
         if (is_crossed_to(here, n) == is_crossed_to(there, n)) return false;
     }
+    return true;
+}
+
+/// Whether an earlier cut along the same surface has left the face joined.
+bool Sides::is_settled(FaceId f) const {
+    for (int p = 0; p < mesh_.face_size(f); ++p)
+        if (!front_.is_settled(mesh_.face_corner(f, p))) return false;
     return true;
 }
 

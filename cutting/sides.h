@@ -19,7 +19,7 @@ struct Parting {
 
 /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the cut
 /// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
-/// the cut ends, they do not agree yet.
+/// the cut ends, they do not agree yet. Not those between settled nodes (CutFront::settle).
 ///
 /// Where an element is, see CutFront::place_of; one of which it is not known goes with the
 /// neighbour with which it shares the largest face. Small groups that

@@ -172,7 +172,7 @@ class Splitter {
     void leave_behind(const topology::ChangeSet& changes) {
         cutting::leave_behind(
             mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
-            !touched_.empty(), front_);
+            !touched_.empty(), front_, scars_);
     }
 
     /// Of a copy, where its source is.
@@ -305,11 +305,12 @@ void Splitter::find_crossed_edges() {
 }
 
 /// Nodes that counted as on an earlier cut do so again where this one passes through the same
-/// place, even if it crosses none of their edges.
+/// place, even if it crosses none of their edges. If it has the same direction there, and that one
+/// was made all round the node, it has nothing to add.
 void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
     if (scars_.is_empty()) return;
     std::vector<Crossing> crossings;
-    const auto is_there = [&](NodeId n, const Scar& scar, double length) {
+    const auto passage_by = [&](NodeId n, const Scar& scar, double length) -> const Crossing* {
         const MovingPoint x = point(n);
         const Vec3 short_way = Scars::rounding * length * scar.normal;
         const MovingPoint from{x[0] + scar.to_surface - short_way,
@@ -318,7 +319,10 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
                              x[1] + scar.to_surface + short_way};
         crossings.clear();
         surface_.append_crossings(from, to, crossings);
-        return crossings.size() % 2 == 1;
+        return crossings.size() % 2 == 1 ? &crossings.front() : nullptr;
+    };
+    const auto is_along = [](const Scar& scar, const Vec3& normal) {
+        return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
     };
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Edge& edge = edges[i].first;
@@ -326,11 +330,15 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
         for (const NodeId n : {edge.a, edge.b}) {
             if (front_.is_on(n)) continue;
             const double length = rest_length(edge);
-            for (const Scar& scar : scars_.of(n))
-                if (is_there(n, scar, length)) {
-                    front_.put_on(n, scar.is_exact, length, scar.rank);
-                    break;
-                }
+            for (const Scar& scar : scars_.of(n)) {
+                if (front_.is_on(n) && !scar.is_settled) continue;
+                const Crossing* passage = passage_by(n, scar, length);
+                if (passage == nullptr) continue;
+                if (!front_.is_on(n)) front_.put_on(n, scar.is_exact, length, scar.rank);
+                if (!scar.is_settled || !is_along(scar, passage->normal)) continue;
+                front_.settle(n);
+                break;
+            }
         }
     }
 }
@@ -420,7 +428,9 @@ void Splitter::divide_next() {
             scars_.add(middle, scar_at(middle, passage));
             return;
         }
-        snap_to(passage.from_a < passage.from_b ? edge.a : edge.b, rest_length(edge));
+        const NodeId end = passage.from_a < passage.from_b ? edge.a : edge.b;
+        snap_to(end, rest_length(edge));
+        scars_.add(end, scar_at(end, passage));  // beside a fold, even of a node made on the cut
     }
     settle(edge, pending.passages);
 }
@@ -538,11 +548,14 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
     for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
         const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
         if (place < 1.0 && place * edge.norm() > half.norm()) {
-            scars_.add(middle, {scar.normal, place * edge - half, false, scar.rank});
+            scars_.add(middle,
+                       {scar.normal, place * edge - half, false, scar.rank, scar.is_settled});
             continue;
         }
         const Scar at_end{scar.normal, scar.to_surface - edge, false, scar.rank};
-        if (!scars_.has(to, at_end, edge.norm())) continue;
+        const Scar* other = scars_.find(to, at_end, edge.norm());
+        if (other == nullptr) continue;
+        scar.is_settled = scar.is_settled && other->is_settled;
         scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
         scars_.add(middle, scar);
     }

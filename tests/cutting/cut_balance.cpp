@@ -17,7 +17,6 @@ namespace incise::cutting {
 using physics::Model;
 using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 
@@ -125,25 +124,6 @@ void expect_equal_to_a_fresh_one(Model& model, const physics::MaterialTable& tab
     Model fresh(model.mesh(), of_now);
     fresh.set_state(model.positions(), model.velocities(), 0.0);
     EXPECT_EQ(Figures(model), Figures(fresh));
-}
-
-void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const PlaneOfCut& plane,
-                   double off, const Scars& scars) {
-    const auto pieces = topology::components(mesh);
-    const auto num_pieces = static_cast<std::size_t>(pieces.count);
-    std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
-    for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
-        if (scars.is_crumb(ElementId(e))) continue;
-        const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
-        for (const NodeId n : mesh.corners(ElementId(e))) {
-            const Vec3 from = positions[n.index()] - plane.point;
-            const double height = from.dot(plane.normal.normalized());
-            highest[piece] = std::max(highest[piece], height);
-            lowest[piece] = std::min(lowest[piece], height);
-        }
-    }
-    for (std::size_t piece = 0; piece < num_pieces; ++piece)
-        EXPECT_LE(std::min(highest[piece], -lowest[piece]), off);
 }
 
 }  // namespace incise::cutting

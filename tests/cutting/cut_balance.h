@@ -4,7 +4,6 @@
 
 #include <span>
 
-#include "cutting/scars.h"
 #include "physics/model.h"
 #include "topology/mesh_data.h"
 
@@ -33,12 +32,5 @@ void expect_kept(const Balance& before, const physics::Model& model,
 
 /// Expects that the model is, to the bit, one built afresh on its mesh.
 void expect_equal_to_a_fresh_one(physics::Model& model, const physics::MaterialTable& table);
-
-struct PlaneOfCut {
-    Vec3 point, normal;
-};
-/// Expects that no piece is on both sides of a plane, but for so much (m), and crumbs.
-void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
-                   const PlaneOfCut& plane, double off, const Scars& scars);
 
 }  // namespace incise::cutting

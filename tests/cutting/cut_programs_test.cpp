@@ -27,7 +27,7 @@ using topology::Mesh;
 using topology::MeshData;
 using topology::NodeId;
 
-/// Curved cuts that were made twice, and how often there was something left to do.
+/// Sheets that were cut twice, and how often there was something left to do.
 struct Repeats {
     int count = 0, changes = 0;
 };
@@ -153,7 +153,7 @@ class Patient {
         CutFront front;
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
         const Split again = cut_and_follow(*cut.stroke.front(), front, still);
-        if (cut.kind == CutKind::plane) {
+        if (cut.kind != CutKind::sheet) {
             EXPECT_TRUE(again.changes.is_empty());
         } else {
             ++repeats_.count;
@@ -206,8 +206,8 @@ TEST_P(CutPrograms, KeepTheMeshValidAndTheBodyInBalance) {
         patient.run(GetParam().is_convex);
         if (HasFailure()) return;
     }
-    // Corners of a surface may touch an element that has no room for them: rarely.
-    EXPECT_LE(repeats.changes, 1 + repeats.count / 16) << "of " << repeats.count;
+    // At a rim inside the body, where another cut may go on.
+    EXPECT_LE(repeats.changes, 1 + repeats.count / 10) << "of " << repeats.count;
 }
 
 INSTANTIATE_TEST_SUITE_P(OnBodies, CutPrograms, testing::ValuesIn(all_programs),

@@ -283,4 +283,23 @@ double enclosed_volume(const SurfaceData& surface) {
     return std::abs(volume);
 }
 
+void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const PlaneOfCut& plane,
+                   double off, const Scars& scars) {
+    const auto pieces = topology::components(mesh);
+    const auto num_pieces = static_cast<std::size_t>(pieces.count);
+    std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
+    for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
+        if (scars.is_crumb(ElementId(e))) continue;
+        const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
+        for (const NodeId n : mesh.corners(ElementId(e))) {
+            const Vec3 from = positions[n.index()] - plane.point;
+            const double height = from.dot(plane.normal.normalized());
+            highest[piece] = std::max(highest[piece], height);
+            lowest[piece] = std::min(lowest[piece], height);
+        }
+    }
+    for (std::size_t piece = 0; piece < num_pieces; ++piece)
+        EXPECT_LE(std::min(highest[piece], -lowest[piece]), off);
+}
+
 }  // namespace incise::cutting

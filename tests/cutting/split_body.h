@@ -72,6 +72,13 @@ struct NodesOfCut {
 };
 NodesOfCut nodes_of_cut(const topology::Mesh& mesh);
 
+struct PlaneOfCut {
+    Vec3 point, normal;
+};
+/// Expects that no piece is on both sides of a plane, but for so much (m), and crumbs.
+void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
+                   const PlaneOfCut& plane, double off, const Scars& scars);
+
 /// A sphere of 20 * 4^n triangles with their corners on it.
 topology::SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions);
 /// Twelve triangles.

@@ -107,6 +107,30 @@ TEST(SplitAlongSurface, AClosedOneFreesItsInsideWithSnapping) {
             }
 }
 
+// At its folds there are elements all of whose corners are on the surface, and edges that could be
+// divided for ever: both are as the first cut has left them.
+TEST(SplitAlongSurface, AClosedOneAgainChangesNothing) {
+    for (const double snap : {0.0, 0.1, 0.3, 0.6})
+        for (const bool is_guarded : {false, true})
+            for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
+                Random random(seed);
+                for (const auto& [name, data] : closed_surfaces(random))
+                    for (const int n : {3, 6})
+                        for (const double jitter : {0.0, 0.2}) {
+                            SCOPED_TRACE(testing::Message()
+                                         << name << " in " << n << " bricks, jitter " << jitter
+                                         << ", seed " << seed << ", snap " << snap
+                                         << (is_guarded ? ", guarded" : ""));
+                            SplitBody body(test::jittered_cube(n, jitter, seed));
+                            const auto options =
+                                is_guarded ? guarded(body.mesh, snap) : SplitOptions{snap, {}};
+                            body.cut(TriangleSurface(data), options);
+                            const Split again = body.cut(TriangleSurface(data), options);
+                            EXPECT_TRUE(again.changes.is_empty());
+                        }
+            }
+}
+
 TEST(SplitAlongSurface, WhatASphereFreesConvergesToItsVolume) {
     const SurfaceData sphere = icosphere({0.51, 0.48, 0.53}, 0.35, 3);
     std::map<int, double> missing;

@@ -463,6 +463,40 @@ TEST(SplitByBlade, RemembersElementsThatAreLongInItsDirection) {
         }
 }
 
+// Each ends beside others, and cuts again what they have cut; what they had to leave joined at
+// their borders is not taken for finished.
+TEST(SplitByBlade, StrokesThatOverlapByAnElementPartTheBody) {
+    for (const double snap : {0.0, 0.1, 0.6})
+        for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
+            SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
+            Random random(seed);
+            SplitBody body(test::jittered_cube(5, 0.2, seed));
+            const SplitOptions options = guarded(body.mesh, snap);
+            const double overlap = longest_edge(body.mesh, body.positions);
+            const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 across = random.vector(1.0).normalized();
+            const Vec3 u = across.unitOrthogonal(), v = across.cross(u);
+            std::vector<std::array<double, 2>> tiles;
+            constexpr double width = 0.75;
+            for (const double x : {-1.125, -0.375, 0.375})
+                for (const double y : {-1.125, -0.375, 0.375}) tiles.push_back({x, y});
+            for (std::size_t i = tiles.size(); i-- > 1;)
+                std::swap(tiles[i], tiles[random.below(i + 1)]);
+            for (const auto& [x, y] : tiles) {
+                const auto edge_at = [&](double at) -> Polyline {
+                    return {centre + (x - overlap) * u + at * v,
+                            centre + (x + width + overlap) * u + at * v};
+                };
+                const int num_steps = 1 + static_cast<int>(random.below(8));
+                body.cut(sweep(edge_at(y - overlap), edge_at(y + width + overlap), num_steps),
+                         options);
+            }
+            EXPECT_GE(topology::components(body.mesh).count, 2);
+            expect_parted(body.mesh, body.positions, {centre, across},
+                          (snap > 0.0 ? 0.6 : 1e-9) * overlap, body.scars);
+        }
+}
+
 // It ends in the body and slides out along itself, so that it crosses nothing: the border where it
 // was is there no more.
 TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
