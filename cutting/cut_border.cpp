@@ -25,9 +25,6 @@ constexpr double far_away = 4.0;
 /// its way meets what it has cut, and has to find all of it or nothing.
 constexpr std::uint8_t num_rings_kept = 8;
 
-/// The mark of nodes farther away at which the cut ends all the same: the blade has left it there.
-constexpr std::uint8_t left_behind_at = num_rings_kept + 1;
-
 /// Of nodes, by id.
 using Marks = std::vector<std::uint8_t>;
 
@@ -82,15 +79,10 @@ class CrossedEdges {
     std::vector<std::uint32_t> places_;  // by node id: 0 for none, else one more than in others_
 };
 
-/// The border of a cut in an element: it runs through faces round which the crossings are odd in
-/// number.
-struct Border {
-    unsigned corners = 0;   // of these faces, a bit for each
-    bool is_front = false;  // the blade is there
-};
-
-Border border_in(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                 const CrossedEdges& edges, ElementId e) {
+/// Whether crossings round one of the element's faces are odd in number, and the sweep has ended
+/// there.
+bool has_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
+                const CrossedEdges& edges, ElementId e) {
     const topology::CellTraits& t = traits(mesh.kind(e));
     const auto corners = mesh.corners(e);
     // By corner, a bit for each other to which the edge is crossed.
@@ -104,8 +96,7 @@ Border border_in(const Mesh& mesh, const CutSurface& surface, const PositionOf& 
         crossed[j] |= 1u << p;
         is_any = true;
     }
-    Border border;
-    if (!is_any) return border;
+    if (!is_any) return false;
     for (int f = 0; f < t.num_faces; ++f) {
         const auto face = t.face(f);
         unsigned count = 0;
@@ -117,16 +108,14 @@ Border border_in(const Mesh& mesh, const CutSurface& surface, const PositionOf& 
             const Vec3 x = position(corners[static_cast<std::size_t>(face[p])]);
             triangle[p] = {x, x};
         }
-        for (const int p : face) border.corners |= 1u << p;
-        border.is_front = border.is_front || surface.ends_inside(triangle).value_or(false);
+        if (surface.ends_inside(triangle).value_or(true)) return true;
     }
-    return border;
+    return false;
 }
 
 /// By node id, which nodes of the front are near the border of the cut: the ring of elements that
-/// each is in, from 1 for those at the border; 0 for those that are farther away, or
-/// `left_behind_at` if a border that is no more the front is there. What it says of other nodes is
-/// of no meaning.
+/// each is in, from 1 for those at the border; 0 for those that are farther away. What it says of
+/// other nodes is of no meaning.
 Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                          const CutFront& front) {
     Marks rings(mesh.node_capacity());
@@ -136,19 +125,11 @@ Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const Posi
     };
     const std::vector<ElementId> elements = elements_at(mesh, front);
     const CrossedEdges edges(mesh, front);
-    std::vector<NodeId> at_border;
-    for (const ElementId e : elements) {
-        const Border border = border_in(mesh, surface, position, edges, e);
-        if (border.is_front) reach(e, 1);
-        const auto corners = mesh.corners(e);
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            if (border.corners >> k & 1u) at_border.push_back(corners[k]);
-    }
+    for (const ElementId e : elements)
+        if (has_border(mesh, surface, position, edges, e)) reach(e, 1);
     for (std::uint8_t ring = 1; ring < num_rings_kept; ++ring)
         for (const ElementId e : elements)
             if (has_corner(mesh, e, rings, ring)) reach(e, static_cast<std::uint8_t>(ring + 1));
-    for (const NodeId n : at_border)
-        if (rings[n.index()] == 0) rings[n.index()] = left_behind_at;
     return rings;
 }
 
@@ -179,7 +160,7 @@ void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front)
 }  // namespace
 
 void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                  bool has_crossed, CutFront& front, Scars& scars) {
+                  bool has_crossed, CutFront& front) {
     if (front.is_empty()) return;
     const auto is_far = [&] {
         bool is_near = false;
@@ -193,13 +174,9 @@ void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf&
                            growth_before_look * static_cast<double>(front.size());
     if (has_crossed ? !has_grown : !front.has_changed() && !is_far()) return;
     const Marks rings = rings_round_border(mesh, surface, position, front);
-    const auto nodes = front.nodes_unless([&](NodeId n) {
-        const std::uint8_t ring = mesh.is_alive(n) ? rings[n.index()] : 0;
-        return 0 < ring && ring <= num_rings_kept;
-    });
-    for (const NodeId n : nodes)
-        if (mesh.is_alive(n) && rings[n.index()] == 0) scars.settle(n, front.rank(n));
-    forget(mesh, nodes, front);
+    forget(mesh,
+           front.nodes_unless([&](NodeId n) { return mesh.is_alive(n) && rings[n.index()] != 0; }),
+           front);
     front.set_reviewed();  // forgetting takes crossings back
 }
 

@@ -6,7 +6,6 @@
 
 #include "cutting/cut_front.h"
 #include "cutting/cut_surface.h"
-#include "cutting/scars.h"
 #include "topology/mesh.h"
 
 namespace incise::cutting {
@@ -18,8 +17,7 @@ using PositionOf = std::function<Vec3(topology::NodeId)>;
 /// cut. Kept are those near the border at which the sweep has ended, as the cut may go on there:
 /// they are a few elements away from one through which the border runs. The counts of crossings
 /// tell which do: round a triangle through which the border runs they are odd in number. Where they
-/// are odd but the blade is no more, it ended in the body and has gone. Scars of forgotten nodes
-/// round which they are even are settled.
+/// are odd but the blade is no more, it ended in the body and has gone.
 ///
 /// To find this out takes a look at the whole front. So it is done when the front has grown by a
 /// share of its size, and when the sweep crosses nothing any more but has done so, or is far away.
@@ -28,6 +26,6 @@ using PositionOf = std::function<Vec3(topology::NodeId)>;
 /// Cost of a look: proportional to the number of elements at the front, and clearing six bytes for
 /// each node of the mesh and a bit for each element.
 void leave_behind(const topology::Mesh& mesh, const CutSurface& surface, const PositionOf& position,
-                  bool has_crossed, CutFront& front, Scars& scars);
+                  bool has_crossed, CutFront& front);
 
 }  // namespace incise::cutting

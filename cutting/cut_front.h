@@ -37,8 +37,7 @@ class CutFront {
         return place != nodes_.end() && !place->second.is_exact;
     }
 
-    /// An earlier cut along the same surface was made all round the node, which is on this one:
-    /// what that has left joined between such nodes stays so.
+    /// The same surface has cut here before: what it left joined between such nodes stays so.
     void settle(topology::NodeId n) { nodes_.at(n.value).is_settled = true; }
     bool is_settled(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,6 +13,11 @@
 #include "topology/types.h"
 
 namespace incise::cutting {
+
+/// Two surfaces of one identity that pass through the same point in the same direction are the
+/// same everywhere. `no_identity` says nothing.
+using SurfaceIdentity = std::uint64_t;
+inline constexpr SurfaceIdentity no_identity = 0, identity_of_planes = 1;
 
 /// A surface at rest cuts tissue as it is after the step; a moving edge, what it meets during the
 /// step. All answers are exact up to the places, and agree with each other: round any triangle of
@@ -29,6 +35,7 @@ class CutSurface {
     /// Distance of a point from the surface, m; not a number if the surface is flat near all
     /// crossings, so that its planes tell.
     virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
+    virtual SurfaceIdentity identity() const { return no_identity; }
     /// Whether the border at which a sweep ends, and the next one begins, runs through the
     /// triangle (as it is after the step), an odd number of times. Exact, and in agreement with the
     /// crossings of this step and the next. Nothing if the surface is not swept.

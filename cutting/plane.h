@@ -15,6 +15,8 @@ class Plane final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
+    SurfaceIdentity identity() const override { return identity_of_planes; }
+
     /// +1 or -1, exact; the plane itself counts as above.
     int side(const Vec3& x) const;
 

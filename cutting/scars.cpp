@@ -28,13 +28,6 @@ const Scar* Scars::find(topology::NodeId n, const Scar& scar, double size) const
     return place == known.end() ? nullptr : &*place;
 }
 
-void Scars::settle(topology::NodeId n, std::uint64_t rank) {
-    const auto place = scars_.find(n.value);
-    if (place == scars_.end()) return;
-    for (Scar& scar : place->second)
-        if (scar.rank == rank) scar.is_settled = true;
-}
-
 std::span<const Scar> Scars::of(topology::NodeId n) const {
     const auto place = scars_.find(n.value);
     return place == scars_.end() ? std::span<const Scar>{} : std::span<const Scar>(place->second);

@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "cutting/cut_surface.h"
 #include "topology/change_set.h"
 #include "topology/types.h"
 
@@ -15,13 +16,14 @@ namespace incise::cutting {
 
 /// A node that counted as lying on a cut, and where that passed by it.
 struct Scar {
-    Vec3 normal;              ///< of the cut, of unit length
-    Vec3 to_surface;          ///< from the node to where the cut passed through an edge, m
-    bool is_exact;            ///< the node was made there
-    std::uint64_t rank;       ///< of the node on that cut: Scars::take_rank
-    bool is_settled = false;  ///< the cut was made all round the node: it does not end there
+    Vec3 normal;         ///< of the cut, of unit length
+    Vec3 to_surface;     ///< from the node to where the cut passed through an edge, m
+    bool is_exact;       ///< the node was made there
+    std::uint64_t rank;  ///< of the node on that cut: Scars::take_rank
+    SurfaceIdentity surface = no_identity;  ///< of the cut
+    Vec3 place = Vec3::Zero();              ///< where the node was then, m
     static void archive(auto& ar, auto& self) {
-        ar(self.normal, self.to_surface, self.is_exact, self.rank, self.is_settled);
+        ar(self.normal, self.to_surface, self.is_exact, self.rank, self.surface, self.place);
     }
 };
 
@@ -40,8 +42,6 @@ class Scars {
     }
     std::span<const Scar> of(topology::NodeId n) const;
     bool is_empty() const { return scars_.empty(); }
-    /// The cut on which the node has the rank was made all round it.
-    void settle(topology::NodeId n, std::uint64_t rank);
 
     /// Nodes of all cuts are numbered in the order in which they come to count as on one.
     std::uint64_t take_rank() { return next_rank_++; }

@@ -172,7 +172,7 @@ class Splitter {
     void leave_behind(const topology::ChangeSet& changes) {
         cutting::leave_behind(
             mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
-            !touched_.empty(), front_, scars_);
+            !touched_.empty(), front_);
     }
 
     /// Of a copy, where its source is.
@@ -305,8 +305,8 @@ void Splitter::find_crossed_edges() {
 }
 
 /// Nodes that counted as on an earlier cut do so again where this one passes through the same
-/// place, even if it crosses none of their edges. If it has the same direction there, and that one
-/// was made all round the node, it has nothing to add.
+/// place, even if it crosses none of their edges. If it is the same surface, and the node has not
+/// moved, it has nothing to add.
 void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
     if (scars_.is_empty()) return;
     std::vector<Crossing> crossings;
@@ -321,6 +321,11 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
         surface_.append_crossings(from, to, crossings);
         return crossings.size() % 2 == 1 ? &crossings.front() : nullptr;
     };
+    const SurfaceIdentity identity = surface_.identity();
+    const auto may_be_same = [&](NodeId n, const Scar& scar, double length) {
+        return identity != no_identity && scar.surface == identity &&
+               (point(n)[1] - scar.place).norm() <= Scars::rounding * length;
+    };
     const auto is_along = [](const Scar& scar, const Vec3& normal) {
         return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
     };
@@ -331,11 +336,12 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
             if (front_.is_on(n)) continue;
             const double length = rest_length(edge);
             for (const Scar& scar : scars_.of(n)) {
-                if (front_.is_on(n) && !scar.is_settled) continue;
+                const bool is_candidate = may_be_same(n, scar, length);
+                if (front_.is_on(n) && !is_candidate) continue;
                 const Crossing* passage = passage_by(n, scar, length);
                 if (passage == nullptr) continue;
                 if (!front_.is_on(n)) front_.put_on(n, scar.is_exact, length, scar.rank);
-                if (!scar.is_settled || !is_along(scar, passage->normal)) continue;
+                if (!is_candidate || !is_along(scar, passage->normal)) continue;
                 front_.settle(n);
                 break;
             }
@@ -354,7 +360,7 @@ void Splitter::snap_to(NodeId n, double reach) {
 
 Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
     return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n),
-            front_.rank(n)};
+            front_.rank(n), surface_.identity(),         point(n)[1]};
 }
 
 /// Whether a passage through an edge counts as at the end.
@@ -548,14 +554,15 @@ void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
     for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
         const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
         if (place < 1.0 && place * edge.norm() > half.norm()) {
-            scars_.add(middle,
-                       {scar.normal, place * edge - half, false, scar.rank, scar.is_settled});
+            scars_.add(middle, {scar.normal, place * edge - half, false, scar.rank, scar.surface,
+                                scar.place + half});
             continue;
         }
         const Scar at_end{scar.normal, scar.to_surface - edge, false, scar.rank};
         const Scar* other = scars_.find(to, at_end, edge.norm());
         if (other == nullptr) continue;
-        scar.is_settled = scar.is_settled && other->is_settled;
+        if (other->surface != scar.surface) scar.surface = no_identity;
+        scar.place += half;
         scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
         scars_.add(middle, scar);
     }

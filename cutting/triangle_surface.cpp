@@ -2,6 +2,7 @@
 #include "cutting/triangle_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <unsupported/Eigen/BVH>
 
@@ -78,6 +79,19 @@ struct CrossingsOf {
     }
 };
 
+/// A number for the coordinates of all corners in their order: one in 2^64 others has it too.
+SurfaceIdentity identity_of(const std::vector<Triangle>& triangles) {
+    std::uint64_t number = 0xCBF29CE484222325u;
+    for (const Triangle& t : triangles)
+        for (const Vec3& x : t)
+            for (const double coordinate : x) {
+                number ^= std::bit_cast<std::uint64_t>(coordinate);
+                number *= 0x9E3779B97F4A7C15u;
+                number ^= number >> 29;
+            }
+    return std::max(number, identity_of_planes + 1);
+}
+
 struct DistanceFrom {
     using Scalar = double;
     const Vec3& x;
@@ -103,6 +117,7 @@ TriangleSurface::TriangleSurface(const topology::SurfaceData& surface)
         triangles.push_back({at(0), at(1), at(2)});
         boxes.push_back(box_of(triangles.back()));
     }
+    identity_ = identity_of(triangles);
     tree_->is_empty = triangles.empty();
     if (!triangles.empty())
         tree_->bvh.init(triangles.begin(), triangles.end(), boxes.begin(), boxes.end());

@@ -21,12 +21,16 @@ class TriangleSurface final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
+    /// Of its triangles.
+    SurfaceIdentity identity() const override { return identity_; }
+
     /// Infinite without triangles.
     double distance(const Vec3& x) const override;
 
   private:
     struct Tree;
     std::unique_ptr<Tree> tree_;
+    SurfaceIdentity identity_ = no_identity;
 };
 
 }  // namespace incise::cutting

@@ -220,22 +220,6 @@ TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     EXPECT_FALSE(scars.has(copy, scar(x, 0.1), 1.0));
 }
 
-TEST(Scars, AreSettledOneCutAtATime) {
-    Scars scars;
-    const NodeId n(std::size_t{3}), other(std::size_t{4});
-    const Scar first = scar(Vec3::UnitZ(), 0.2);
-    Scar second = scar(Vec3::UnitX(), 0.2);
-    second.rank = 2;
-    for (const NodeId to : {n, other})
-        for (const Scar& s : {first, second}) scars.add(to, s);
-    scars.settle(n, second.rank);
-    scars.settle(NodeId(std::size_t{5}), second.rank);  // has none
-    EXPECT_FALSE(scars.find(n, first, 1.0)->is_settled);
-    EXPECT_TRUE(scars.find(n, second, 1.0)->is_settled);
-    EXPECT_FALSE(scars.find(other, second, 1.0)->is_settled);
-    EXPECT_EQ(scars.find(other, scar(Vec3::UnitY(), 0.2), 1.0), nullptr);
-}
-
 TEST(Scars, PartsOfACrumbAreCrumbs) {
     Scars scars;
     const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});

@@ -27,17 +27,11 @@ using topology::Mesh;
 using topology::MeshData;
 using topology::NodeId;
 
-/// Sheets that were cut twice, and how often there was something left to do.
-struct Repeats {
-    int count = 0, changes = 0;
-};
-
 /// A body in motion through which a program of cuts goes.
 class Patient {
   public:
-    Patient(const MeshData& data, std::uint64_t seed, Repeats& repeats)
-        : repeats_(repeats),
-          random_(seed),
+    Patient(const MeshData& data, std::uint64_t seed)
+        : random_(seed),
           table_(all_materials(data.num_cells())),
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
@@ -153,15 +147,9 @@ class Patient {
         CutFront front;
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
         const Split again = cut_and_follow(*cut.stroke.front(), front, still);
-        if (cut.kind != CutKind::sheet) {
-            EXPECT_TRUE(again.changes.is_empty());
-        } else {
-            ++repeats_.count;
-            if (!again.changes.is_empty()) ++repeats_.changes;
-        }
+        EXPECT_TRUE(again.changes.is_empty());
     }
 
-    Repeats& repeats_;
     Random random_;
     physics::MaterialTable table_;
     Mesh mesh_;
@@ -198,16 +186,13 @@ class CutPrograms : public testing::TestWithParam<Programs> {};
 
 TEST_P(CutPrograms, KeepTheMeshValidAndTheBodyInBalance) {
     const MeshData data = body(GetParam().body);
-    Repeats repeats;
     for (std::uint64_t seed = 0; seed < GetParam().count; ++seed) {
-        Patient patient(data, seed, repeats);
+        Patient patient(data, seed);
         SCOPED_TRACE(std::string(GetParam().body) + ", seed " + std::to_string(seed) + ", " +
                      patient.describe());
         patient.run(GetParam().is_convex);
         if (HasFailure()) return;
     }
-    // At a rim inside the body, where another cut may go on.
-    EXPECT_LE(repeats.changes, 1 + repeats.count / 10) << "of " << repeats.count;
 }
 
 INSTANTIATE_TEST_SUITE_P(OnBodies, CutPrograms, testing::ValuesIn(all_programs),

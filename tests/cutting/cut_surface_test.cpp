@@ -277,6 +277,23 @@ TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
     EXPECT_GT(num_crossed, test::num_cases(1000));
 }
 
+TEST(TriangleSurface, HasTheIdentityOfItsTriangles) {
+    const auto identity = [](const SurfaceData& surface) {
+        return TriangleSurface(surface).identity();
+    };
+    const SurfaceData sphere = icosphere(Vec3::Zero(), 1.0, 1);
+    EXPECT_EQ(identity(sphere), identity(sphere));
+    for (std::size_t i = 0; i < sphere.points.size(); ++i) {
+        SurfaceData other = sphere;
+        other.points[i].z() = std::nextafter(other.points[i].z(), 2.0);
+        EXPECT_NE(identity(other), identity(sphere));
+    }
+    for (const SurfaceData& surface : {sphere, SurfaceData{}}) {
+        EXPECT_NE(identity(surface), no_identity);
+        EXPECT_NE(identity(surface), identity_of_planes);
+    }
+}
+
 TEST(TriangleSurface, IsCrossedWhereItIs) {
     for (std::uint64_t seed = 0; seed < test::num_cases(500); ++seed) {
         SCOPED_TRACE(seed);

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "cutting/plane.h"
 #include "cutting/triangle_surface.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
@@ -128,6 +129,34 @@ TEST(SplitAlongSurface, AClosedOneAgainChangesNothing) {
                             const Split again = body.cut(TriangleSurface(data), options);
                             EXPECT_TRUE(again.changes.is_empty());
                         }
+            }
+}
+
+// Beside the folds of the box there are nodes that both cuts pass in the same direction, and faces
+// that only the plane passes.
+TEST(SplitAlongSurface, APlaneAlongASideOfABoxThatWasCutGoesOnBeyondIt) {
+    for (const double snap : {0.0, 0.1, 0.3, 0.6})
+        for (const bool is_guarded : {false, true})
+            for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
+                SCOPED_TRACE(testing::Message() << "seed " << seed << ", snap " << snap
+                                                << (is_guarded ? ", guarded" : ""));
+                Random random(seed);
+                SplitBody body(test::jittered_cube(6, seed % 2 == 0 ? 0.0 : 0.2, seed));
+                const auto options = is_guarded ? guarded(body.mesh, snap) : SplitOptions{snap, {}};
+                const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
+                const Eigen::AngleAxisd turn(random.uniform(0.0, 1.0),
+                                             random.vector(1.0).normalized());
+                Box box(Vec3(0.0, -0.3, -0.3));
+                box.extend(Vec3(0.3, 0.3, 0.3));
+                SurfaceData surface = box_surface(box);
+                for (Vec3& x : surface.points) x = centre + turn * x;
+                body.cut(TriangleSurface(surface), options);
+                const Vec3 normal = turn * Vec3::UnitX();
+                body.cut(Plane(centre, normal), options);
+                EXPECT_GE(topology::components(body.mesh).count, 3);
+                const double edge = longest_edge(body.mesh, body.positions);
+                expect_parted(body.mesh, body.positions, {centre, normal},
+                              (snap > 0.0 ? 0.6 : 1e-9) * edge, body.scars);
             }
 }
 
