@@ -8,6 +8,7 @@
 #include <queue>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "cutting/cut_border.h"
@@ -305,8 +306,8 @@ void Splitter::find_crossed_edges() {
 }
 
 /// Nodes that counted as on an earlier cut do so again where this one passes through the same
-/// place, even if it crosses none of their edges. If it is the same surface, and the node has not
-/// moved, it has nothing to add.
+/// place, even if it crosses none of their edges. If it is the same surface, and neither the node
+/// has moved nor its neighbours do, it has nothing to add.
 void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
     if (scars_.is_empty()) return;
     std::vector<Crossing> crossings;
@@ -322,8 +323,13 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
         return crossings.size() % 2 == 1 ? &crossings.front() : nullptr;
     };
     const SurfaceIdentity identity = surface_.identity();
+    std::unordered_set<std::int32_t> moving;  // and those next to such
+    if (identity != no_identity)
+        for (const auto& [edge, element] : edges)
+            if (point(edge.a)[0] != point(edge.a)[1] || point(edge.b)[0] != point(edge.b)[1])
+                moving.insert({edge.a.value, edge.b.value});
     const auto may_be_same = [&](NodeId n, const Scar& scar, double length) {
-        return identity != no_identity && scar.surface == identity &&
+        return identity != no_identity && scar.surface == identity && !moving.contains(n.value) &&
                (point(n)[1] - scar.place).norm() <= Scars::rounding * length;
     };
     const auto is_along = [](const Scar& scar, const Vec3& normal) {
@@ -359,8 +365,9 @@ void Splitter::snap_to(NodeId n, double reach) {
 }
 
 Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
-    return {passage.normal, passage.point - point(n)[1], front_.is_on(n) && !front_.is_near(n),
-            front_.rank(n), surface_.identity(),         point(n)[1]};
+    const Vec3 x = point(n)[1];
+    const bool is_exact = front_.is_on(n) && !front_.is_near(n);
+    return {passage.normal, passage.point - x, is_exact, front_.rank(n), surface_.identity(), x};
 }
 
 /// Whether a passage through an edge counts as at the end.
