@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <queue>
 #include <string>
@@ -58,6 +59,49 @@ struct EdgeHash {
     std::size_t operator()(const Edge& e) const {
         return static_cast<std::size_t>((e.key() * 0x9E3779B97F4A7C15u) >> 20);
     }
+};
+
+/// The edges of elements, each once, by number: in a table with room for twice as many, where an
+/// edge stands at the first free place from that of its hash on. An edge belongs to about five
+/// elements: to sort those of all of them takes longer.
+class EdgeList {
+  public:
+    struct Entry {
+        Edge edge;
+        ElementId element;  ///< the first that came with it
+        bool operator<(const Entry& other) const { return edge < other.edge; }
+    };
+
+    /// The number of the edge, from 0.
+    std::size_t add(const Edge& edge, ElementId element) {
+        if (2 * entries_.size() >= table_.size()) grow();
+        std::uint32_t& place = table_[place_of(edge)];
+        if (place == none) {
+            place = static_cast<std::uint32_t>(entries_.size());
+            entries_.push_back({edge, element});
+        }
+        return place;
+    }
+    const std::vector<Entry>& entries() const { return entries_; }
+
+  private:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    /// Of the edge, or where it is to be put.
+    std::size_t place_of(const Edge& edge) const {
+        std::size_t i = EdgeHash()(edge) & (table_.size() - 1);
+        while (table_[i] != none && entries_[table_[i]].edge != edge)
+            i = (i + 1) & (table_.size() - 1);
+        return i;
+    }
+    void grow() {
+        table_.assign(std::max<std::size_t>(64, 2 * table_.size()), none);
+        for (std::size_t i = 0; i < entries_.size(); ++i)
+            table_[place_of(entries_[i].edge)] = static_cast<std::uint32_t>(i);
+    }
+
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> table_;  // a power of two in size
 };
 
 /// Of those through an edge, the one at which it is divided first: that to which the blade comes
@@ -210,7 +254,7 @@ class Splitter {
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
-    void recognize(const std::vector<std::pair<Edge, ElementId>>& edges);
+    void recognize(std::vector<EdgeList::Entry> edges);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -259,39 +303,35 @@ Passages Splitter::passages(const Edge& edge, ElementId element) const {
 }
 
 void Splitter::find_crossed_edges() {
-    std::vector<std::pair<Edge, ElementId>> edges;
+    EdgeList edges;
+    std::vector<std::pair<ElementId, std::size_t>> edges_of_elements;
     const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
     tissue_.for_each_near(may_meet, [&](ElementId e) {
         const auto corners = mesh_.corners(e);
         const topology::CellTraits& t = traits(mesh_.kind(e));
         for (int k = 0; k < t.num_edges; ++k) {
             const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
-            edges.emplace_back(edge_between(corners[static_cast<std::size_t>(p)],
-                                            corners[static_cast<std::size_t>(q)]),
-                               e);
+            const Edge edge = edge_between(corners[static_cast<std::size_t>(p)],
+                                           corners[static_cast<std::size_t>(q)]);
+            edges_of_elements.emplace_back(e, edges.add(edge, e));
         }
     });
-    std::sort(edges.begin(), edges.end());
 
     struct Found {
-        Edge edge;
-        ElementId element;
+        EdgeList::Entry entry;
         Passages passages;
     };
     std::vector<Found> found;
-    for (std::size_t i = 0; i < edges.size();) {
-        const Edge edge = edges[i].first;
-        std::size_t end = i;
-        while (end < edges.size() && edges[end].first == edge) ++end;
-        auto passed = passages(edge, edges[i].second);
-        if (!passed.empty()) {
-            for (std::size_t k = i; k < end; ++k) touched_.push_back(edges[k].second);
-            found.push_back({edge, edges[i].second, std::move(passed)});
-        }
-        i = end;
+    std::vector<bool> is_crossed(edges.entries().size());
+    for (std::size_t i = 0; i < edges.entries().size(); ++i) {
+        const EdgeList::Entry& entry = edges.entries()[i];
+        auto passed = passages(entry.edge, entry.element);
+        if (passed.empty()) continue;
+        is_crossed[i] = true;
+        found.push_back({entry, std::move(passed)});
     }
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const auto& [e, edge] : edges_of_elements)
+        if (is_crossed[edge] && (touched_.empty() || touched_.back() != e)) touched_.push_back(e);
     report_.elements_crossed = touched_.size();
     for (const ElementId e : touched_)
         if (mesh_.kind(e) != CellKind::tetrahedron)
@@ -299,17 +339,18 @@ void Splitter::find_crossed_edges() {
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
-    if (!found.empty()) recognize(edges);
+    if (!found.empty()) recognize(edges.entries());
     for (const Found& f : found)
-        if (f.passages.size() % 2 == 1) front_.toggle(f.edge.a, f.edge.b);
-    for (Found& f : found) receive(f.edge, f.element, std::move(f.passages));
+        if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
+    for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));
 }
 
 /// Nodes that counted as on an earlier cut do so again where this one passes through the same
 /// place, even if it crosses none of their edges. If it is the same surface, and neither the node
 /// has moved nor its neighbours do, it has nothing to add.
-void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
+void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
     if (scars_.is_empty()) return;
+    std::sort(edges.begin(), edges.end());
     std::vector<Crossing> crossings;
     const auto passage_by = [&](NodeId n, const Scar& scar, double length) -> const Crossing* {
         const MovingPoint x = point(n);
@@ -335,9 +376,7 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
     const auto is_along = [](const Scar& scar, const Vec3& normal) {
         return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
     };
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const Edge& edge = edges[i].first;
-        if (i > 0 && edges[i - 1].first == edge) continue;
+    for (const auto& [edge, element] : edges)
         for (const NodeId n : {edge.a, edge.b}) {
             if (front_.is_on(n)) continue;
             const double length = rest_length(edge);
@@ -352,7 +391,6 @@ void Splitter::recognize(const std::vector<std::pair<Edge, ElementId>>& edges) {
                 break;
             }
         }
-    }
 }
 
 void Splitter::put_on(NodeId n, bool is_exact, double reach) {
