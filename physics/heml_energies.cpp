@@ -20,7 +20,7 @@ std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions, const Dou
     Doubles corners[4][4];  // four rows of each, as in gather_edges
     for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t p = 0; p < 4; ++p)
-            corners[k][p] = load_quads(positions, group.nodes[k] + first + p);
+            corners[k][p] = load_quads(positions, group.places[k] + first + p);
     constexpr std::size_t ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}};
     std::array<DoubleLanes3, 6> links;
 #pragma GCC unroll 6
@@ -92,7 +92,7 @@ void heml_volume_ratios(const LinkGroups<double>& groups, const LocalVector* pos
                         double* ratios) {
     for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
         const DoubleGroup& group = groups.links[g];
-        const auto [v1, v2, v3] = gather_edges<double>(positions, group.nodes, first);
+        const auto [v1, v2, v3] = gather_edges<double>(positions, group.places, first);
         put(volume_ratio(v1, v2, v3, DoubleLanes::load(group.volume + first)),
             ratios + g * DoubleGroup::size + first);
     });

@@ -6,37 +6,40 @@ namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
 
-template <class Number>
-void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
-                const LocalVector* positions, LocalVector* forces) {
-    std::visit(
-        [&](const auto& l) {
-            for (std::size_t g = 0; g < groups.links.size(); ++g) {
-                fetch_ahead(std::span<const LinkGroup<Number>>(groups.links), g);
-                for (std::size_t first = 0; first < LinkGroup<Number>::size;
-                     first += num_lanes<Number>) {
-                    const LinkGroup<Number>& group = groups.links[g];
-                    const auto edges = gather_edges<Number>(positions, group.nodes, first);
-                    const auto f = link_forces(l, J0, group,
-                                               groups.fibres.empty() ? nullptr : &groups.fibres[g],
-                                               first, edges);
-                    scatter_add<Number>(f, forces, group.nodes, first);
-                }
-            }
-        },
-        law);
+// The edges of a group are fetched before the forces of the one before it are added up: so the
+// processor has loads to do while it waits for the end of one group's arithmetic.
+template <class Law, class Number>
+[[gnu::flatten]] void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
+                                 const LocalVector* positions, LocalVector* forces) {
+    const std::span<const LinkGroup<Number>> links = groups.links;
+    constexpr std::size_t num_parts = LinkGroup<Number>::size / num_lanes<Number>;
+    const std::size_t n = links.size() * num_parts;
+    if (n == 0) return;
+    const auto edges_of = [&](std::size_t part) {
+        return gather_edges<Number>(positions, links[part / num_parts].places,
+                                    part % num_parts * num_lanes<Number>);
+    };
+    LinkVectors<Number> edges = edges_of(0);
+    for (std::size_t part = 0; part < n; ++part) {
+        const std::size_t g = part / num_parts, first = part % num_parts * num_lanes<Number>;
+        fetch_ahead(links, g);
+        const auto* const fibres = groups.fibres.empty() ? nullptr : &groups.fibres[g];
+        const LinkVectors<Number> f = link_forces(law, J0, links[g], fibres, first, edges);
+        edges = edges_of(std::min(part + 1, n - 1));
+        scatter_add<Number>(f, forces, links[g].places, first);
+    }
 }
 
 }  // namespace
 
 void add_heml_forces(const Law& law, double J0, const LinkGroups<double>& groups,
                      const LocalVector* positions, LocalVector* forces) {
-    add_forces(law, J0, groups, positions, forces);
+    std::visit([&](const auto& l) { add_forces(l, J0, groups, positions, forces); }, law);
 }
 
 void add_heml_forces(const Law& law, double J0, const LinkGroups<float>& groups,
                      const LocalVector* positions, LocalVector* forces) {
-    add_forces(law, J0, groups, positions, forces);
+    std::visit([&](const auto& l) { add_forces(l, J0, groups, positions, forces); }, law);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -64,6 +64,7 @@ void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, bool ha
     constexpr std::size_t size = LinkGroup<Number>::size;
     LinkGroup<Number> unused{};
     std::fill(unused.volume, unused.volume + size, Number{1});
+    std::fill(unused.per_six_volumes, unused.per_six_volumes + size, Number{1});
     groups.links.assign((num_elements + size - 1) / size, unused);
     groups.fibres.assign(has_fibres ? groups.links.size() : 0, FibreGroup<Number>{});
 }
@@ -81,6 +82,7 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
         t[0] + t[3] + t[5], t[1] + t[3] + t[4], t[2] + t[4] + t[5], -t[3], -t[4], -t[5]};
     for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
     group.volume[lane] = static_cast<Number>(element.volume);
+    group.per_six_volumes[lane] = static_cast<Number>(1.0 / (6.0 * element.volume));
     if (groups.fibres.empty()) return;
     for (int k = 0; k < 3; ++k)
         groups.fibres[g].u[k][lane] = static_cast<Number>(element.fibre_components[k]);
@@ -106,7 +108,7 @@ void HemlLanes::set(std::size_t i, const LinkElement& element) {
 }
 
 void HemlLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
-    std::visit([&](auto& groups) { set_nodes_of_lanes(groups.links, corners, spare); }, groups_);
+    std::visit([&](auto& groups) { set_places_of_lanes(groups.links, corners, spare); }, groups_);
 }
 
 void HemlLanes::add_forces(const HemlKernel& kernel, const LocalVector* positions,

@@ -26,10 +26,11 @@ struct LinkElement;
 template <class Number>
 struct alignas(64) LinkGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
-    Number rest_links[6][size];         ///< m2, in the order of squared_links
-    Number G[6][size];                  ///< 11, 22, 33, 12, 23, 31: 1/m2
-    Number volume[size];                ///< m3
-    std::uint16_t nodes[4][size] = {};  ///< by local number
+    Number rest_links[6][size];          ///< m2, in the order of squared_links
+    Number G[6][size];                   ///< 11, 22, 33, 12, 23, 31: 1/m2
+    Number volume[size];                 ///< m3
+    Number per_six_volumes[size];        ///< 1/m3: a product is sooner there than a quotient
+    std::uint16_t places[4][size] = {};  ///< of the corners: place_of
 };
 
 /// u = V^-1 a0 of as many elements with fibres, 1/m.
@@ -52,7 +53,7 @@ class HemlLanes {
     void assign(std::size_t num_elements, const HemlKernel& kernel);
     /// Sets what the element of the given number, from 0, has but its nodes.
     void set(std::size_t i, const LinkElement& element);
-    /// See set_nodes_of_lanes.
+    /// See set_places_of_lanes.
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each element's forces, N, to those of its nodes. The same bits on every processor.

@@ -20,7 +20,7 @@ template <class Number>
     std::array<Vector, 8> x, f;
     x.fill({0.0, 0.0, 0.0});
     f = x;
-    const auto edges = gather_edges<Number>(positions, group.nodes, first);
+    const auto edges = gather_edges<Number>(positions, group.places, first);
     std::copy(edges.begin(), edges.end(), x.begin() + 1);
 #pragma GCC unroll 7
     for (std::size_t g = 0; g < 7; ++g) {
@@ -58,7 +58,7 @@ template <class Number>
     }
     std::array<Vector, 7> others;
     std::copy(f.begin() + 1, f.end(), others.begin());
-    scatter_add<Number>(others, forces, group.nodes, first);
+    scatter_add<Number>(others, forces, group.places, first);
 }
 
 template <class Number>

@@ -68,7 +68,7 @@ void HybmssLanes::set(std::size_t i, const HybmssElement& element) {
 }
 
 void HybmssLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
-    std::visit([&](auto& groups) { set_nodes_of_lanes(groups, corners, spare); }, groups_);
+    std::visit([&](auto& groups) { set_places_of_lanes(groups, corners, spare); }, groups_);
 }
 
 void HybmssLanes::add_forces(const HybmssKernel& kernel, const LocalVector* positions,

@@ -21,10 +21,10 @@ struct HybmssElement;
 template <class Number>
 struct alignas(64) CellGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
-    Number stiffnesses[7][size];        ///< of springs by group, as in SpringShares: N/m
-    Number lengths[7][size];            ///< m
-    Number volume[size];                ///< m3
-    std::uint16_t nodes[8][size] = {};  ///< by local number
+    Number stiffnesses[7][size];         ///< of springs by group, as in SpringShares: N/m
+    Number lengths[7][size];             ///< m
+    Number volume[size];                 ///< m3
+    std::uint16_t places[8][size] = {};  ///< of the corners: place_of
 };
 
 /// The cells of a block.
@@ -34,7 +34,7 @@ class HybmssLanes {
     void assign(std::size_t num_elements, const HybmssKernel& kernel);
     /// Sets what the cell of the given number, from 0, has but its nodes.
     void set(std::size_t i, const HybmssElement& element);
-    /// See set_nodes_of_lanes.
+    /// See set_places_of_lanes.
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each cell's forces, N, to those of its nodes. The same bits on every processor.

@@ -170,7 +170,7 @@ struct Lanes {
     /// For normal numbers above zero within 1e-15 (floats 3e-7) of the value or of one, whichever
     /// is more; else not a number. Argument reduction to [sqrt(1/2), sqrt(2)) and the series of
     /// ln((1 + s)/(1 - s)) in s.
-    friend Lanes log(Lanes a) {
+    [[gnu::always_inline]] friend inline Lanes log(Lanes a) {
         constexpr Bit unit = Bit{1} << Format::mantissa_bits, mantissa = unit - 1;
         // What lies above has the exponent of the power of two that is nearest.
         constexpr Bit low = Format::root_of_half;
@@ -185,9 +185,14 @@ struct Lanes {
         const Bits shifted = exponent + std::bit_cast<Bit>(whole_number_shift);
         const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - whole_number_shift;
         const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
-        Lanes tail = log_coefficients[0];
-        for (std::size_t i = 1; i < log_coefficients.size(); ++i)
-            tail = tail * z + log_coefficients[i];
+        // Even and odd powers by themselves, so that one need not wait for the other.
+        const Lanes z2 = z * z;
+        Lanes odd = log_coefficients[0], even = log_coefficients[1];
+        for (std::size_t i = 2; i < log_coefficients.size(); i += 2) {
+            odd = odd * z2 + log_coefficients[i];
+            even = even * z2 + log_coefficients[i + 1];
+        }
+        const Lanes tail = odd * z + even;
         const Lanes result =
             k * Format::ln2_high + (2.0 * s + (2.0 * s * z * tail + k * Format::ln2_low));
         const Bits is_normal = (bits >= unit) & (bits < (2 * Format::bias + 1) * unit);
@@ -386,7 +391,7 @@ using HalfFloats = float __attribute__((vector_size(vector_bytes / 2)));
 
 inline Doubles load_quads(const LocalVector* nodes, const std::uint16_t* places) {
     const auto quad = [&](int l) {
-        return *reinterpret_cast<const Quad*>(nodes[places[l]].data());
+        return *reinterpret_cast<const Quad*>(reinterpret_cast<const double*>(nodes) + places[l]);
     };
 #ifdef __AVX512F__
     return __builtin_shufflevector(quad(0), quad(4), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -480,7 +485,8 @@ template <class Number, std::size_t num_corners, std::size_t size>
         for (std::size_t k = 0; k < num_corners; ++k)
 #pragma GCC unroll 4
             for (std::size_t p = 0; p < 4; ++p)
-                *reinterpret_cast<Quad*>(nodes[places[k][first + 4 * q + p]].data()) += all[k][p];
+                *reinterpret_cast<Quad*>(reinterpret_cast<double*>(nodes) +
+                                         places[k][first + 4 * q + p]) += all[k][p];
     };
     [&]<std::size_t... q>(std::index_sequence<q...>) {
         (add_four(std::integral_constant<std::size_t, q>()), ...);

@@ -68,7 +68,7 @@ struct VolumeTerm {
 /// point is a local minimum of this extension, and one collapsed to a line feels no force of
 /// volume: it recovers from flat and turned states, not from those two.
 template <class T, class Term>
-VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
+[[gnu::always_inline]] inline VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
     using std::max;
     const T at = max(J, T(J0)), d = J - at;  // d = 0 above the threshold
     const VolumeTerm<T> t = term(at);
@@ -77,7 +77,8 @@ VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
 
 /// lambda/2 (ln J)^2 - p ln J: p is chosen by each law so that it is free of stress at rest.
 template <class T>
-VolumeTerm<T> logarithmic_volume_term(const T& J, double lambda, double p) {
+[[gnu::always_inline]] inline VolumeTerm<T> logarithmic_volume_term(const T& J, double lambda,
+                                                                    double p) {
     using std::log;
     const T ln = log(J), per_J = 1.0 / J;
     return {ln * (0.5 * lambda * ln - p), (lambda * ln - p) * per_J,
@@ -86,7 +87,7 @@ VolumeTerm<T> logarithmic_volume_term(const T& J, double lambda, double p) {
 
 /// J^-p, by which isochoric laws take the change of volume out of an invariant of strain.
 template <class T>
-VolumeTerm<T> power_of_volume(const T& J, double p) {
+[[gnu::always_inline]] inline VolumeTerm<T> power_of_volume(const T& J, double p) {
     using std::pow;
     const T power = pow(J, -p), per_J = 1.0 / J;
     return {power, -p * power * per_J, p * (p + 1.0) * power * per_J * per_J};
@@ -108,7 +109,7 @@ struct Exponential {
 
 /// K/2 (J - 1)^2: finite for any J.
 template <class T>
-VolumeTerm<T> quadratic_volume_term(const T& J, double bulk_modulus) {
+[[gnu::always_inline]] inline VolumeTerm<T> quadratic_volume_term(const T& J, double bulk_modulus) {
     return {0.5 * bulk_modulus * (J - 1.0) * (J - 1.0), bulk_modulus * (J - 1.0), bulk_modulus};
 }
 

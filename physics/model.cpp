@@ -111,39 +111,55 @@ void Model::integrate(double time, double dt) {
     for (std::size_t i = 0; i < range_reactions_.size(); ++i)
         reactions_[i % supports_.size()] += range_reactions_[i];
     external_work_ += sums.work;
-    dissipated_energy_ += sums.dissipated_power * dt;
+    dissipated_energy_ += damping_ * sums.mass_times_square * dt;
     largest_move_ = std::sqrt(sums.largest_square) * dt;
-    if (!sums.is_finite || largest_move_ > body_size_) explain_failure(time, dt);
+    if (!sums.is_finite() || largest_move_ > body_size_) explain_failure(time, dt);
     if (!history_.is_empty())
         dissipated_energy_ +=
             elements_.advance(previous_positions_, positions_, dt, workers_, history_);
 }
 
-// What has no address, as neither the sums nor a node's step have, stays in registers.
-Model::StepSums Model::move_nodes(NodeRange range, double time, double dt,
-                                  std::span<Reaction> reactions) {
+StepSums Model::move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions) {
+    if (!history_.is_empty())
+        for (std::size_t n = range.begin; n < range.end; ++n)
+            previous_positions_[n] = positions_[n];
     const double slowing = 1.0 / (1.0 + damping_ * dt);
     StepSums sums;
-    for (std::size_t n = range.begin; n < range.end; ++n) {
-        const double mass = masses_[n];
-        const Vec3 x = positions_[n], v = velocities_[n];
-        if (!history_.is_empty()) previous_positions_[n] = x;
-        if (mass == 0.0) continue;  // dead
-        const Vec3 outer = outer_forces_[n], force = elastic_forces_[n] + outer;
-        NodeStep step;
-        step.v = slowing * (v + dt / mass * force);
-        step.x = x + dt * step.v;
-        step.work = 0.0;
-        if (supports_.of_node(n)) step = support_node(n, time, dt, force, step, reactions);
-        const double square = step.v.squaredNorm();
-        sums.is_finite = sums.is_finite && std::isfinite(square);
-        sums.largest_square = std::max(sums.largest_square, square);
-        sums.work += step.work + outer.dot(step.x - x);
-        sums.dissipated_power += damping_ * mass * square;
-        positions_[n] = step.x;
-        velocities_[n] = step.v;
+    for (std::size_t n = range.begin; n < range.end;) {
+        if (const std::size_t count = num_free_nodes(n, range.end)) {
+            sums += move_free_nodes({&masses_[n], &elastic_forces_[n], &outer_forces_[n],
+                                     &positions_[n], &velocities_[n]},
+                                    count, dt, slowing);
+            n += count;
+            continue;
+        }
+        const std::size_t end = std::min(n + nodes_together, range.end);
+        for (; n < end; ++n)
+            if (masses_[n] > 0.0) sums += move_node(n, time, dt, reactions);
     }
     return sums;
+}
+
+std::size_t Model::num_free_nodes(std::size_t n, std::size_t end) const {
+    std::size_t count = 0;
+    for (std::size_t i = n; i < end && masses_[i] > 0.0 && !supports_.of_node(i); ++i) ++count;
+    return count - count % nodes_together;
+}
+
+// What has no address, as the node's step has none, stays in registers.
+StepSums Model::move_node(std::size_t n, double time, double dt, std::span<Reaction> reactions) {
+    const double mass = masses_[n], slowing = 1.0 / (1.0 + damping_ * dt);
+    const Vec3 x = positions_[n], v = velocities_[n];
+    const Vec3 outer = outer_forces_[n], force = elastic_forces_[n] + outer;
+    NodeStep step;
+    step.v = slowing * (v + dt / mass * force);
+    step.x = x + dt * step.v;
+    step.work = 0.0;
+    if (supports_.of_node(n)) step = support_node(n, time, dt, force, step, reactions);
+    positions_[n] = step.x;
+    velocities_[n] = step.v;
+    const double square = step.v.squaredNorm();
+    return {step.work + outer.dot(step.x - x), mass * square, square};
 }
 
 Model::NodeStep Model::support_node(std::size_t n, double time, double dt, const Vec3& force,

@@ -11,6 +11,7 @@
 
 #include "physics/element_store.h"
 #include "physics/loads.h"
+#include "physics/node_lanes.h"
 #include "physics/stable_step.h"
 #include "physics/supports.h"
 #include "physics/viscous_history.h"
@@ -203,19 +204,6 @@ class Model {
         static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
     };
 
-    /// What a step adds up over the nodes of a range.
-    struct StepSums {
-        double work = 0.0, dissipated_power = 0.0, largest_square = 0.0;  ///< J, W, m2/s2
-        bool is_finite = true;
-
-        StepSums& operator+=(const StepSums& o) {
-            work += o.work;
-            dissipated_power += o.dissipated_power;
-            largest_square = std::max(largest_square, o.largest_square);
-            is_finite = is_finite && o.is_finite;
-            return *this;
-        }
-    };
     struct NodeStep {
         Vec3 x, v;    ///< at its end
         double work;  ///< that supports do, J
@@ -223,6 +211,11 @@ class Model {
     /// Integrates the nodes of a range, which touches no others.
     /// @param reactions of all supports; added to
     StepSums move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions);
+    /// Likewise one that is alive.
+    StepSums move_node(std::size_t n, double time, double dt, std::span<Reaction> reactions);
+    /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
+    /// nothing, before `end`.
+    std::size_t num_free_nodes(std::size_t n, std::size_t end) const;
     /// Leads the supported components of node `n` to where they have to be at time + dt.
     /// @param free  what the node does without supports
     /// @param force N, on the node without the supports

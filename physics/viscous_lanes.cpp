@@ -72,7 +72,7 @@ void ViscousLanes::set(std::size_t i, ElementId id, const ViscousElement& elemen
 }
 
 void ViscousLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
-    set_nodes_of_lanes(groups_.elements, corners, spare);
+    set_places_of_lanes(groups_.elements, corners, spare);
 }
 
 void ViscousLanes::add_forces(const ViscousKernel& kernel, const ViscousHistory& history,

@@ -28,12 +28,12 @@ struct PronyStep {
 /// Eight elements as viscosity reads them.
 struct alignas(64) ViscousGroup {
     static constexpr std::size_t size = 8;
-    double rest_links[6][size];         ///< m2, in the order of squared_links
-    double inverse_edges[9][size];      ///< V^-1 by rows, 1/m
-    double volume[size];                ///< m3
-    std::uint32_t elements[size];       ///< their ids; spare lanes have that of the first
-    std::uint16_t nodes[4][size] = {};  ///< by local number
-    std::uint32_t num_used = 0;         ///< lanes that have an element; those after them are spare
+    double rest_links[6][size];          ///< m2, in the order of squared_links
+    double inverse_edges[9][size];       ///< V^-1 by rows, 1/m
+    double volume[size];                 ///< m3
+    std::uint32_t elements[size];        ///< their ids; spare lanes have that of the first
+    std::uint16_t places[4][size] = {};  ///< of the corners: place_of
+    std::uint32_t num_used = 0;          ///< lanes that have an element; those after them are spare
 };
 
 /// The direction of fibres at rest of as many.
@@ -69,7 +69,7 @@ class ViscousLanes {
     /// Sets what the element of the given number, from 0, has but its nodes; the first time in
     /// ascending order.
     void set(std::size_t i, ElementId id, const ViscousElement& element);
-    /// See set_nodes_of_lanes.
+    /// See set_places_of_lanes.
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
     /// Adds each element's ViscousKernel::forces_of_memory, N, to those of its nodes. The same bits

@@ -182,8 +182,9 @@ TYPED_TEST(HemlLanesOf, HaveTheSameBitsOnEachProcessor) {
         auto elements = random_elements<TypeParam>(kernel, 100, random);
         // Few nodes, which lanes share: the order of sums tells.
         for (auto& group : elements.groups.links)
-            for (auto& corner : group.nodes)
-                for (std::uint16_t& node : corner) node = static_cast<std::uint16_t>(node % 12);
+            for (auto& corner : group.places)
+                for (std::uint16_t& place : corner)
+                    place = static_cast<std::uint16_t>(place % place_of(12));
         const auto expected = elements.forces(kernel, Processor::plain);
         for (const Processor processor : processors_at_hand()) {
             const auto f = elements.forces(kernel, processor);

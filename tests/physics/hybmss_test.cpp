@@ -121,8 +121,9 @@ void expect_lanes_like_the_reference(HybmssKernel kernel, const Cell& X,
     const auto groups = lanes.groups<Number>();
     std::vector<CellGroup<Number>> sharing(groups.begin(), groups.end());
     for (auto& group : sharing)
-        for (auto& corner : group.nodes)
-            for (std::uint16_t& node : corner) node = static_cast<std::uint16_t>(node % 13);
+        for (auto& corner : group.places)
+            for (std::uint16_t& place : corner)
+                place = static_cast<std::uint16_t>(place % place_of(13));
     const auto forces_on = [&](Processor processor, std::span<const CellGroup<Number>> cells) {
         std::vector<LocalVector> f(positions.size());
         hybmss_forces_for<Number>(processor)(kernel.material.volume_modulus, cells,
