@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/node_lanes.h"
 
-#include "physics/processor.h"
-
 namespace incise::physics {
 
-using MoveFreeNodes = StepSums(const FreeNodes& nodes, std::size_t num_nodes, double dt,
-                               double slowing);
 namespace plain {
 MoveFreeNodes move_free_nodes;
 }
@@ -19,9 +15,7 @@ MoveFreeNodes move_free_nodes;
 }
 #endif
 
-namespace {
-
-MoveFreeNodes* moves_for([[maybe_unused]] Processor processor) {
+MoveFreeNodes* free_node_moves_for([[maybe_unused]] Processor processor) {
 #ifdef INCISE_HAS_AVX
     if (processor == Processor::avx512) return avx512::move_free_nodes;
     if (processor == Processor::avx2) return avx2::move_free_nodes;
@@ -29,10 +23,8 @@ MoveFreeNodes* moves_for([[maybe_unused]] Processor processor) {
     return plain::move_free_nodes;
 }
 
-}  // namespace
-
 StepSums move_free_nodes(const FreeNodes& nodes, std::size_t num_nodes, double dt, double slowing) {
-    static MoveFreeNodes* const move = moves_for(processor());
+    static MoveFreeNodes* const move = free_node_moves_for(processor());
     return move(nodes, num_nodes, dt, slowing);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "physics/processor.h"
 #include "topology/types.h"
 
 namespace incise::physics {
@@ -38,7 +39,13 @@ inline constexpr std::size_t nodes_together = 8;
 
 /// Moves `num_nodes`, a multiple of nodes_together, by semi-implicit Euler:
 /// v' = slowing (v + dt/m f), x' = x + dt v'. The same bits on every processor.
+/// @param dt      s
 /// @param slowing 1/(1 + damping dt)
 StepSums move_free_nodes(const FreeNodes& nodes, std::size_t num_nodes, double dt, double slowing);
+
+using MoveFreeNodes = StepSums(const FreeNodes& nodes, std::size_t num_nodes, double dt,
+                               double slowing);
+/// What move_free_nodes calls, by processor.
+MoveFreeNodes* free_node_moves_for(Processor processor);
 
 }  // namespace incise::physics

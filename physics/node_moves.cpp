@@ -9,14 +9,14 @@ namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
 
-using Scalar = Lanes<double>;
-constexpr int num_together = Scalar::size;
+using Numbers = Lanes<double>;
+constexpr int nodes_at_once = Numbers::size;
 
 // Vectors in space lie one after the other, x y z x y z: three times as many numbers as nodes.
 
-/// Those of `num_together` nodes, wherever they lie.
+/// Those of `nodes_at_once` nodes, wherever they lie.
 struct Vectors {
-    Scalar part[3];
+    Numbers part[3];
 
     static Vectors load(const double* from) {
         Vectors v;
@@ -27,19 +27,19 @@ struct Vectors {
 };
 
 /// Each node's number three times, as its vector's components lie.
-[[gnu::always_inline]] inline Vectors spread(Scalar a) {
+[[gnu::always_inline]] inline Vectors spread_to_vectors(Numbers a) {
     return {shuffle<[](int l) { return l / 3; }>(a.v, a.v),
-            shuffle<[](int l) { return (num_together + l) / 3; }>(a.v, a.v),
-            shuffle<[](int l) { return (2 * num_together + l) / 3; }>(a.v, a.v)};
+            shuffle<[](int l) { return (nodes_at_once + l) / 3; }>(a.v, a.v),
+            shuffle<[](int l) { return (2 * nodes_at_once + l) / 3; }>(a.v, a.v)};
 }
 
 /// Component c of each node.
 template <int c>
-[[gnu::always_inline]] inline Scalar component(const Vectors& v) {
+[[gnu::always_inline]] inline Numbers component_of(const Vectors& v) {
     // First those of the first two parts, then those of the last.
-    constexpr auto low = [](int l) { return std::min(3 * l + c, 2 * num_together - 1); };
+    constexpr auto low = [](int l) { return std::min(3 * l + c, 2 * nodes_at_once - 1); };
     constexpr auto high = [](int l) {
-        return 3 * l + c < 2 * num_together ? l : 3 * l + c - num_together;
+        return 3 * l + c < 2 * nodes_at_once ? l : 3 * l + c - nodes_at_once;
     };
     return shuffle<high>(shuffle<low>(v.part[0].v, v.part[1].v), v.part[2].v);
 }
@@ -51,26 +51,27 @@ StepSums move_free_nodes(const FreeNodes& nodes, std::size_t num_nodes, double d
     const double* const outer = nodes.outer_forces->data();
     double* const positions = nodes.positions->data();
     double* const velocities = nodes.velocities->data();
-    // By place within nodes_together, so that the order of sums does not depend on num_together.
-    constexpr int num_rounds = static_cast<int>(nodes_together) / num_together;
-    Scalar work[num_rounds][3], mass_times_square[num_rounds][3], largest_square = 0.0;
+    // By place within nodes_together, so that the order of sums does not depend on nodes_at_once.
+    constexpr int num_rounds = static_cast<int>(nodes_together) / nodes_at_once;
+    Numbers work[num_rounds][3], mass_times_square[num_rounds][3], largest_square = 0.0;
     for (int r = 0; r < num_rounds; ++r)
         for (int p = 0; p < 3; ++p) work[r][p] = mass_times_square[r][p] = 0.0;
 
     for (std::size_t n = 0; n < num_nodes; n += nodes_together)
         for (int r = 0; r < num_rounds; ++r) {
-            const std::size_t first = n + static_cast<std::size_t>(r * num_together);
-            Scalar masses;
+            const std::size_t first = n + static_cast<std::size_t>(r * nodes_at_once);
+            Numbers masses;
             std::memcpy(&masses, nodes.masses + first, sizeof masses);
-            const Vectors m = spread(masses), per_mass = spread(Scalar(dt) / masses),
+            const Vectors m = spread_to_vectors(masses),
+                          per_mass = spread_to_vectors(Numbers(dt) / masses),
                           f = Vectors::load(elastic + 3 * first),
                           g = Vectors::load(outer + 3 * first);
             Vectors x = Vectors::load(positions + 3 * first),
                     v = Vectors::load(velocities + 3 * first), squares;
             for (int p = 0; p < 3; ++p) {
-                const Scalar change = per_mass.part[p] * (f.part[p] + g.part[p]);
+                const Numbers change = per_mass.part[p] * (f.part[p] + g.part[p]);
                 v.part[p] = slowing * (v.part[p] + change);
-                const Scalar move = dt * v.part[p], next = x.part[p] + move;
+                const Numbers move = dt * v.part[p], next = x.part[p] + move;
                 work[r][p] += g.part[p] * (next - x.part[p]);
                 x.part[p] = next;
                 squares.part[p] = v.part[p] * v.part[p];
@@ -78,19 +79,19 @@ StepSums move_free_nodes(const FreeNodes& nodes, std::size_t num_nodes, double d
             }
             x.store(positions + 3 * first);
             v.store(velocities + 3 * first);
-            const Scalar square =
-                (component<0>(squares) + component<1>(squares)) + component<2>(squares);
+            const Numbers square =
+                (component_of<0>(squares) + component_of<1>(squares)) + component_of<2>(squares);
             largest_square = max(largest_square, square);
         }
 
     StepSums sums;
     for (int r = 0; r < num_rounds; ++r)
         for (int p = 0; p < 3; ++p)
-            for (int l = 0; l < num_together; ++l) {
+            for (int l = 0; l < nodes_at_once; ++l) {
                 sums.work += work[r][p].v[l];
                 sums.mass_times_square += mass_times_square[r][p].v[l];
             }
-    for (int l = 0; l < num_together; ++l)
+    for (int l = 0; l < nodes_at_once; ++l)
         sums.largest_square = std::max(sums.largest_square, largest_square.v[l]);
     return sums;
 }

@@ -7,16 +7,11 @@
 #include <cstring>
 #include <numeric>
 
+#include "physics/processors_at_hand.h"
 #include "physics/test_materials.h"
 
 namespace incise::physics {
 namespace {
-
-std::vector<Processor> processors_at_hand() {
-    std::vector<Processor> all{Processor::plain, Processor::avx2, Processor::avx512};
-    while (all.back() > processor()) all.pop_back();
-    return all;
-}
 
 /// In both precisions.
 template <class Number>

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "physics/processors_at_hand.h"
 #include "physics/test_bodies.h"
 #include "physics/viscous_kernel.h"
 
@@ -17,12 +18,6 @@ namespace {
 using Memory = std::vector<double>;
 
 const std::vector<PronyTerm> three_terms{{0.3, 0.2}, {0.4, 5.0}, {0.1, 0.01}};
-
-std::vector<Processor> processors_here() {
-    std::vector<Processor> all{Processor::plain, Processor::avx2, Processor::avx512};
-    while (all.back() > processor()) all.pop_back();
-    return all;
-}
 
 /// Calls visit(kernel) for each law with one, two and three terms.
 template <class Visit>
@@ -215,7 +210,7 @@ TEST(ViscousLanes, HaveTheSameBitsOnEachProcessor) {
             Memory memory = elements.memory;
             std::vector<std::size_t> left_out;
             const double energy = elements.advance(Processor::plain, memory, left_out);
-            for (const Processor processor : processors_here()) {
+            for (const Processor processor : processors_at_hand()) {
                 SCOPED_TRACE(static_cast<int>(processor));
                 const auto f = elements.forces(processor);
                 EXPECT_EQ(std::memcmp(f.data(), forces.data(), f.size() * sizeof(LocalVector)), 0);
