@@ -13,14 +13,14 @@ ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) {
 void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
     margin_ = 0.0;
     groups_.assign(num_groups(mesh.element_capacity()), Box());
-    supergroups_.assign(num_groups(groups_.size()), Box());
+    supergroups_.assign(num_supergroups(groups_.size()), Box());
     double sum = 0.0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         update_group(mesh, positions, g);
         if (!groups_[g].isEmpty()) sum += groups_[g].sizes().maxCoeff();
     }
     // Boxes that have grown by this much let twice as many elements through, or a few times more.
-    if (!groups_.empty()) largest_margin_ = 0.25 * sum / static_cast<double>(groups_.size());
+    if (!groups_.empty()) largest_margin_ = 0.4 * sum / static_cast<double>(groups_.size());
 }
 
 void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> positions, std::size_t g) {
@@ -31,7 +31,7 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
             for (const topology::NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
     groups_[g] = box;
     // Only ever larger, until all are made anew: a group may have lost elements.
-    supergroups_[g / group_size].extend(box);
+    supergroups_[g / supergroup_size].extend(box);
 }
 
 void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, double distance) {
@@ -52,7 +52,7 @@ bool ElementBoxes::may_meet(const Box& swept) const {
 void ElementBoxes::follow(const Mesh& mesh, std::span<const Vec3> positions,
                           const topology::ChangeSet& changes) {
     groups_.resize(num_groups(mesh.element_capacity()));
-    supergroups_.resize(num_groups(groups_.size()));
+    supergroups_.resize(num_supergroups(groups_.size()));
     std::vector<std::size_t> touched;
     for (const auto& record : changes.elements_added)
         touched.push_back(record.id.index() / group_size);

@@ -33,7 +33,7 @@ class ElementBoxes {
     /// Whether there are as many boxes as the mesh needs.
     bool cover(const topology::Mesh& mesh) const {
         return groups_.size() == num_groups(mesh.element_capacity()) &&
-               supergroups_.size() == num_groups(groups_.size());
+               supergroups_.size() == num_supergroups(groups_.size());
     }
 
     /// Calls visit(element) for the living elements, in ascending order, of all groups for which
@@ -49,8 +49,11 @@ class ElementBoxes {
     }
 
   private:
-    static constexpr std::size_t group_size = 64;
+    static constexpr std::size_t group_size = 16, supergroup_size = 64;
     static std::size_t num_groups(std::size_t n) { return (n + group_size - 1) / group_size; }
+    static std::size_t num_supergroups(std::size_t n) {
+        return (n + supergroup_size - 1) / supergroup_size;
+    }
 
     void build(const topology::Mesh& mesh, std::span<const Vec3> positions);
     void update_group(const topology::Mesh& mesh, std::span<const Vec3> positions, std::size_t g);
@@ -69,8 +72,8 @@ template <class MayMeet, class Visit>
 void ElementBoxes::for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const {
     for (std::size_t s = 0; s < supergroups_.size(); ++s) {
         if (supergroups_[s].isEmpty() || !may_meet(grown(supergroups_[s]))) continue;
-        const std::size_t end_group = std::min(groups_.size(), (s + 1) * group_size);
-        for (std::size_t g = s * group_size; g < end_group; ++g) {
+        const std::size_t end_group = std::min(groups_.size(), (s + 1) * supergroup_size);
+        for (std::size_t g = s * supergroup_size; g < end_group; ++g) {
             if (groups_[g].isEmpty() || !may_meet(grown(groups_[g]))) continue;
             const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
             for (std::size_t i = g * group_size; i < end; ++i)

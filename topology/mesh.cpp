@@ -47,11 +47,17 @@ bool is_known(const std::vector<ElementId>& elements, std::size_t begin, Element
 
 void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements) {
     const std::size_t begin = elements.size();
+    // A bit for each remainder of ids: of most elements that are not known it tells so at once.
+    const auto bit = [](ElementId e) { return std::uint64_t{1} << (e.index() % 64); };
+    std::uint64_t known_bits = bit(start);
     elements.push_back(start);
     for (std::size_t next = begin; next < elements.size(); ++next)
         for_faces_at(mesh, elements[next], n, [&](FaceId f) {
             const ElementId other = mesh.neighbor(f).element;
-            if (other.is_valid() && !is_known(elements, begin, other)) elements.push_back(other);
+            if (!other.is_valid()) return;
+            if ((known_bits & bit(other)) != 0 && is_known(elements, begin, other)) return;
+            known_bits |= bit(other);
+            elements.push_back(other);
         });
     std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
 }
