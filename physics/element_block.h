@@ -60,6 +60,7 @@ class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
     static constexpr std::size_t max_elements = 512;
+    static_assert(4 * (max_elements * topology::max_corners + 1) <= 0xffff);  // place_of
 
     virtual ~ElementBlock() = default;
     virtual std::shared_ptr<ElementBlock> clone() const = 0;

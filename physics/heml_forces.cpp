@@ -7,7 +7,8 @@ namespace incise::physics::INCISE_PROCESSOR {
 namespace {
 
 // The edges of a group are fetched before the forces of the one before it are added up: so the
-// processor has loads to do while it waits for the end of one group's arithmetic.
+// processor has loads to do while it waits for the end of one group's arithmetic. Flattened, as
+// what is not inlined would have its vectors go through memory.
 template <class Law, class Number>
 [[gnu::flatten]] void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
                                  const LocalVector* positions, LocalVector* forces) {

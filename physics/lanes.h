@@ -186,6 +186,7 @@ struct Lanes {
         const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - whole_number_shift;
         const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
         // Even and odd powers by themselves, so that one need not wait for the other.
+        static_assert(log_coefficients.size() % 2 == 0);
         const Lanes z2 = z * z;
         Lanes odd = log_coefficients[0], even = log_coefficients[1];
         for (std::size_t i = 2; i < log_coefficients.size(); i += 2) {

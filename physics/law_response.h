@@ -1,6 +1,7 @@
 // What a law is asked and answers, and the terms of volume that several laws have. All are
 // templates over the kind of number: plain ones, Dual for tangents, Lanes for the fast forces.
-// Formulas have no branches, as lanes may differ.
+// Formulas have no branches, as lanes may differ; and are inlined always, as a call would have the
+// lanes of all that is at work go through memory.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

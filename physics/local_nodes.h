@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,7 +28,10 @@ struct alignas(32) LocalVector {
 
 /// Where the vector of the node of the given local number begins, in numbers: what processors add
 /// to an address as it is, while a number of vectors of 32 bytes has to be multiplied first.
-inline std::uint16_t place_of(std::uint16_t node) { return static_cast<std::uint16_t>(4 * node); }
+inline std::uint16_t place_of(std::uint16_t node) {
+    assert(node < 0x4000);  // blocks are smaller
+    return static_cast<std::uint16_t>(4 * node);
+}
 
 /// Sets the places of the corners of elements that lie side by side in groups: one after the other
 /// in the first lane of each group, then in the second. So neighbours lie in different groups, as

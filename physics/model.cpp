@@ -135,20 +135,21 @@ StepSums Model::move_nodes(NodeRange range, double time, double dt, std::span<Re
         }
         const std::size_t end = std::min(n + nodes_together, range.end);
         for (; n < end; ++n)
-            if (masses_[n] > 0.0) sums += move_node(n, time, dt, reactions);
+            if (masses_[n] != 0.0) sums += move_node(n, time, dt, slowing, reactions);  // else dead
     }
     return sums;
 }
 
 std::size_t Model::num_free_nodes(std::size_t n, std::size_t end) const {
     std::size_t count = 0;
-    for (std::size_t i = n; i < end && masses_[i] > 0.0 && !supports_.of_node(i); ++i) ++count;
+    for (std::size_t i = n; i < end && masses_[i] != 0.0 && !supports_.of_node(i); ++i) ++count;
     return count - count % nodes_together;
 }
 
 // What has no address, as the node's step has none, stays in registers.
-StepSums Model::move_node(std::size_t n, double time, double dt, std::span<Reaction> reactions) {
-    const double mass = masses_[n], slowing = 1.0 / (1.0 + damping_ * dt);
+StepSums Model::move_node(std::size_t n, double time, double dt, double slowing,
+                          std::span<Reaction> reactions) {
+    const double mass = masses_[n];
     const Vec3 x = positions_[n], v = velocities_[n];
     const Vec3 outer = outer_forces_[n], force = elastic_forces_[n] + outer;
     NodeStep step;

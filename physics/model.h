@@ -212,7 +212,9 @@ class Model {
     /// @param reactions of all supports; added to
     StepSums move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions);
     /// Likewise one that is alive.
-    StepSums move_node(std::size_t n, double time, double dt, std::span<Reaction> reactions);
+    /// @param slowing 1/(1 + damping dt)
+    StepSums move_node(std::size_t n, double time, double dt, double slowing,
+                       std::span<Reaction> reactions);
     /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
     /// nothing, before `end`.
     std::size_t num_free_nodes(std::size_t n, std::size_t end) const;

@@ -1,6 +1,6 @@
 // The step of nodes that nothing holds, several side by side: to the bit where Model would move
-// them one after the other; but how work and energy are added up differs. SPDX-License-Identifier:
-// LGPL-3.0-or-later
+// them one after the other; but how work and energy are added up differs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <algorithm>
