@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "cutting/cut_border.h"
+#include "cutting/edge_list.h"
 #include "cutting/fitting_place.h"
 #include "cutting/near_nodes.h"
 #include "cutting/passages.h"
@@ -44,65 +45,6 @@ constexpr double bend = 0.25;
 
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
-
-/// An edge of the mesh, the lower node first.
-struct Edge {
-    NodeId a, b;
-    std::uint64_t key() const { return (static_cast<std::uint64_t>(a.index()) << 32) | b.index(); }
-    bool operator==(const Edge& other) const { return key() == other.key(); }
-    auto operator<=>(const Edge& other) const { return key() <=> other.key(); }
-};
-
-Edge edge_between(NodeId a, NodeId b) { return a < b ? Edge{a, b} : Edge{b, a}; }
-
-struct EdgeHash {
-    std::size_t operator()(const Edge& e) const {
-        return static_cast<std::size_t>((e.key() * 0x9E3779B97F4A7C15u) >> 20);
-    }
-};
-
-/// The edges of elements, each once, by number: in a table with room for twice as many, where an
-/// edge stands at the first free place from that of its hash on. An edge belongs to about five
-/// elements: to sort those of all of them takes longer.
-class EdgeList {
-  public:
-    struct Entry {
-        Edge edge;
-        ElementId element;  ///< the first that came with it
-        bool operator<(const Entry& other) const { return edge < other.edge; }
-    };
-
-    /// The number of the edge, from 0.
-    std::size_t add(const Edge& edge, ElementId element) {
-        if (2 * entries_.size() >= table_.size()) grow();
-        std::uint32_t& place = table_[place_of(edge)];
-        if (place == none) {
-            place = static_cast<std::uint32_t>(entries_.size());
-            entries_.push_back({edge, element});
-        }
-        return place;
-    }
-    const std::vector<Entry>& entries() const { return entries_; }
-
-  private:
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-    /// Of the edge, or where it is to be put.
-    std::size_t place_of(const Edge& edge) const {
-        std::size_t i = EdgeHash()(edge) & (table_.size() - 1);
-        while (table_[i] != none && entries_[table_[i]].edge != edge)
-            i = (i + 1) & (table_.size() - 1);
-        return i;
-    }
-    void grow() {
-        table_.assign(std::max<std::size_t>(64, 2 * table_.size()), none);
-        for (std::size_t i = 0; i < entries_.size(); ++i)
-            table_[place_of(entries_[i].edge)] = static_cast<std::uint32_t>(i);
-    }
-
-    std::vector<Entry> entries_;
-    std::vector<std::uint32_t> table_;  // a power of two in size
-};
 
 /// Of those through an edge, the one at which it is divided first: that to which the blade comes
 /// first, as in steps of which each has one of them; of those that it meets at once, the middle.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstring>
 
+#include "physics/gather_lanes.h"
 #include "physics/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
