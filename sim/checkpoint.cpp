@@ -11,7 +11,6 @@
 #include "io/input_file.h"
 #include "io/number_text.h"
 #include "sim/measured_quantities.h"
-#include "topology/archive.h"
 #include "topology/error.h"
 
 namespace incise::sim {
@@ -103,17 +102,21 @@ std::string differences(const std::vector<std::pair<std::string, std::string>>& 
 
 }  // namespace
 
-void write_checkpoint(const fs::path& folder, const Simulation& simulation, const Written& written,
-                      CheckpointKind kind) {
+SavedMoment::SavedMoment(const Simulation& simulation)
+    : scenario_(&simulation.scenario()),
+      fingerprint_(simulation.fingerprint()),
+      step_(simulation.num_steps()) {
+    simulation.save(state_);
+}
+
+void SavedMoment::write(const fs::path& folder, const Written& written, CheckpointKind kind) const {
     if (!fs::is_directory(folder_of_checkpoints(folder)))
         io::make_output_folder(folder_of_checkpoints(folder));
-    topology::ArchiveWriter state, ar;
-    simulation.save(state);
-    ar(std::string(INCISE_VERSION), simulation.scenario().contents, simulation.fingerprint(),
-       written, state.bytes());
-    const CheckpointName name{kind, simulation.num_steps()};
-    io::write_checked_file(folder_of_checkpoints(folder) / name.text(), ar.bytes());
-    tidy_checkpoints(folder, name.step);
+    topology::ArchiveWriter ar;
+    ar(std::string(INCISE_VERSION), scenario_->contents, fingerprint_, written, state_.bytes());
+    io::write_checked_file(folder_of_checkpoints(folder) / CheckpointName{kind, step_}.text(),
+                           ar.bytes());
+    tidy_checkpoints(folder, step_);
 }
 
 void remove_checkpoints(const fs::path& folder) {

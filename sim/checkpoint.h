@@ -12,6 +12,7 @@
 #include "io/series.h"
 #include "io/written_bytes.h"
 #include "sim/simulation.h"
+#include "topology/archive.h"
 
 namespace incise::sim {
 
@@ -29,10 +30,23 @@ struct Written {
 /// when the run has gone on: in the end there is what a run without the stop leaves.
 enum class CheckpointKind { regular, of_a_stop };
 
-/// Writes a checkpoint, which is whole or not there (io/checked_file.h), and tidies up. Everything
-/// that `written` speaks of must be on the disk. Throws OutputError.
-void write_checkpoint(const std::filesystem::path& folder, const Simulation& simulation,
-                      const Written& written, CheckpointKind kind);
+/// A simulation at one moment, which another thread can write while it goes on; the simulation must
+/// outlive it.
+class SavedMoment {
+  public:
+    /// Between two steps. Cost: see Simulation::save.
+    explicit SavedMoment(const Simulation& simulation);
+
+    /// Writes the checkpoint, which is whole or not there (io/checked_file.h), and tidies up.
+    /// Everything that `written` speaks of must be on the disk. Throws OutputError.
+    void write(const std::filesystem::path& folder, const Written& written,
+               CheckpointKind kind) const;
+
+  private:
+    const Scenario* scenario_;
+    std::uint64_t fingerprint_, step_;
+    topology::ArchiveWriter state_;
+};
 
 /// Throws OutputError.
 void remove_checkpoints(const std::filesystem::path& folder);

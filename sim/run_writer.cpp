@@ -2,8 +2,10 @@
 #include "sim/run_writer.h"
 
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "io/atomic_file.h"
 #include "io/number_format.h"
@@ -107,6 +109,7 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
     if (written) {
         for (std::size_t i = 0; i < last_row_.size(); ++i)
             last_row_[i].second = written->last_row[i];
+        has_checkpoint_ = true;
         note_checkpoint(simulation);
         return;
     }
@@ -137,19 +140,45 @@ void RunWriter::on_edit(const Simulation& simulation, const EditRecord& edit) {
 }
 
 void RunWriter::on_frame(const Simulation& simulation) {
-    wait_for_frame();
+    wait();
     frame_builder_.emplace(simulation.model(), simulation.time(),
                            simulation.scenario().output.fields);
-    // By this policy the frame is written by whoever waits for it if no thread can be had.
-    frame_ = std::async(std::launch::async | std::launch::deferred,
-                        [this] { series_.add(frame_builder_->finish()); });
+    write_later([this] {
+        const io::Frame frame = frame_builder_->finish();
+        is_frame_built_ = true;
+        series_.add(frame);
+    });
     ++num_frames_;
     append_history(simulation, simulation.ledger().account());
 }
 
-void RunWriter::wait_for_frame() {
-    if (frame_.valid()) frame_.get();
+void RunWriter::on_step(const Simulation&) {
+    if (is_frame_built_) drop_builder();
+}
+
+/// On the simulation's thread, as physics::ElementSnapshot is; as soon as it can be, since edits
+/// copy the elements that it shares.
+void RunWriter::drop_builder() {
     frame_builder_.reset();
+    is_frame_built_ = false;
+}
+
+/// Begins when the job before is done, on whose failure it is left out.
+template <class Job>
+void RunWriter::write_later(Job job) {
+    const auto after_the_last = [before = std::exchange(pending_, {}), job = std::move(job)] {
+        if (before.valid()) before.get();
+        job();
+    };
+    // By this policy it is done by whoever waits for it if no thread can be had. Handed over as a
+    // copy, since the standard library would move it to the thread and have none left for that.
+    pending_ = std::async(std::launch::async | std::launch::deferred, after_the_last);
+}
+
+void RunWriter::wait() {
+    is_checkpoint_pending_ = false;
+    if (pending_.valid()) std::exchange(pending_, {}).get();
+    drop_builder();
 }
 
 void RunWriter::on_pause(const Simulation& simulation) {
@@ -160,14 +189,31 @@ void RunWriter::on_pause(const Simulation& simulation) {
 
 void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kind) {
     if (last_checkpoint_ == simulation.num_steps()) return;
-    wait_for_frame();
-    history_.sync();
-    edits_.sync();
+    if (is_checkpoint_pending_) wait();  // or they could pile up
     Written written{history_.written(), edits_.written(), {}, {}};
-    written.frames.assign(series_.frames().begin(), series_.frames().end());
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
-    write_checkpoint(folder(), simulation, written, kind);
+    const auto moment = std::make_shared<const SavedMoment>(simulation);
+    // What it speaks of goes to the disk before it; the frames of before are there by then.
+    write_later([this, kind, moment, written] {
+        history_.sync();
+        edits_.sync();
+        Written all = written;
+        all.frames.assign(series_.frames().begin(), series_.frames().end());
+        moment->write(folder(), all, kind);
+        has_checkpoint_ = true;
+    });
+    is_checkpoint_pending_ = true;
+    if (kind == CheckpointKind::of_a_stop) wait();
     note_checkpoint(simulation);
+}
+
+bool RunWriter::has_checkpoint() {
+    try {
+        wait();
+    } catch (...) {
+        // Who asks has an error to tell already.
+    }
+    return has_checkpoint_;
 }
 
 /// The next is due after the interval that has begun, wherever in it this one was taken.
@@ -183,7 +229,7 @@ void RunWriter::note_checkpoint(const Simulation& simulation) {
 }
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
-    wait_for_frame();
+    wait();
     // The state that a run failed in is not one to keep: the last row written stands.
     const bool has_failed = outcome.status == "failed";
     if (!has_failed && simulation.scenario().output.interval == 0.0)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <future>
 #include <optional>
@@ -25,10 +26,11 @@ struct Outcome {
     double wall_time = 0.0;           ///< s
 };
 
-/// Frames are written by a thread of their own while the simulation goes on, one at a time: the
-/// next waits for it, as does a checkpoint and the end. Everything else is on disk, readable, when
-/// a function returns; a kill at any moment leaves whole files and whole lines, and a checkpoint to
-/// resume from. All functions throw OutputError, that of a frame the first that waits for it.
+/// Frames and checkpoints are written on a thread of their own while the simulation goes on, in
+/// their order; the next frame waits for those before it, as does the end. Everything else is on
+/// disk, readable, when a function returns; a kill at any moment leaves whole files and whole
+/// lines, and a checkpoint to resume from. All functions throw OutputError, that of a frame or a
+/// checkpoint the first that waits for it.
 class RunWriter : public Observer {
   public:
     /// Makes the folder; a former run there is replaced. InputError: see io::OutputFolder.
@@ -43,10 +45,12 @@ class RunWriter : public Observer {
     void on_start(const Simulation& simulation) override;
     void on_edit(const Simulation& simulation, const EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
+    void on_step(const Simulation& simulation) override;
     void on_pause(const Simulation& simulation) override;  ///< takes a checkpoint when one is due
-    /// Unless one has been taken after this step.
+    /// Unless one has been taken after this step. That of a stop is there when it returns.
     void take_checkpoint(const Simulation& simulation, CheckpointKind kind);
-    bool has_checkpoint() const { return last_checkpoint_.has_value(); }
+    /// Whether there is one to go on from when a run has failed, after all that is being written.
+    bool has_checkpoint();
     void finish(const Simulation& simulation, const Outcome& outcome);
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
@@ -61,7 +65,10 @@ class RunWriter : public Observer {
     const std::filesystem::path& folder() const { return folder_.path(); }
     void append_history(const Simulation& simulation, const Account& account);
     void note_checkpoint(const Simulation& simulation);
-    void wait_for_frame();
+    template <class Job>
+    void write_later(Job job);
+    void wait();
+    void drop_builder();
 
     io::OutputFolder folder_;
     io::Series series_;
@@ -72,8 +79,11 @@ class RunWriter : public Observer {
     double next_checkpoint_;                        // in intervals
     std::optional<std::uint64_t> last_checkpoint_;  // its step
     std::size_t num_frames_;
-    std::optional<FrameBuilder> frame_builder_;  // of the frame that is being written
-    std::future<void> frame_;  // writes it; the last member, as its thread uses others
+    bool has_checkpoint_ = false;                // for whoever has waited
+    std::optional<FrameBuilder> frame_builder_;  // of the frame that is being built
+    std::atomic<bool> is_frame_built_ = false;
+    bool is_checkpoint_pending_ = false;
+    std::shared_future<void> pending_;  // the last job; the last member: its thread uses others
 };
 
 }  // namespace incise::sim

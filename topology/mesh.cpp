@@ -213,24 +213,39 @@ std::vector<FaceId> boundary_faces(const Mesh& mesh) {
 MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::vector<NodeId>* nodes,
                       std::vector<ElementId>* elements) {
     MeshData data;
+    data.points.reserve(mesh.num_nodes());
+    if (nodes) {
+        nodes->clear();
+        nodes->reserve(mesh.num_nodes());
+    }
     std::vector<std::int64_t> row_of_node(mesh.node_capacity(), -1);
-    if (nodes) nodes->clear();
-    if (elements) elements->clear();
     for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
         if (!mesh.is_alive(NodeId(i))) continue;
         row_of_node[i] = static_cast<std::int64_t>(data.points.size());
         data.points.push_back(positions[i]);
         if (nodes) nodes->emplace_back(i);
     }
-    std::vector<std::int64_t> rows;
+
+    std::vector<ElementId> living;
+    living.reserve(mesh.num_elements());
+    std::size_t num_corners = 0;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const ElementId e(i);
         if (!mesh.is_alive(e)) continue;
-        rows.clear();
-        for (const NodeId n : mesh.corners(e)) rows.push_back(row_of_node[n.index()]);
-        data.add_cell(mesh.kind(e), rows, mesh.region(e));
-        if (elements) elements->push_back(e);
+        living.push_back(e);
+        num_corners += mesh.corners(e).size();
     }
+    data.kinds.reserve(living.size());
+    data.offsets.reserve(living.size() + 1);
+    data.regions.reserve(living.size());
+    data.corners.reserve(num_corners);
+    for (const ElementId e : living) {
+        for (const NodeId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
+        data.kinds.push_back(mesh.kind(e));
+        data.offsets.push_back(data.corners.size());
+        data.regions.push_back(mesh.region(e));
+    }
+    if (elements) *elements = std::move(living);
     return data;
 }
 
