@@ -119,9 +119,14 @@ bool has_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& p
 Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                          const CutFront& front) {
     Marks rings(mesh.node_capacity());
+    // Across the opened faces, too: what is left behind of a cut is so on both sides.
     const auto reach = [&](ElementId e, std::uint8_t ring) {
-        for (const NodeId n : mesh.corners(e))
-            if (rings[n.index()] == 0) rings[n.index()] = ring;
+        for (const NodeId n : mesh.corners(e)) {
+            if (rings[n.index()] != 0) continue;
+            rings[n.index()] = ring;
+            for (NodeId twin = front.next_twin(n); twin != n; twin = front.next_twin(twin))
+                rings[twin.index()] = ring;
+        }
     };
     const std::vector<ElementId> elements = elements_at(mesh, front);
     const CrossedEdges edges(mesh, front);

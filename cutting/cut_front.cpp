@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_set>
 
 namespace incise::cutting {
 
@@ -11,7 +12,7 @@ using topology::Mesh;
 using topology::NodeId;
 
 void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
-    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach, rank});
+    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach, rank, n});
     place->second.reach = std::max(place->second.reach, reach);
     num_new_ += is_new;
     has_changed_ = true;
@@ -77,10 +78,16 @@ void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
 }
 
 bool CutFront::is_on(const topology::Mesh& mesh) const {
-    return std::all_of(nodes_.begin(), nodes_.end(), [&](const auto& node) {
-        const NodeId n(static_cast<std::size_t>(node.first));
-        return n.is_valid() && n.index() < mesh.node_capacity();
-    });
+    std::unordered_set<std::int32_t> followers;
+    const auto is_sound = [&](const auto& node) {
+        const NodeId n(static_cast<std::size_t>(node.first)), twin = node.second.next_twin;
+        return n.is_valid() && n.index() < mesh.node_capacity() && is_on(twin) &&
+               followers.insert(twin.value).second;
+    };
+    return std::all_of(nodes_.begin(), nodes_.end(), is_sound) &&
+           std::ranges::all_of(waiting_, [&](ElementId e) {
+               return e.is_valid() && e.index() < mesh.element_capacity();
+           });
 }
 
 // Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
@@ -91,8 +98,12 @@ void CutFront::follow(const topology::ChangeSet& changes) {
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
         const NodeId source = record.sources[0].node;
-        if (const auto place = nodes_.find(source.value); place != nodes_.end())
-            num_new_ += nodes_.emplace(record.id.value, Node(place->second)).second;
+        if (const auto place = nodes_.find(source.value); place != nodes_.end()) {
+            if (nodes_.emplace(record.id.value, Node(place->second)).second) {
+                ++num_new_;
+                nodes_.at(source.value).next_twin = record.id;
+            }
+        }
         const auto place = crossed_.find(source.value);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) toggle(record.id, other);
@@ -101,7 +112,12 @@ void CutFront::follow(const topology::ChangeSet& changes) {
 
 void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
     for (const NodeId n : nodes) {
-        nodes_.erase(n.value);
+        if (const auto place = nodes_.find(n.value); place != nodes_.end()) {
+            NodeId before = n;
+            while (next_twin(before) != n) before = next_twin(before);
+            nodes_.at(before.value).next_twin = place->second.next_twin;
+            nodes_.erase(place);
+        }
         const auto place = crossed_.find(n.value);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "topology/change_set.h"
@@ -27,6 +28,10 @@ namespace incise::cutting {
 /// it, stands for itself.
 class CutFront {
   public:
+    /// Of the cut, from Scars::take_rank: higher than those of earlier cuts; 0 before it begins.
+    std::uint64_t number() const { return number_; }
+    void set_number(std::uint64_t number) { number_ = number; }
+
     /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
     /// it, on one side. `reach` is the size of the elements there, m; `rank`, see Scars::take_rank.
     /// Of a node that is on the cut already only the reach can change, to more.
@@ -48,6 +53,13 @@ class CutFront {
     std::uint64_t rank(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);
         return place != nodes_.end() ? place->second.rank : 0;
+    }
+
+    /// The next of the nodes that a node on the cut has become by the faces that have opened since
+    /// it came to it: from one to the next they make a ring. The node itself if it is the only one.
+    topology::NodeId next_twin(topology::NodeId n) const {
+        const auto place = nodes_.find(n.value);
+        return place != nodes_.end() ? place->second.next_twin : n;
     }
 
     /// Size of the elements at a node on the cut, m; 0 for others.
@@ -79,8 +91,13 @@ class CutFront {
                       topology::NodeId middle,
                       std::span<const topology::MeshEdit::DividedElement> elements);
 
-    /// Whether the mesh has had all nodes on the cut.
+    /// Whether the mesh has had all nodes on the cut, and twins make rings: after a restore.
     bool is_on(const topology::Mesh& mesh) const;
+
+    /// Elements of small pieces that are not to come off before it is known whether they hang on
+    /// the rest of their side.
+    const std::vector<topology::ElementId>& waiting() const { return waiting_; }
+    void set_waiting(std::vector<topology::ElementId> elements) { waiting_ = std::move(elements); }
 
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }
@@ -118,7 +135,8 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.crossed_, self.places_, self.num_new_, self.has_changed_);
+        ar(self.number_, self.nodes_, self.crossed_, self.places_, self.num_new_,
+           self.has_changed_);
     }
 
   private:
@@ -126,9 +144,10 @@ class CutFront {
         bool is_exact = false;
         double reach = 0.0;
         std::uint64_t rank = 0;
+        topology::NodeId next_twin;
         bool is_settled = false;
         static void archive(auto& ar, auto& self) {
-            ar(self.is_exact, self.reach, self.rank, self.is_settled);
+            ar(self.is_exact, self.reach, self.rank, self.next_twin, self.is_settled);
         }
     };
     struct LocalPlace {
@@ -136,10 +155,12 @@ class CutFront {
         bool is_crossed = false;
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
+    std::uint64_t number_ = 0;
     std::unordered_map<std::int32_t, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
     std::unordered_map<std::int32_t, LocalPlace> places_;  // of elements whose corners are all on
+    std::vector<topology::ElementId> waiting_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };

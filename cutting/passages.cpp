@@ -12,7 +12,8 @@ std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdg
     surface.append_crossings(edge.a, edge.b, crossings);
     std::sort(crossings.begin(), crossings.end());
     for (std::size_t i = 0; i + 1 < crossings.size();) {
-        if (crossings[i + 1].place - crossings[i].place >= apart) {
+        if (crossings[i + 1].place - crossings[i].place >= apart ||
+            crossings[i + 1].time != crossings[i].time) {
             ++i;
             continue;
         }

@@ -41,8 +41,8 @@ void Scars::follow(const topology::ChangeSet& changes) {
             scars_.insert_or_assign(record.id.value, std::vector<Scar>(place->second));
     }
     for (const topology::ElementRecord& record : changes.elements_added)
-        if (!crumbs_.empty() && record.parent.is_valid() && is_crumb(record.parent))
-            add_crumb(record.id);
+        if (const auto place = crumbs_.find(record.parent.value); place != crumbs_.end())
+            add_crumb(record.id, place->second);
 }
 
 }  // namespace incise::cutting

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "cutting/cut_surface.h"
@@ -46,8 +45,14 @@ class Scars {
     /// Nodes of all cuts are numbered in the order in which they come to count as on one.
     std::uint64_t take_rank() { return next_rank_++; }
 
-    /// The element stayed with the other side of its cut, as there was too little of it.
-    void add_crumb(topology::ElementId e) { crumbs_.insert(e.value); }
+    /// The element stayed with the other side of the cut of this number (CutFront::number), as
+    /// there was too little of it.
+    void add_crumb(topology::ElementId e, std::uint64_t cut) { crumbs_.emplace(e.value, cut); }
+    /// Whether it did so at a cut before the one of this number.
+    bool is_crumb(topology::ElementId e, std::uint64_t cut) const {
+        const auto place = crumbs_.find(e.value);
+        return place != crumbs_.end() && place->second < cut;
+    }
     bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e.value); }
 
     /// Copies of a node, and parts of an element, are what it is.
@@ -60,7 +65,7 @@ class Scars {
 
   private:
     std::unordered_map<std::int32_t, std::vector<Scar>> scars_;
-    std::unordered_set<std::int32_t> crumbs_;
+    std::unordered_map<std::int32_t, std::uint64_t> crumbs_;
     std::uint64_t next_rank_ = 1;
 };
 

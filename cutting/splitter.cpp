@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <queue>
@@ -101,6 +102,7 @@ class Splitter {
           near_nodes_(mesh, {snap_, farthest_}) {}
 
     Split run() {
+        if (front_.is_empty()) front_.set_number(scars_.take_rank());
         find_crossed_edges();
         if (touched_.empty()) {
             leave_behind({});
@@ -110,15 +112,15 @@ class Splitter {
         while (!queue_.empty()) divide_next();
         std::sort(touched_.begin(), touched_.end());
         touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-        std::vector<ElementId> crumbs = part(front_, options_.snap > 0.0);
-        for (const RestingBlade& blade : resting_) {
-            const auto others = part(blade.front, blade.snaps);
+        std::vector<ElementId> crumbs = part();
+        for (RestingBlade& blade : resting_) {
+            const auto others = part(blade);
             crumbs.insert(crumbs.end(), others.begin(), others.end());
         }
         Split result{edit_->commit(), report_};
         front_.follow(result.changes);
         scars_.follow(result.changes);
-        for (const ElementId e : crumbs) scars_.add_crumb(e);
+        for (const ElementId e : crumbs) scars_.add_crumb(e, front_.number());
         leave_behind(result.changes);
         return result;
     }
@@ -139,15 +141,35 @@ class Splitter {
             return length != other.length ? length < other.length : other.edge < edge;
         }
     };
-    /// Opens what lies on the cut of the front; returns the crumbs.
-    std::vector<ElementId> part(const CutFront& front, bool snaps) {
-        Parting parting = parted_faces(mesh_, front, scars_, touched_, snaps);
-        for (const FaceId f : parting.faces) {
+    /// Opens what lies on the cut; returns the crumbs.
+    std::vector<ElementId> part() {
+        const Course course{[&](FaceId f) { return time_of_parting(f); },
+                            [&](FaceId f) { return ends_in(f); }};
+        const bool has_crumbs = options_.snap > 0.0;
+        std::vector<ElementId> elements = touched_;
+        std::ranges::copy_if(front_.waiting(), std::back_inserter(elements),
+                             [&](ElementId e) { return mesh_.is_alive(e); });
+        Parting parting = parted_faces(mesh_, front_, scars_, elements,
+                                       has_crumbs ? std::optional<Course>(course) : std::nullopt);
+        open(parting.faces);
+        front_.set_waiting(std::move(parting.waiting));
+        return std::move(parting.crumbs);
+    }
+    /// The same for a blade that is in the body besides.
+    std::vector<ElementId> part(const RestingBlade& blade) {
+        const Course all_at_once{[](FaceId) { return 0.0; }, [](FaceId) { return false; }};
+        Parting parting =
+            parted_faces(mesh_, blade.front, scars_, touched_,
+                         blade.snaps ? std::optional<Course>(all_at_once) : std::nullopt);
+        open(parting.faces);
+        return std::move(parting.crumbs);
+    }
+    void open(const std::vector<FaceId>& faces) {
+        for (const FaceId f : faces) {
             report_.cut_area += topology::rest_area(mesh_, f);
             ++report_.faces_opened;
             edit_->open(f);
         }
-        return std::move(parting.crumbs);
     }
 
     MovingPoint point(NodeId n) const {
@@ -194,6 +216,13 @@ class Splitter {
     void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
               double reach);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
+    double time_of_parting(FaceId f) const;
+    bool ends_in(FaceId f) const {
+        return surface_
+            .ends_inside({point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
+                          point(mesh_.face_corner(f, 2))})
+            .value_or(false);
+    }
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
     void recognize(std::vector<EdgeList::Entry> edges);
@@ -212,6 +241,8 @@ class Splitter {
     std::optional<MeshEdit> edit_;  // from when there is something to do
 
     std::vector<MovingPoint> new_points_;
+    double now_ = 0.0;                                  // the time of what is being done
+    std::unordered_map<std::int32_t, double> came_on_;  // when nodes came to the cut, in this step
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
@@ -327,7 +358,10 @@ void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
                 if (front_.is_on(n) && !is_candidate) continue;
                 const Crossing* passage = passage_by(n, scar, length);
                 if (passage == nullptr) continue;
-                if (!front_.is_on(n)) front_.put_on(n, scar.is_exact, length, scar.rank);
+                if (!front_.is_on(n)) {
+                    came_on_[n.value] = passage->time;
+                    front_.put_on(n, scar.is_exact, length, scar.rank);
+                }
                 if (!is_candidate || !is_along(scar, passage->normal)) continue;
                 front_.settle(n);
                 break;
@@ -335,7 +369,28 @@ void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
         }
 }
 
+/// When the face came to have its three nodes on the cut and its elements on different sides of
+/// it; before the step, if a look at them does not tell.
+double Splitter::time_of_parting(FaceId f) const {
+    double last = -1.0;
+    for (int p = 0; p < 3; ++p)
+        if (const auto place = came_on_.find(mesh_.face_corner(f, p).value);
+            place != came_on_.end())
+            last = std::max(last, place->second);
+    std::array<NodeId, 3> corners;
+    for (int p = 0; p < 3; ++p) corners[static_cast<std::size_t>(p)] = mesh_.face_corner(f, p);
+    for (const ElementId e : {f.element, mesh_.neighbor(f).element})
+        for (const NodeId apex : mesh_.corners(e)) {
+            if (std::ranges::find(corners, apex) != corners.end()) continue;
+            for (const NodeId n : corners)
+                for (const Passage& passage : passages(edge_between(apex, n), e))
+                    last = std::max(last, passage.time);
+        }
+    return last;
+}
+
 void Splitter::put_on(NodeId n, bool is_exact, double reach) {
+    if (!front_.is_on(n)) came_on_[n.value] = now_;
     front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : scars_.take_rank());
 }
 
@@ -404,20 +459,20 @@ void Splitter::settle(const Edge& edge, const Passages& passages) {
 void Splitter::divide_next() {
     const auto [time, length, edge] = queue_.top();
     queue_.pop();
+    now_ = time;
     const auto place = pending_.find(edge);
-    Passages left = place->second.passages;
-    const bool is_divided = is_to_be_divided(edge, place->second.element, left);
-    if (is_divided && first_of(left).time > time) {
-        queue_.push({first_of(left).time, length, edge});
-        return;
-    }
-    const Pending pending = std::move(place->second);
+    const ElementId element = place->second.element;
+    Passages due = std::move(place->second.passages), later;
     pending_.erase(place);
-    if (is_divided) {
+    // Of later ones it is decided when the blade is there, as if they were in another step.
+    const auto is_later = [&](const Passage& passage) { return passage.time > now_; };
+    std::ranges::copy_if(due, std::back_inserter(later), is_later);
+    if (!later.empty()) std::erase_if(due, is_later);
+    if (Passages left = due; is_to_be_divided(edge, element, left)) {
         const Passage& passage = first_of(left);
-        const double t = place_to_divide(edge, pending.element, passage);
+        const double t = place_to_divide(edge, element, passage);
         if (t > 0.0) {
-            const NodeId middle = divide(edge, pending.element, t, passage);
+            const NodeId middle = divide(edge, element, t, passage);
             scars_.add(middle, scar_at(middle, passage));
             return;
         }
@@ -425,7 +480,8 @@ void Splitter::divide_next() {
         snap_to(end, rest_length(edge));
         scars_.add(end, scar_at(end, passage));  // beside a fold, even of a node made on the cut
     }
-    settle(edge, pending.passages);
+    settle(edge, due);
+    if (!later.empty()) receive(edge, element, std::move(later));
 }
 
 /// Where to divide the edge; negative if the nearer end is to count as on the surface.

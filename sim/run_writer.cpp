@@ -184,10 +184,15 @@ void RunWriter::wait() {
 void RunWriter::on_pause(const Simulation& simulation) {
     const double interval = simulation.scenario().output.checkpoint_interval;
     const bool is_due = interval > 0.0 && simulation.time() >= next_checkpoint_ * interval;
-    if (is_due && !simulation.is_finished()) take_checkpoint(simulation, CheckpointKind::regular);
+    if (is_due && !simulation.is_finished()) begin_checkpoint(simulation, CheckpointKind::regular);
 }
 
 void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kind) {
+    begin_checkpoint(simulation, kind);
+    wait();
+}
+
+void RunWriter::begin_checkpoint(const Simulation& simulation, CheckpointKind kind) {
     if (last_checkpoint_ == simulation.num_steps()) return;
     if (is_checkpoint_pending_) wait();  // or they could pile up
     Written written{history_.written(), edits_.written(), {}, {}};
@@ -203,7 +208,6 @@ void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kin
         has_checkpoint_ = true;
     });
     is_checkpoint_pending_ = true;
-    if (kind == CheckpointKind::of_a_stop) wait();
     note_checkpoint(simulation);
 }
 

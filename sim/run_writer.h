@@ -46,8 +46,8 @@ class RunWriter : public Observer {
     void on_edit(const Simulation& simulation, const EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
     void on_step(const Simulation& simulation) override;
-    void on_pause(const Simulation& simulation) override;  ///< takes a checkpoint when one is due
-    /// Unless one has been taken after this step. That of a stop is there when it returns.
+    void on_pause(const Simulation& simulation) override;  ///< begins a checkpoint if one is due
+    /// Unless one has been taken after this step. It is on the disk when this returns.
     void take_checkpoint(const Simulation& simulation, CheckpointKind kind);
     /// Whether there is one to go on from when a run has failed, after all that is being written.
     bool has_checkpoint();
@@ -64,6 +64,7 @@ class RunWriter : public Observer {
 
     const std::filesystem::path& folder() const { return folder_.path(); }
     void append_history(const Simulation& simulation, const Account& account);
+    void begin_checkpoint(const Simulation& simulation, CheckpointKind kind);
     void note_checkpoint(const Simulation& simulation);
     template <class Job>
     void write_later(Job job);

@@ -109,6 +109,35 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
     EXPECT_TRUE(empty.is_empty());
 }
 
+/// The node and those that come after it in its ring, in ascending order.
+std::vector<NodeId> ring(const CutFront& front, NodeId n) {
+    std::vector<NodeId> nodes{n};
+    for (NodeId twin = front.next_twin(n); twin != n && nodes.size() < 10;
+         twin = front.next_twin(twin))
+        nodes.push_back(twin);
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+}
+
+TEST(CutFront, TwinsMakeARing) {
+    CutFront front;
+    front.put_on(node(1), true, 1.0, 1);
+    front.put_on(node(2), true, 1.0, 2);
+    front.follow(additions({{20, 1}, {21, 1}}));
+    front.follow(additions({{22, 20}, {23, 9}}));
+    const std::vector<NodeId> all{node(1), node(20), node(21), node(22)};
+    for (const NodeId n : all) EXPECT_EQ(ring(front, n), all);
+    EXPECT_EQ(ring(front, node(2)), std::vector{node(2)});
+    EXPECT_EQ(ring(front, node(23)), std::vector{node(23)});  // not on the cut
+
+    const auto mesh = topology::Mesh::build(test::jittered_cube(2, 0.0, 1)).mesh;
+    EXPECT_TRUE(front.is_on(mesh));
+    front.forget(mesh, {node(1), node(22)});
+    EXPECT_EQ(ring(front, node(20)), (std::vector{node(20), node(21)}));
+    EXPECT_EQ(ring(front, node(21)), (std::vector{node(20), node(21)}));
+    EXPECT_TRUE(front.is_on(mesh));
+}
+
 TEST(CutFront, ForgetsWhatIsLeftBehind) {
     CutFront front;
     for (const std::size_t n : {1u, 2u, 3u})
@@ -223,7 +252,7 @@ TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
 TEST(Scars, PartsOfACrumbAreCrumbs) {
     Scars scars;
     const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});
-    scars.add_crumb(whole);
+    scars.add_crumb(whole, 1);
     topology::ChangeSet changes;
     changes.elements_added.push_back({part, topology::CellKind::tetrahedron, 0, whole, {}});
     changes.elements_added.push_back(
@@ -232,6 +261,8 @@ TEST(Scars, PartsOfACrumbAreCrumbs) {
     EXPECT_TRUE(scars.is_crumb(whole));
     EXPECT_TRUE(scars.is_crumb(part));
     EXPECT_FALSE(scars.is_crumb(other));
+    EXPECT_TRUE(scars.is_crumb(part, 2));   // of an earlier cut
+    EXPECT_FALSE(scars.is_crumb(part, 1));  // of the same
 }
 
 }  // namespace
