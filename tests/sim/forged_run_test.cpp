@@ -191,6 +191,15 @@ TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
     EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
 }
 
+TEST_F(ForgedRun, IsRefusedIfAnotherBuildOfThisVersionHasWrittenIt) {
+    std::string bytes = good_;
+    const auto version = topology::ArchiveReader(good_).read<std::string>();
+    ++bytes[sizeof(std::uint64_t) + version.size()];  // the format is behind it
+    const std::string message = refusal_of([&] { resume(bytes); });
+    EXPECT_NE(message.find("was written by another build of version "), std::string::npos);
+    EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
+}
+
 TEST_F(ForgedRun, IsRefusedWhereItsBooksAreNotThoseOfItsEdits) {
     using Forge = std::function<void(EditRecord&)>;
     const auto refusal = [&](const Forge& forge) {
