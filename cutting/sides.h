@@ -1,47 +1,51 @@
-// Which faces part the two sides of a cut.
+// Which side of a cut elements are on, and which faces lie between the two.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "cutting/cut_front.h"
-#include "cutting/scars.h"
 #include "topology/mesh.h"
 #include "topology/types.h"
 
 namespace incise::cutting {
 
-/// What to open, and what stays joined all the same.
-struct Parting {
-    std::vector<topology::FaceId> faces;
-    std::vector<topology::ElementId> crumbs;
-    std::vector<topology::ElementId> waiting;  ///< see CutFront::waiting
-};
-
-/// How the surface has come to the faces of the mesh.
-struct Course {
-    /// When the last of what parts the face came about.
-    std::function<double(topology::FaceId)> time_of_parting;
-    /// Whether the border at which the sweep has ended runs through the face.
-    std::function<bool(topology::FaceId)> ends_in;
-};
-
-/// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the cut
-/// and whose elements are on different sides of it, all three nodes agreeing; at the front, where
-/// the cut ends, they do not agree yet. Not those between settled nodes (CutFront::settle).
-///
 /// Where an element is, see CutFront::place_of; one of which it is not known goes with the
-/// neighbour with which it shares the largest face. Small groups that
-/// hang on the rest of their side by nodes only, which snapping may leave, stay with the other
-/// side: they would be crumbs. They do so by the face that the surface comes to last, or by all
-/// of them if it comes to them at once; so it does not matter how many steps a blade takes.
-///
-/// @param touched  the elements to look at, and thereby their faces
-/// @param course  nothing if there are no crumbs: an exact cut leaves none
-Parting parted_faces(const topology::Mesh& mesh, const CutFront& front, const Scars& scars,
-                     const std::vector<topology::ElementId>& touched,
-                     const std::optional<Course>& course);
+/// neighbour with which it shares the largest face.
+class Sides {
+  public:
+    /// @param touched  the elements to look at, and thereby their faces
+    Sides(const topology::Mesh& mesh, const CutFront& front,
+          const std::vector<topology::ElementId>& touched);
+
+    /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the
+    /// cut and whose elements are on different sides of it, all three nodes agreeing; at the front,
+    /// where the cut ends, they do not agree yet.
+    std::vector<topology::FaceId> parted_faces() const;
+
+    /// Whether it is known where the element is.
+    bool is_placed(topology::ElementId e) const { return place(e).has_value(); }
+    /// Whether the way from where the placed element lies to its corner `n`, on the cut, crosses
+    /// it.
+    bool is_crossed_to(topology::ElementId e, topology::NodeId n) const;
+
+  private:
+    using Place = CutFront::Place;
+
+    void collect_faces(const std::vector<topology::ElementId>& touched);
+    void place_elements_on_cut();
+    bool is_on_cut(topology::FaceId f) const;
+    topology::NodeId far_corner(topology::ElementId e) const;
+    std::optional<Place> place(topology::ElementId e) const;
+    bool is_parted(topology::FaceId f) const;
+
+    const topology::Mesh& mesh_;
+    const CutFront& front_;
+    std::vector<topology::FaceId> faces_;             // joined, on the cut, from their lower side
+    std::unordered_map<std::int32_t, Place> places_;  // of elements all of whose corners are on it
+};
 
 }  // namespace incise::cutting

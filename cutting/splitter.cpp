@@ -17,8 +17,8 @@
 #include "cutting/edge_list.h"
 #include "cutting/fitting_place.h"
 #include "cutting/near_nodes.h"
+#include "cutting/parting.h"
 #include "cutting/passages.h"
-#include "cutting/sides.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
 
@@ -110,17 +110,11 @@ class Splitter {
         }
         edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
-        std::sort(touched_.begin(), touched_.end());
-        touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-        std::vector<ElementId> crumbs = part();
-        for (RestingBlade& blade : resting_) {
-            const auto others = part(blade);
-            crumbs.insert(crumbs.end(), others.begin(), others.end());
-        }
+        part();
         Split result{edit_->commit(), report_};
         front_.follow(result.changes);
         scars_.follow(result.changes);
-        for (const ElementId e : crumbs) scars_.add_crumb(e, front_.number());
+        for (const auto& [e, cut] : crumbs_) scars_.add_crumb(e, cut);
         leave_behind(result.changes);
         return result;
     }
@@ -141,37 +135,6 @@ class Splitter {
             return length != other.length ? length < other.length : other.edge < edge;
         }
     };
-    /// Opens what lies on the cut; returns the crumbs.
-    std::vector<ElementId> part() {
-        const Course course{[&](FaceId f) { return time_of_parting(f); },
-                            [&](FaceId f) { return ends_in(f); }};
-        const bool has_crumbs = options_.snap > 0.0;
-        std::vector<ElementId> elements = touched_;
-        std::ranges::copy_if(front_.waiting(), std::back_inserter(elements),
-                             [&](ElementId e) { return mesh_.is_alive(e); });
-        Parting parting = parted_faces(mesh_, front_, scars_, elements,
-                                       has_crumbs ? std::optional<Course>(course) : std::nullopt);
-        open(parting.faces);
-        front_.set_waiting(std::move(parting.waiting));
-        return std::move(parting.crumbs);
-    }
-    /// The same for a blade that is in the body besides.
-    std::vector<ElementId> part(const RestingBlade& blade) {
-        const Course all_at_once{[](FaceId) { return 0.0; }, [](FaceId) { return false; }};
-        Parting parting =
-            parted_faces(mesh_, blade.front, scars_, touched_,
-                         blade.snaps ? std::optional<Course>(all_at_once) : std::nullopt);
-        open(parting.faces);
-        return std::move(parting.crumbs);
-    }
-    void open(const std::vector<FaceId>& faces) {
-        for (const FaceId f : faces) {
-            report_.cut_area += topology::rest_area(mesh_, f);
-            ++report_.faces_opened;
-            edit_->open(f);
-        }
-    }
-
     MovingPoint point(NodeId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
@@ -216,6 +179,8 @@ class Splitter {
     void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
               double reach);
     void inherit_scars(NodeId from, NodeId to, NodeId middle);
+    void part();
+    void open(const CutFront& front, const Parting& parting);
     double time_of_parting(FaceId f) const;
     bool ends_in(FaceId f) const {
         return surface_
@@ -246,8 +211,9 @@ class Splitter {
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
-    std::vector<ElementId> touched_;  // crossed, or made of such
-    std::vector<ElementId> ring_;     // scratch
+    std::vector<ElementId> touched_;                           // crossed, or made of such
+    std::vector<ElementId> ring_;                              // scratch
+    std::vector<std::pair<ElementId, std::uint64_t>> crumbs_;  // and the number of the cut
     SplitReport report_;
 };
 
@@ -367,6 +333,35 @@ void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
                 break;
             }
         }
+}
+
+/// Opens what lies on the cut, and on those of the blades that are in the body besides.
+void Splitter::part() {
+    std::ranges::copy_if(front_.waiting(), std::back_inserter(touched_),
+                         [&](ElementId e) { return mesh_.is_alive(e); });
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    const auto parting_of = [&](const CutFront& front, bool snaps, const Course& course) {
+        return parting(mesh_, front, scars_, touched_,
+                       snaps ? std::optional(course) : std::nullopt);
+    };
+    Parting own = parting_of(
+        front_, options_.snap > 0.0,
+        {[&](FaceId f) { return time_of_parting(f); }, [&](FaceId f) { return ends_in(f); }});
+    open(front_, own);
+    front_.set_waiting(std::move(own.waiting));
+    const Course together{[](FaceId) { return 0.0; }, [](FaceId) { return false; }};
+    for (const RestingBlade& blade : resting_)
+        open(blade.front, parting_of(blade.front, blade.snaps, together));
+}
+
+void Splitter::open(const CutFront& front, const Parting& parting) {
+    for (const FaceId f : parting.faces) {
+        report_.cut_area += topology::rest_area(mesh_, f);
+        ++report_.faces_opened;
+        edit_->open(f);
+    }
+    for (const ElementId e : parting.crumbs) crumbs_.emplace_back(e, front.number());
 }
 
 /// When the face came to have its three nodes on the cut and its elements on different sides of
