@@ -5,16 +5,20 @@
 #pragma once
 
 #include <SMP/Common/vtkSMPToolsAPI.h>
+#include <libdeflate.h>
 #include <vtkObject.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkZLibDataCompressor.h>
 
 #include <cstddef>
 #include <cstring>
 #include <ios>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/packed_blocks.h"
 
@@ -103,6 +107,34 @@ class ThrowingCompressor final : public VtkCompressor {
     explicit ThrowingCompressor(PackedBlocks* known) : known_(known) {}
 
     PackedBlocks* known_;
+};
+
+/// VTK's compressor of zlib streams, by libdeflate, which takes half the time. The name of its
+/// class stays VTK's, since files have it.
+class FastZlibCompressor : public vtkZLibDataCompressor {
+  protected:
+    std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
+                               std::size_t space) override {
+        if (!compressor_) compressor_.reset(libdeflate_alloc_compressor(CompressionLevel));
+        if (!compressor_) throw std::bad_alloc();
+        // It wants some bytes more than VTK gives it, and leaves them free.
+        bytes_.resize(libdeflate_zlib_compress_bound(compressor_.get(), size));
+        const auto num_packed =
+            libdeflate_zlib_compress(compressor_.get(), data, size, bytes_.data(), bytes_.size());
+        if (num_packed == 0 || num_packed > space)
+            return vtkZLibDataCompressor::CompressBuffer(data, size, packed, space);
+        std::memcpy(packed, bytes_.data(), num_packed);
+        return num_packed;
+    }
+
+  private:
+    struct Free {
+        void operator()(libdeflate_compressor* compressor) const {
+            libdeflate_free_compressor(compressor);
+        }
+    };
+    std::unique_ptr<libdeflate_compressor, Free> compressor_;
+    std::vector<unsigned char> bytes_;
 };
 
 }  // namespace incise::io

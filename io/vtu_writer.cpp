@@ -17,7 +17,6 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkZLibDataCompressor.h>
 
 #include <algorithm>
 #include <limits>
@@ -162,7 +161,7 @@ vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression, Pack
             return ThrowingCompressor<vtkLZ4DataCompressor>::make(middle,
                                                                   known);  // fast at any level
         case Compression::zlib:
-            return ThrowingCompressor<vtkZLibDataCompressor>::make(fastest, known);
+            return ThrowingCompressor<FastZlibCompressor>::make(fastest, known);
         case Compression::lzma:
             return ThrowingCompressor<vtkLZMADataCompressor>::make(fastest, known);
     }
