@@ -177,7 +177,11 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         text << scenario.name << ": step " << simulation.num_steps() + 1
              << ", t = " << simulation.time() << " s: " << error.what()
              << ". What was written up to then is in " << writer.main_result().string();
-        finish({"failed", text.str()});
+        try {
+            finish({"failed", text.str()});
+        } catch (const OutputError& refusal) {
+            text << '\n' << refusal.what();
+        }
         throw PhysicsError(text.str());
     }
     if (!simulation.is_finished()) {

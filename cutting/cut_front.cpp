@@ -84,24 +84,31 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
         return n.is_valid() && n.index() < mesh.node_capacity() && is_on(twin) &&
                followers.insert(twin.value).second;
     };
-    return std::all_of(nodes_.begin(), nodes_.end(), is_sound) &&
-           std::ranges::all_of(waiting_, [&](ElementId e) {
-               return e.is_valid() && e.index() < mesh.element_capacity();
-           });
+    const auto is_element = [&](ElementId e) {
+        return e.is_valid() && e.index() < mesh.element_capacity();
+    };
+    const auto is_place = [&](const auto& place) {
+        return is_element(ElementId(static_cast<std::size_t>(place.first))) &&
+               place.second.corner >= 0 && place.second.corner < 4;
+    };
+    return std::ranges::all_of(nodes_, is_sound) && std::ranges::all_of(places_, is_place) &&
+           std::ranges::all_of(waiting_, is_element);
 }
 
 // Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
 // edges and nobody will ask for them.
-void CutFront::follow(const topology::ChangeSet& changes) {
+void CutFront::follow(const topology::ChangeSet& changes, bool has_opened_faces_of_it) {
     if (is_empty() || changes.is_empty()) return;
     has_changed_ = true;
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
         const NodeId source = record.sources[0].node;
         if (const auto place = nodes_.find(source.value); place != nodes_.end()) {
-            if (nodes_.emplace(record.id.value, Node(place->second)).second) {
+            Node copy = place->second;
+            if (!has_opened_faces_of_it) copy.next_twin = record.id;
+            if (nodes_.emplace(record.id.value, copy).second) {
                 ++num_new_;
-                nodes_.at(source.value).next_twin = record.id;
+                if (has_opened_faces_of_it) nodes_.at(source.value).next_twin = record.id;
             }
         }
         const auto place = crossed_.find(source.value);

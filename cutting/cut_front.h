@@ -55,8 +55,9 @@ class CutFront {
         return place != nodes_.end() ? place->second.rank : 0;
     }
 
-    /// The next of the nodes that a node on the cut has become by the faces that have opened since
-    /// it came to it: from one to the next they make a ring. The node itself if it is the only one.
+    /// The next of the nodes that a node on the cut has become by the faces of this cut that have
+    /// opened since it came to it: from one to the next they make a ring. The node itself if it is
+    /// the only one.
     topology::NodeId next_twin(topology::NodeId n) const {
         const auto place = nodes_.find(n.value);
         return place != nodes_.end() ? place->second.next_twin : n;
@@ -91,7 +92,7 @@ class CutFront {
                       topology::NodeId middle,
                       std::span<const topology::MeshEdit::DividedElement> elements);
 
-    /// Whether the mesh has had all nodes on the cut, and twins make rings: after a restore.
+    /// Whether the mesh has had all nodes and elements of it, and twins make rings.
     bool is_on(const topology::Mesh& mesh) const;
 
     /// Elements of small pieces that are not to come off before it is known whether they hang on
@@ -116,8 +117,8 @@ class CutFront {
             visit(topology::NodeId(static_cast<std::size_t>(value)), others);
     }
 
-    /// Copies of a node are what it is.
-    void follow(const topology::ChangeSet& changes);
+    /// Copies of a node are what it is, and its twins if the edit has opened faces of this cut.
+    void follow(const topology::ChangeSet& changes, bool has_opened_faces_of_it = false);
     /// The nodes for which keep(node) is false, in ascending order.
     template <class Keep>
     std::vector<topology::NodeId> nodes_unless(Keep keep) const;
@@ -135,7 +136,7 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.number_, self.nodes_, self.crossed_, self.places_, self.num_new_,
+        ar(self.number_, self.nodes_, self.crossed_, self.places_, self.waiting_, self.num_new_,
            self.has_changed_);
     }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cutting/sides.h"
+#include "cutting/space_time.h"
 
 namespace incise::cutting {
 
@@ -34,9 +35,6 @@ double rest_volume(const Mesh& mesh, ElementId e) {
     };
     return std::abs(edge(1).dot(edge(2).cross(edge(3)))) / 6.0;
 }
-
-/// Of a step: what is nearer than that to each other happens at the same time, but for rounding.
-constexpr double at_once = 1e-9;
 
 /// Whether an earlier cut along the same surface has left the face joined.
 bool is_settled(const Mesh& mesh, const CutFront& front, FaceId f) {
@@ -72,7 +70,7 @@ class Crumbs {
 
     double time(FaceId f);
     bool collect_piece(ElementId start, double by, std::vector<ElementId>& piece);
-    bool is_known(ElementId e) const { return scars_.is_crumb(e, front_.number()); }
+    bool is_known(ElementId e) const { return scars_.is_earlier_crumb(e, front_.number()); }
     void star_of(NodeId n, std::vector<ElementId>& star) const;
     template <class Condition>
     bool any_twin(NodeId n, Condition condition) const;

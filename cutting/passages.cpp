@@ -13,7 +13,7 @@ std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdg
     std::sort(crossings.begin(), crossings.end());
     for (std::size_t i = 0; i + 1 < crossings.size();) {
         if (crossings[i + 1].place - crossings[i].place >= apart ||
-            crossings[i + 1].time != crossings[i].time) {
+            std::abs(crossings[i + 1].time - crossings[i].time) > at_once) {
             ++i;
             continue;
         }

@@ -25,8 +25,8 @@ struct Passage {
 };
 using Passages = std::vector<Passage>;  // in ascending order of places
 
-/// In ascending order of places. Two that are nearer to each other than `apart`, a share of the
-/// edge, are not told apart and cancel out.
+/// In ascending order of places. Two at once that are nearer to each other than `apart`, a share of
+/// the edge, are not told apart and cancel out.
 std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdge& edge,
                                    double apart);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -47,9 +48,12 @@ class Scars {
 
     /// The element stayed with the other side of the cut of this number (CutFront::number), as
     /// there was too little of it.
-    void add_crumb(topology::ElementId e, std::uint64_t cut) { crumbs_.emplace(e.value, cut); }
-    /// Whether it did so at a cut before the one of this number.
-    bool is_crumb(topology::ElementId e, std::uint64_t cut) const {
+    void add_crumb(topology::ElementId e, std::uint64_t cut) {
+        auto& first = crumbs_.emplace(e.value, cut).first->second;
+        first = std::min(first, cut);
+    }
+    /// Whether it did so at a cut that began before the one of this number.
+    bool is_earlier_crumb(topology::ElementId e, std::uint64_t cut) const {
         const auto place = crumbs_.find(e.value);
         return place != crumbs_.end() && place->second < cut;
     }

@@ -25,6 +25,9 @@ struct Crossing {
     bool operator<(const Crossing& other) const { return place < other.place; }
 };
 
+/// Of a step: what is nearer to each other in time happens at once, but for rounding.
+inline constexpr double at_once = 1e-9;
+
 /// Appends where the blade's segment passed through the tissue's during the step, in no order.
 ///
 /// In space and time each segment sweeps a surface, taken as two triangles; two such surfaces in

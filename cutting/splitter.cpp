@@ -102,17 +102,18 @@ class Splitter {
           near_nodes_(mesh, {snap_, farthest_}) {}
 
     Split run() {
-        if (front_.is_empty()) front_.set_number(scars_.take_rank());
+        const bool begins = front_.is_empty();
         find_crossed_edges();
-        if (touched_.empty()) {
+        if (touched_.empty() && front_.waiting().empty()) {
             leave_behind({});
             return {};
         }
+        if (begins) front_.set_number(scars_.take_rank());
         edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
         part();
         Split result{edit_->commit(), report_};
-        front_.follow(result.changes);
+        front_.follow(result.changes, true);
         scars_.follow(result.changes);
         for (const auto& [e, cut] : crumbs_) scars_.add_crumb(e, cut);
         leave_behind(result.changes);
@@ -144,7 +145,7 @@ class Splitter {
     void leave_behind(const topology::ChangeSet& changes) {
         cutting::leave_behind(
             mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
-            !touched_.empty(), front_);
+            report_.elements_crossed > 0, front_);
     }
 
     /// Of a copy, where its source is.
@@ -182,11 +183,9 @@ class Splitter {
     void part();
     void open(const CutFront& front, const Parting& parting);
     double time_of_parting(FaceId f) const;
-    bool ends_in(FaceId f) const {
-        return surface_
-            .ends_inside({point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
-                          point(mesh_.face_corner(f, 2))})
-            .value_or(false);
+    std::array<MovingPoint, 3> points(FaceId f) const {
+        return {point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
+                point(mesh_.face_corner(f, 2))};
     }
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
@@ -345,18 +344,30 @@ void Splitter::part() {
         return parting(mesh_, front, scars_, touched_,
                        snaps ? std::optional(course) : std::nullopt);
     };
-    Parting own = parting_of(
-        front_, options_.snap > 0.0,
-        {[&](FaceId f) { return time_of_parting(f); }, [&](FaceId f) { return ends_in(f); }});
+    // A surface at rest does not go on: all is decided at once.
+    Parting own =
+        parting_of(front_, options_.snap > 0.0,
+                   {[&](FaceId f) { return time_of_parting(f); },
+                    [&](FaceId f) { return surface_.ends_inside(points(f)).value_or(false); }});
+    std::vector<Parting> others;
+    for (const RestingBlade& blade : resting_)
+        others.push_back(
+            parting_of(blade.front, blade.snaps,
+                       {[](FaceId) { return 0.0; },
+                        [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
     open(front_, own);
     front_.set_waiting(std::move(own.waiting));
-    const Course together{[](FaceId) { return 0.0; }, [](FaceId) { return false; }};
-    for (const RestingBlade& blade : resting_)
-        open(blade.front, parting_of(blade.front, blade.snaps, together));
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        CutFront& front = resting_[i].front;
+        open(front, others[i]);
+        std::ranges::copy(front.waiting(), std::back_inserter(others[i].waiting));
+        front.set_waiting(std::move(others[i].waiting));
+    }
 }
 
 void Splitter::open(const CutFront& front, const Parting& parting) {
     for (const FaceId f : parting.faces) {
+        if (!mesh_.neighbor(f).is_valid()) continue;  // it is on another cut, too
         report_.cut_area += topology::rest_area(mesh_, f);
         ++report_.faces_opened;
         edit_->open(f);
@@ -460,7 +471,7 @@ void Splitter::divide_next() {
     Passages due = std::move(place->second.passages), later;
     pending_.erase(place);
     // Of later ones it is decided when the blade is there, as if they were in another step.
-    const auto is_later = [&](const Passage& passage) { return passage.time > now_; };
+    const auto is_later = [&](const Passage& passage) { return passage.time > now_ + at_once; };
     std::ranges::copy_if(due, std::back_inserter(later), is_later);
     if (!later.empty()) std::erase_if(due, is_later);
     if (Passages left = due; is_to_be_divided(edge, element, left)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "sim/run_writer.h"
 
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -154,6 +155,9 @@ void RunWriter::on_frame(const Simulation& simulation) {
 
 void RunWriter::on_step(const Simulation&) {
     if (is_frame_built_) drop_builder();
+    // What has failed is told at once, and what was written lets go of its memory.
+    constexpr std::chrono::seconds no_time(0);
+    if (pending_.valid() && pending_.wait_for(no_time) == std::future_status::ready) wait();
 }
 
 /// On the simulation's thread, as physics::ElementSnapshot is; as soon as it can be, since edits

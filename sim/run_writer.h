@@ -29,8 +29,8 @@ struct Outcome {
 /// Frames and checkpoints are written on a thread of their own while the simulation goes on, in
 /// their order; the next frame waits for those before it, as does the end. Everything else is on
 /// disk, readable, when a function returns; a kill at any moment leaves whole files and whole
-/// lines, and a checkpoint to resume from. All functions throw OutputError, that of a frame or a
-/// checkpoint the first that waits for it.
+/// lines, and a checkpoint to resume from. All functions but has_checkpoint() throw OutputError,
+/// that of a frame or a checkpoint the first that is called when it is known.
 class RunWriter : public Observer {
   public:
     /// Makes the folder; a former run there is replaced. InputError: see io::OutputFolder.

@@ -123,12 +123,14 @@ TEST(CutFront, TwinsMakeARing) {
     CutFront front;
     front.put_on(node(1), true, 1.0, 1);
     front.put_on(node(2), true, 1.0, 2);
-    front.follow(additions({{20, 1}, {21, 1}}));
-    front.follow(additions({{22, 20}, {23, 9}}));
+    front.follow(additions({{20, 1}, {21, 1}}), true);
+    front.follow(additions({{22, 20}, {23, 9}}), true);
+    front.follow(additions({{24, 1}}));  // by another cut
     const std::vector<NodeId> all{node(1), node(20), node(21), node(22)};
     for (const NodeId n : all) EXPECT_EQ(ring(front, n), all);
     EXPECT_EQ(ring(front, node(2)), std::vector{node(2)});
     EXPECT_EQ(ring(front, node(23)), std::vector{node(23)});  // not on the cut
+    EXPECT_EQ(ring(front, node(24)), std::vector{node(24)});
 
     const auto mesh = topology::Mesh::build(test::jittered_cube(2, 0.0, 1)).mesh;
     EXPECT_TRUE(front.is_on(mesh));
@@ -261,8 +263,8 @@ TEST(Scars, PartsOfACrumbAreCrumbs) {
     EXPECT_TRUE(scars.is_crumb(whole));
     EXPECT_TRUE(scars.is_crumb(part));
     EXPECT_FALSE(scars.is_crumb(other));
-    EXPECT_TRUE(scars.is_crumb(part, 2));   // of an earlier cut
-    EXPECT_FALSE(scars.is_crumb(part, 1));  // of the same
+    EXPECT_TRUE(scars.is_earlier_crumb(part, 2));   // of an earlier cut
+    EXPECT_FALSE(scars.is_earlier_crumb(part, 1));  // of the same
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
+#include "topology/archive.h"
 #include "topology/box_mesh.h"
 #include "topology/mesh_metrics.h"
 
@@ -203,6 +204,32 @@ TEST(SplitByBlade, ThroughACutBodyInManyStepsIsAsInOneStep) {
                     body.cut(sweep(path.from, path.to, num_steps), guarded(body.mesh, snap));
                 });
             }
+}
+
+// Also what small pieces wait for is in a checkpoint.
+TEST(SplitByBlade, GoesOnFromItsArchiveToTheSameCut) {
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(20); ++seed) {
+            SCOPED_TRACE(testing::Message() << family->name << ", seed " << seed);
+            const auto cut = [&](bool is_archived) {
+                Random random(seed);
+                SplitBody body(family->data);
+                const BladePath path(body.box(), random);
+                CutFront front;
+                for (const auto& part : sweep(path.from, path.to, 40)) {
+                    body.cut(*part, front, guarded(body.mesh, default_snap), body.positions);
+                    if (!is_archived) continue;
+                    topology::ArchiveWriter ar;
+                    ar(front);
+                    front = topology::ArchiveReader(ar.bytes()).read<CutFront>();
+                    EXPECT_TRUE(front.is_on(body.mesh));
+                }
+                return Faces(body);
+            };
+            const Faces whole = cut(false), archived = cut(true);
+            EXPECT_EQ(archived.all, whole.all);
+            EXPECT_EQ(archived.outer, whole.outer);
+        }
 }
 
 TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
