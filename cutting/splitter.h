@@ -55,7 +55,8 @@ struct Split {
 /// in two, so the mesh stays conforming, and no volume is lost. Then the faces open whose three
 /// nodes lie on the surface and whose elements are on different sides of it. A body through which
 /// the surface passes right across is parted; where the surface ends, so do the opened faces,
-/// within one element.
+/// within one element. Small pieces at its end wait in the front, for the step in which the blade
+/// has gone on or away: parting.h.
 ///
 /// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
 ///               brought up to date

@@ -217,7 +217,8 @@ void Simulation::cut(Tool& tool, double from, double to) {
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
     topology::append_new_nodes(changes, previous_positions_);
-    if (done.report.elements_crossed == 0) scars_.follow(changes);  // else it has done so
+    // Cuts that cross elements have done so already; to follow twice is as once.
+    if (done.report.elements_crossed == 0) scars_.follow(changes);
     boxes_.follow(mesh_, model_.positions(), changes);
     for (Tool& other : tools_)
         if (&other != &tool) other.follow(changes);
