@@ -2,10 +2,10 @@
 #include "cutting/splitter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <queue>
 #include <string>
@@ -136,6 +136,7 @@ class Splitter {
             return length != other.length ? length < other.length : other.edge < edge;
         }
     };
+
     MovingPoint point(NodeId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};

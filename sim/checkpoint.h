@@ -30,8 +30,8 @@ struct Written {
 /// when the run has gone on: in the end there is what a run without the stop leaves.
 enum class CheckpointKind { regular, of_a_stop };
 
-/// A simulation at one moment, which another thread can write while it goes on; the simulation must
-/// outlive it.
+/// A simulation at one moment, which another thread can write while it goes on; its scenario, which
+/// does not change, must outlive it.
 class SavedMoment {
   public:
     /// Between two steps. Cost: see Simulation::save.
