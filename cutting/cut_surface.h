@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cutting/space_time.h"
@@ -28,6 +29,9 @@ class CutSurface {
 
     /// False only if the surface is nowhere in the box.
     virtual bool may_meet(const Box& box) const = 0;
+    /// False only if the surface is nowhere in the convex hull of the points: a closer look where
+    /// it is in their box.
+    virtual bool may_meet_hull(std::span<const MovingPoint>) const { return true; }
     /// Appends where the surface passes through the segment from a to b, in no order. The same
     /// segment is always asked for in the same direction.
     virtual void append_crossings(const MovingPoint& a, const MovingPoint& b,

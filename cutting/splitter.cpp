@@ -190,7 +190,7 @@ class Splitter {
     }
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
-    void recognize(std::vector<EdgeList::Entry> edges);
+    void recognize(const std::vector<EdgeList::Entry>& edges);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -247,6 +247,9 @@ void Splitter::find_crossed_edges() {
     const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
     tissue_.for_each_near(may_meet, [&](ElementId e) {
         const auto corners = mesh_.corners(e);
+        std::array<MovingPoint, topology::max_corners> points;
+        std::ranges::transform(corners, points.begin(), [&](NodeId n) { return point(n); });
+        if (!surface_.may_meet_hull(std::span(points).first(corners.size()))) return;
         const topology::CellTraits& t = traits(mesh_.kind(e));
         for (int k = 0; k < t.num_edges; ++k) {
             const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
@@ -287,9 +290,14 @@ void Splitter::find_crossed_edges() {
 /// Nodes that counted as on an earlier cut do so again where this one passes through the same
 /// place, even if it crosses none of their edges. If it is the same surface, and neither the node
 /// has moved nor its neighbours do, it has nothing to add.
-void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
+void Splitter::recognize(const std::vector<EdgeList::Entry>& edges) {
     if (scars_.is_empty()) return;
-    std::sort(edges.begin(), edges.end());
+    std::vector<Edge> known;  // with an end that may come to count as on the cut
+    const auto is_known = [&](NodeId n) { return !scars_.of(n).empty() && !front_.is_on(n); };
+    for (const auto& [edge, element] : edges)
+        if (is_known(edge.a) || is_known(edge.b)) known.push_back(edge);
+    if (known.empty()) return;
+    std::sort(known.begin(), known.end());
     std::vector<Crossing> crossings;
     const auto passage_by = [&](NodeId n, const Scar& scar, double length) -> const Crossing* {
         const MovingPoint x = point(n);
@@ -315,7 +323,7 @@ void Splitter::recognize(std::vector<EdgeList::Entry> edges) {
     const auto is_along = [](const Scar& scar, const Vec3& normal) {
         return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
     };
-    for (const auto& [edge, element] : edges)
+    for (const Edge& edge : known)
         for (const NodeId n : {edge.a, edge.b}) {
             if (front_.is_on(n)) continue;
             const double length = rest_length(edge);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace incise::cutting {
 
@@ -12,6 +13,10 @@ namespace {
 double rounding_of_heights(const Vec3& normal, const Box& box) {
     return 1e-12 * normal.cwiseAbs().dot(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()));
 }
+
+/// Of the height of a hull: what lies nearer to it counts as in it. An earlier cut that is met
+/// again is found to as much (Scars::rounding).
+constexpr double hull_margin = 1e-6;
 
 }  // namespace
 
@@ -43,6 +48,21 @@ bool SweptEdge::may_meet(const Box& box) const {
         if (middle + reach >= bounds.low && middle - reach <= bounds.high) return true;
     }
     return false;
+}
+
+bool SweptEdge::may_meet_hull(std::span<const MovingPoint> points) const {
+    Box box;
+    for (const MovingPoint& x : points) box.extend(x[0]).extend(x[1]);
+    return std::any_of(bounds_.begin(), bounds_.end(), [&](const Bounds& bounds) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const MovingPoint& x : points) {
+            const double from = bounds.normal.dot(x[0]), to = bounds.normal.dot(x[1]);
+            low = std::min({low, from, to});
+            high = std::max({high, from, to});
+        }
+        const double margin = hull_margin * (high - low) + rounding_of_heights(bounds.normal, box);
+        return high + margin >= bounds.low && low - margin <= bounds.high;
+    });
 }
 
 void SweptEdge::append_crossings(const MovingPoint& a, const MovingPoint& b,

@@ -15,6 +15,7 @@ class SweptEdge final : public CutSurface {
     SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after);
 
     bool may_meet(const Box& box) const override;
+    bool may_meet_hull(std::span<const MovingPoint> points) const override;
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
     std::optional<bool> ends_inside(const std::array<MovingPoint, 3>& triangle) const override;
