@@ -33,6 +33,32 @@ std::span<const Scar> Scars::of(topology::NodeId n) const {
     return place == scars_.end() ? std::span<const Scar>{} : std::span<const Scar>(place->second);
 }
 
+void Scars::follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle) {
+    inherit(a, b, middle);
+    inherit(b, a, middle);
+}
+
+void Scars::inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle) {
+    const auto known = of(from.node);
+    if (known.empty()) return;
+    const Vec3 edge = to.place - from.place, half = middle.place - from.place;
+    for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
+        const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
+        if (place < 1.0 && place * edge.norm() > half.norm()) {
+            add(middle.node, {scar.normal, place * edge - half, false, scar.rank, scar.surface,
+                              scar.place + half});
+            continue;
+        }
+        const Scar at_end{scar.normal, scar.to_surface - edge, false, scar.rank};
+        const Scar* other = find(to.node, at_end, edge.norm());
+        if (other == nullptr) continue;
+        if (other->surface != scar.surface) scar.surface = no_identity;
+        scar.place += half;
+        scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
+        add(middle.node, scar);
+    }
+}
+
 void Scars::follow(const topology::ChangeSet& changes) {
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1 || scars_.empty()) continue;

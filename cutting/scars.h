@@ -27,6 +27,12 @@ struct Scar {
     }
 };
 
+/// A node, and where it is, m.
+struct PlacedNode {
+    topology::NodeId node;
+    Vec3 place;
+};
+
 /// Nodes that counted as lying on a cut, and where it really was. A cut that passes by at the same
 /// place counts them as on itself too: so a cut along an earlier one changes nothing, though that
 /// one's nodes are only near it, and no other cut is drawn to them. Positions are the current ones:
@@ -59,6 +65,9 @@ class Scars {
     }
     bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e.value); }
 
+    /// The middle has been made on the edge between two nodes: a cut that passes by one of them and
+    /// goes through the edge beyond the middle, or passes by both, passes by the middle.
+    void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
     /// Copies of a node, and parts of an element, are what it is.
     void follow(const topology::ChangeSet& changes);
 
@@ -68,6 +77,8 @@ class Scars {
     static constexpr double rounding = 1e-6;
 
   private:
+    void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
+
     std::unordered_map<std::int32_t, std::vector<Scar>> scars_;
     std::unordered_map<std::int32_t, std::uint64_t> crumbs_;
     std::uint64_t next_rank_ = 1;

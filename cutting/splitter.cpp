@@ -10,7 +10,6 @@
 #include <queue>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "cutting/cut_border.h"
@@ -19,6 +18,7 @@
 #include "cutting/near_nodes.h"
 #include "cutting/parting.h"
 #include "cutting/passages.h"
+#include "cutting/recognition.h"
 #include "topology/error.h"
 #include "topology/mesh_edit.h"
 
@@ -180,7 +180,6 @@ class Splitter {
     NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
     void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
               double reach);
-    void inherit_scars(NodeId from, NodeId to, NodeId middle);
     void part();
     void open(const CutFront& front, const Parting& parting);
     double time_of_parting(FaceId f) const;
@@ -190,7 +189,6 @@ class Splitter {
     }
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
-    void recognize(const std::vector<EdgeList::Entry>& edges);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -281,66 +279,12 @@ void Splitter::find_crossed_edges() {
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
-    if (!found.empty()) recognize(edges.entries());
+    if (!found.empty())
+        for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
+            came_on_[n.value] = time;
     for (const Found& f : found)
         if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
     for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));
-}
-
-/// Nodes that counted as on an earlier cut do so again where this one passes through the same
-/// place, even if it crosses none of their edges. If it is the same surface, and neither the node
-/// has moved nor its neighbours do, it has nothing to add.
-void Splitter::recognize(const std::vector<EdgeList::Entry>& edges) {
-    if (scars_.is_empty()) return;
-    std::vector<Edge> known;  // with an end that may come to count as on the cut
-    const auto is_known = [&](NodeId n) { return !scars_.of(n).empty() && !front_.is_on(n); };
-    for (const auto& [edge, element] : edges)
-        if (is_known(edge.a) || is_known(edge.b)) known.push_back(edge);
-    if (known.empty()) return;
-    std::sort(known.begin(), known.end());
-    std::vector<Crossing> crossings;
-    const auto passage_by = [&](NodeId n, const Scar& scar, double length) -> const Crossing* {
-        const MovingPoint x = point(n);
-        const Vec3 short_way = Scars::rounding * length * scar.normal;
-        const MovingPoint from{x[0] + scar.to_surface - short_way,
-                               x[1] + scar.to_surface - short_way};
-        const MovingPoint to{x[0] + scar.to_surface + short_way,
-                             x[1] + scar.to_surface + short_way};
-        crossings.clear();
-        surface_.append_crossings(from, to, crossings);
-        return crossings.size() % 2 == 1 ? &crossings.front() : nullptr;
-    };
-    const SurfaceIdentity identity = surface_.identity();
-    std::unordered_set<std::int32_t> moving;  // and those next to such
-    if (identity != no_identity)
-        for (const auto& [edge, element] : edges)
-            if (point(edge.a)[0] != point(edge.a)[1] || point(edge.b)[0] != point(edge.b)[1])
-                moving.insert({edge.a.value, edge.b.value});
-    const auto may_be_same = [&](NodeId n, const Scar& scar, double length) {
-        return identity != no_identity && scar.surface == identity && !moving.contains(n.value) &&
-               (point(n)[1] - scar.place).norm() <= Scars::rounding * length;
-    };
-    const auto is_along = [](const Scar& scar, const Vec3& normal) {
-        return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
-    };
-    for (const Edge& edge : known)
-        for (const NodeId n : {edge.a, edge.b}) {
-            if (front_.is_on(n)) continue;
-            const double length = rest_length(edge);
-            for (const Scar& scar : scars_.of(n)) {
-                const bool is_candidate = may_be_same(n, scar, length);
-                if (front_.is_on(n) && !is_candidate) continue;
-                const Crossing* passage = passage_by(n, scar, length);
-                if (passage == nullptr) continue;
-                if (!front_.is_on(n)) {
-                    came_on_[n.value] = passage->time;
-                    front_.put_on(n, scar.is_exact, length, scar.rank);
-                }
-                if (!is_candidate || !is_along(scar, passage->normal)) continue;
-                front_.settle(n);
-                break;
-            }
-        }
 }
 
 /// Opens what lies on the cut, and on those of the blades that are in the body besides.
@@ -533,8 +477,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     }
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    inherit_scars(edge.a, edge.b, middle);
-    inherit_scars(edge.b, edge.a, middle);
+    const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
+    scars_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
     put_on(middle, t == passage.place, reach);
 
     const auto holder = [&](NodeId other) {
@@ -601,29 +545,6 @@ void Splitter::tell(const RestingBlade& blade, Edge edge, NodeId middle,
     });
     if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))
         front.put_on(middle, false, reach, scars_.take_rank());
-}
-
-/// Where an earlier cut that passes by `from` goes through the edge beyond the middle, or passes by
-/// both ends, it passes by the middle.
-void Splitter::inherit_scars(NodeId from, NodeId to, NodeId middle) {
-    const auto known = scars_.of(from);
-    if (known.empty()) return;
-    const Vec3 edge = point(to)[1] - point(from)[1], half = point(middle)[1] - point(from)[1];
-    for (Scar scar : std::vector<Scar>(known.begin(), known.end())) {
-        const double place = scar.normal.dot(scar.to_surface) / scar.normal.dot(edge);
-        if (place < 1.0 && place * edge.norm() > half.norm()) {
-            scars_.add(middle, {scar.normal, place * edge - half, false, scar.rank, scar.surface,
-                                scar.place + half});
-            continue;
-        }
-        const Scar at_end{scar.normal, scar.to_surface - edge, false, scar.rank};
-        const Scar* other = scars_.find(to, at_end, edge.norm());
-        if (other == nullptr) continue;
-        if (other->surface != scar.surface) scar.surface = no_identity;
-        scar.place += half;
-        scar.to_surface = scar.normal.dot(scar.to_surface - half) * scar.normal;
-        scars_.add(middle, scar);
-    }
 }
 
 }  // namespace
