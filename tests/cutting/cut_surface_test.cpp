@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -112,6 +113,44 @@ TEST(CrossingPlaces, OfABentBladeAreOneForEachOfItsSegmentsThatPass) {
         EXPECT_NEAR(all[i].place, (1.0 + static_cast<double>(i)) / 4.0, 1e-15);
     EXPECT_EQ(crossings(swept, {0.7, 0, 0.25}, {3.5, 0, 0.25}).size(), 2u);
     EXPECT_EQ(crossings(swept, {-0.5, 0, 1.25}, {3.5, 0, 1.25}).size(), 0u);  // not yet there
+}
+
+TEST(SweptEdge, IsFoundInEachHullThroughWhichItPasses) {
+    int num_crossed = 0, num_ruled_out = 0;
+    for (std::uint64_t seed = 0; seed < test::num_cases(4000); ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        // Of each two one on whole numbers, where much is in one plane or does not move.
+        const auto place = [&] { return seed % 2 == 0 ? random.vector(2) : random.grid_point(4); };
+        std::vector<Vec3> before, after;
+        for (int i = 0; i < 3; ++i) {
+            before.push_back(place());
+            after.push_back(random.below(4) == 0 ? before.back() : place());
+        }
+        std::array<MovingPoint, 4> points;
+        Box box;
+        for (MovingPoint& x : points) {
+            x[0] = place();
+            x[1] = random.below(2) == 0 ? x[0] : place();
+            box.extend(x[0]).extend(x[1]);
+        }
+        std::vector<Crossing> found;
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t k = 0; k < 4; ++k)
+                for (std::size_t l = 0; l < k; ++l)
+                    append_crossings({points[k], points[l]},
+                                     {{before[s], after[s]}, {before[s + 1], after[s + 1]}}, found);
+        const SweptEdge edge(before, after);
+        if (!found.empty()) {
+            ++num_crossed;
+            EXPECT_TRUE(edge.may_meet(box));
+            EXPECT_TRUE(edge.may_meet_hull(points));
+        } else if (edge.may_meet(box) && !edge.may_meet_hull(points)) {
+            ++num_ruled_out;
+        }
+    }
+    EXPECT_GT(num_crossed, 0);
+    EXPECT_GT(num_ruled_out, 0);
 }
 
 TEST(Pierces, AgreesWithPlainArithmeticInGeneralPosition) {
