@@ -175,27 +175,36 @@ double rest_area(const Mesh& mesh, FaceId f) {
     return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
 }
 
+// Elements point to a lower one that they hang together with, the lowest of a piece to itself. They
+// are taken in ascending order, in which neighbours lie near each other in memory.
 Components components(const Mesh& mesh) {
+    std::vector<int> lower(mesh.element_capacity());
+    const auto at = [&](int e) -> int& { return lower[static_cast<std::size_t>(e)]; };
+    const auto lowest = [&](int e) {
+        while (at(e) != e) e = at(e) = at(at(e));
+        return e;
+    };
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        int own = at(e.value) = e.value;
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            const ElementId other = mesh.neighbor({e, f}).element;
+            if (!other.is_valid() || other > e) continue;
+            const int others = lowest(other.value);
+            at(std::max(own, others)) = std::min(own, others);
+            own = std::min(own, others);
+        }
+    }
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
-    std::vector<ElementId> pending;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId seed(i);
-        if (!mesh.is_alive(seed) || result.of_element[i] >= 0) continue;
-        result.of_element[i] = result.count;
-        pending.push_back(seed);
-        while (!pending.empty()) {
-            const ElementId e = pending.back();
-            pending.pop_back();
-            for (int f = 0; f < mesh.num_faces(e); ++f) {
-                const ElementId other = mesh.neighbor({e, f}).element;
-                if (!other.is_valid() || result.of_element[other.index()] >= 0) continue;
-                result.of_element[other.index()] = result.count;
-                pending.push_back(other);
-            }
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+        if (const ElementId e(i); mesh.is_alive(e)) {
+            const int first = lowest(e.value);
+            result.of_element[i] = first == e.value
+                                       ? result.count++
+                                       : result.of_element[static_cast<std::size_t>(first)];
         }
-        ++result.count;
-    }
     return result;
 }
 
