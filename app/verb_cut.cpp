@@ -131,9 +131,12 @@ ordered_json or_null(const std::optional<double>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json distance_json(const std::optional<double>& distance, double mean_edge_length) {
-    return {{"max", or_null(distance)},
-            {"relative", distance ? ordered_json(*distance / mean_edge_length) : nullptr}};
+ordered_json distance_json(const std::optional<sim::CutCounts::Distance>& distance,
+                           double mean_edge_length) {
+    if (!distance) return {{"max", nullptr}, {"relative", nullptr}, {"nodes", nullptr}};
+    return {{"max", distance->faces},
+            {"relative", distance->faces / mean_edge_length},
+            {"nodes", distance->nodes}};
 }
 
 void put_counts(ordered_json& json, const sim::CutCounts& counts, double mean_edge_length) {
@@ -189,8 +192,10 @@ void print_counts(const sim::CutCounts& counts, double mean_edge_length) {
     std::printf("faces opened      %zu\n", counts.faces_opened);
     std::printf("cut area          %.6g\n", counts.cut_area);
     if (counts.surface_distance)
-        std::printf("off the surface   %.4g, that is %.4g mean edge lengths\n",
-                    *counts.surface_distance, *counts.surface_distance / mean_edge_length);
+        std::printf("off the surface   %.4g, that is %.4g mean edge lengths; nodes %.4g\n",
+                    counts.surface_distance->faces,
+                    counts.surface_distance->faces / mean_edge_length,
+                    counts.surface_distance->nodes);
 }
 
 void print_text(const Result& result) {

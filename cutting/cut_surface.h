@@ -29,8 +29,8 @@ class CutSurface {
 
     /// False only if the surface is nowhere in the box.
     virtual bool may_meet(const Box& box) const = 0;
-    /// False only if the surface is nowhere in the convex hull of the points: a closer look where
-    /// it is in their box.
+    /// False only if the surface is nowhere in the convex hull of the points in their motion: a
+    /// closer look where it is in their box.
     virtual bool may_meet_hull(std::span<const MovingPoint>) const { return true; }
     /// Appends where the surface passes through the segment from a to b, in no order. The same
     /// segment is always asked for in the same direction.

@@ -188,9 +188,12 @@ void add(const CutCounts& counts, CutCounts& total) {
     total.cut_area += counts.cut_area;
     total.volume_removed += counts.volume_removed;
     total.split_seconds += counts.split_seconds;
-    if (counts.surface_distance)
-        total.surface_distance =
-            std::max(total.surface_distance.value_or(0.0), *counts.surface_distance);
+    if (const auto& distance = counts.surface_distance) {
+        if (!total.surface_distance) total.surface_distance.emplace();
+        auto& largest = *total.surface_distance;
+        largest.nodes = std::max(largest.nodes, distance->nodes);
+        largest.faces = std::max(largest.faces, distance->faces);
+    }
 }
 
 class Cutter {
@@ -205,7 +208,7 @@ class Cutter {
 
     CutCounts apply(const CutTool& tool) {
         counts_ = {};
-        opened_nodes_.clear();
+        opened_faces_ = {};
         std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
         return counts_;
     }
@@ -288,7 +291,7 @@ class Cutter {
         if (result.report.faces_opened > 0) {
             const auto opened = faces.opened_by(result.changes, mesh_);
             assert(opened.size() == 2 * result.report.faces_opened);
-            for (const FaceId f : opened) remember_nodes(f);
+            for (const FaceId f : opened) remember(f);
         }
         book(result.changes);
     }
@@ -315,7 +318,7 @@ class Cutter {
         std::set<ElementId> crossed;
         for (const topology::FacePair& pair : changes.faces_opened) {
             crossed.insert({pair.a.element, pair.b.element});
-            remember_nodes(pair.a);
+            remember(pair.a);
             counts_.cut_area += topology::rest_area(mesh_, pair.a);
         }
         counts_.elements_crossed += crossed.size();
@@ -332,17 +335,35 @@ class Cutter {
             counts_.nodes_duplicated += record.num_sources == 1;
     }
 
-    void remember_nodes(FaceId f) {
-        for (int p = 0; p < mesh_.face_size(f); ++p) opened_nodes_.insert(mesh_.face_corner(f, p));
+    void remember(FaceId f) {
+        const int size = mesh_.face_size(f);
+        const auto at = [&](int p) -> const Vec3& {
+            return mesh_.rest_position(mesh_.face_corner(f, p % size));
+        };
+        Vec3 sum = Vec3::Zero();
+        for (int p = 0; p < size; ++p) {
+            opened_faces_.nodes.push_back(at(p));
+            opened_faces_.middles.push_back(0.5 * (at(p) + at(p + 1)));
+            sum += at(p);
+        }
+        opened_faces_.middles.push_back(sum / size);
     }
 
     template <class Distance>
     void measure_distance(Distance distance) {
         if (counts_.faces_opened == 0) return;
-        double largest = 0.0;
-        for (const NodeId n : opened_nodes_)
-            largest = std::max(largest, distance(mesh_.rest_position(n)));
-        counts_.surface_distance = largest;
+        const auto largest = [&](std::vector<Vec3>& points) {
+            std::ranges::sort(points, [](const Vec3& a, const Vec3& b) {
+                return std::ranges::lexicographical_compare(a, b);
+            });
+            const auto [end, last] = std::ranges::unique(points);
+            points.erase(end, last);
+            double value = 0.0;
+            for (const Vec3& x : points) value = std::max(value, distance(x));
+            return value;
+        };
+        const double nodes = largest(opened_faces_.nodes);
+        counts_.surface_distance = {nodes, std::max(nodes, largest(opened_faces_.middles))};
     }
 
     Mesh& mesh_;
@@ -352,7 +373,9 @@ class Cutter {
     cutting::Scars scars_;  // of all splits so far
     // Of the tool at work.
     CutCounts counts_;
-    std::set<NodeId> opened_nodes_;  // those of the faces that it opened
+    struct {
+        std::vector<Vec3> nodes, middles;  // these of their edges and their own
+    } opened_faces_;                       // by it; m, at rest
 };
 
 /// What to say of a tool that cut nothing, which is seldom what was meant.

@@ -58,9 +58,12 @@ struct CutCounts {
     double cut_area = 0.0;        ///< of one side of the opened faces, m2
     double volume_removed = 0.0;  ///< m3
     double split_seconds = 0.0;   ///< wall time of the splits, nothing else
-    /// Largest distance of a node of the opened faces from the tool's surface, m. Nothing if no
-    /// face opened.
-    std::optional<double> surface_distance;
+    /// Largest distance of the opened faces from the tool's surface, m; nothing if no face opened.
+    struct Distance {
+        double nodes = 0.0;  ///< of their nodes only
+        double faces = 0.0;  ///< also of the middles of their edges and their own: more at folds
+    };
+    std::optional<Distance> surface_distance;
 };
 
 struct ToolReport {

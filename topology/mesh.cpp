@@ -187,7 +187,8 @@ Components components(const Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const ElementId e(i);
         if (!mesh.is_alive(e)) continue;
-        int own = at(e.value) = e.value;
+        at(e.value) = e.value;
+        int own = e.value;
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const ElementId other = mesh.neighbor({e, f}).element;
             if (!other.is_valid() || other > e) continue;

@@ -66,7 +66,12 @@ TEST(GeometricCut, OpensFacesOnTheSurfaceWithoutSnap) {
             for (const ToolReport& tool : report.tools) {
                 EXPECT_EQ(tool.counts.faces_opened > 0, tool.counts.surface_distance.has_value());
                 // Nodes nearer to it than 1e-7 of an edge count as on it.
-                EXPECT_LT(tool.counts.surface_distance.value_or(0.0), 1e-7 * box.sizes().norm());
+                const auto distance = tool.counts.surface_distance.value_or(CutCounts::Distance{});
+                EXPECT_LT(distance.nodes, 1e-7 * box.sizes().norm());
+                EXPECT_GE(distance.faces, distance.nodes);
+                if (tool.tool == "plane") {
+                    EXPECT_LT(distance.faces, 1e-7 * box.sizes().norm());
+                }
             }
             EXPECT_LT(report.volume_error(), 1e-13);
         }
