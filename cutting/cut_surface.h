@@ -39,6 +39,9 @@ class CutSurface {
     /// Distance of a point from the surface, m; not a number if the surface is flat near all
     /// crossings, so that its planes tell.
     virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
+    /// Whether it may turn sharply within an element and is there all at once. Not so if it is
+    /// swept: what is decided at folds would depend on the steps.
+    virtual bool has_folds() const { return false; }
     virtual SurfaceIdentity identity() const { return no_identity; }
     /// Whether the border at which a sweep ends, and the next one begins, runs through the
     /// triangle (as it is after the step), an odd number of times. Exact, and in agreement with the

@@ -11,7 +11,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "cutting/sides.h"
 #include "cutting/space_time.h"
 
 namespace incise::cutting {
@@ -236,8 +235,9 @@ bool Crumbs::may_hang(const std::vector<ElementId>& piece) const {
 }  // namespace
 
 Parting parting(const Mesh& mesh, const CutFront& front, const Scars& scars,
-                const std::vector<ElementId>& touched, const std::optional<Course>& course) {
-    const Sides sides(mesh, front, touched);
+                const std::vector<ElementId>& touched, const PlaceOnCut& place_on_cut,
+                const std::optional<Course>& course) {
+    const Sides sides(mesh, front, touched, place_on_cut);
     Parting result{sides.parted_faces(), {}, {}};
     const auto is_settled_face = [&](FaceId f) { return is_settled(mesh, front, f); };
     if (!course) {

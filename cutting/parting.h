@@ -8,6 +8,7 @@
 
 #include "cutting/cut_front.h"
 #include "cutting/scars.h"
+#include "cutting/sides.h"
 #include "topology/mesh.h"
 #include "topology/types.h"
 
@@ -38,9 +39,10 @@ struct Course {
 /// many steps a blade takes.
 ///
 /// @param touched  the elements to look at: all that the edit has changed, and any besides
+/// @param place_on_cut  see Sides
 /// @param course  nothing if there are no crumbs: an exact cut leaves none
 Parting parting(const topology::Mesh& mesh, const CutFront& front, const Scars& scars,
-                const std::vector<topology::ElementId>& touched,
+                const std::vector<topology::ElementId>& touched, const PlaceOnCut& place_on_cut,
                 const std::optional<Course>& course);
 
 }  // namespace incise::cutting

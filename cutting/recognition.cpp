@@ -25,7 +25,9 @@ class Recognizer {
         for (const Scar& scar : scars_.of(n)) {
             const bool may_settle = is_where_it_was(n, scar, length);
             if (front.is_on(n) && !may_settle) continue;
-            const std::optional<Crossing> passage = passage_by(n, scar, length);
+            const std::optional<Crossing> passage =
+                may_settle ? passage_near(n, scar, length)
+                           : passage_by(n, scar.to_surface, scar.normal, length);
             if (!passage) continue;
             if (!front.is_on(n)) {
                 arrivals.push_back({n, passage->time});
@@ -41,15 +43,28 @@ class Recognizer {
     bool moves(NodeId n) const { return tissue_.before[n.index()] != tissue_.after[n.index()]; }
 
     /// Where the surface passes through the place at which the cut passed by the node.
-    std::optional<Crossing> passage_by(NodeId n, const Scar& scar, double length) const {
-        const Vec3 short_way = Scars::rounding * length * scar.normal;
+    std::optional<Crossing> passage_by(NodeId n, const Vec3& to_surface, const Vec3& normal,
+                                       double length) const {
+        const Vec3 short_way = Scars::rounding * length * normal;
         const auto beside = [&](const Vec3& way) -> MovingPoint {
-            return {tissue_.before[n.index()] + scar.to_surface + way,
-                    tissue_.after[n.index()] + scar.to_surface + way};
+            return {tissue_.before[n.index()] + to_surface + way,
+                    tissue_.after[n.index()] + to_surface + way};
         };
         std::vector<Crossing> crossings;
         surface_.append_crossings(beside(-short_way), beside(short_way), crossings);
         return crossings.size() % 2 == 1 ? std::optional(crossings.front()) : std::nullopt;
+    }
+
+    /// Or beside it: at a fold of the surface, rounding may have put that place beyond the fold.
+    std::optional<Crossing> passage_near(NodeId n, const Scar& scar, double length) const {
+        std::optional<Crossing> passage = passage_by(n, scar.to_surface, scar.normal, length);
+        const Vec3 u = 2.0 * Scars::rounding * length * scar.normal.unitOrthogonal();
+        const Vec3 v = scar.normal.cross(u);
+        for (const Vec3& aside : {u, v, Vec3(-u), Vec3(-v)}) {
+            if (passage) break;
+            passage = passage_by(n, scar.to_surface + aside, scar.normal, length);
+        }
+        return passage;
     }
 
     /// Whether this is the surface of that cut, and the node where it was then.

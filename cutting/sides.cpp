@@ -14,8 +14,9 @@ using topology::FaceId;
 using topology::Mesh;
 using topology::NodeId;
 
-Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched)
-    : mesh_(mesh), front_(front) {
+Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
+             const PlaceOnCut& place_on_cut)
+    : mesh_(mesh), front_(front), place_on_cut_(place_on_cut) {
     collect_faces(touched);
     place_elements_on_cut();
 }
@@ -98,6 +99,8 @@ std::optional<CutFront::Place> Sides::place(ElementId e) const {
     if (const NodeId far = far_corner(e); far.is_valid()) return Place{far};
     if (const auto known = places_.find(e.value); known != places_.end()) return known->second;
     if (mesh_.kind(e) != CellKind::tetrahedron) return std::nullopt;
+    if (place_on_cut_)
+        if (const std::optional<Place> place = place_on_cut_(e)) return place;
     return front_.place_of(e, mesh_.corners(e).first<4>());
 }
 

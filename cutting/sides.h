@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -13,13 +14,17 @@
 
 namespace incise::cutting {
 
+/// Where an element is all of whose corners are on the cut, if the surface tells.
+using PlaceOnCut = std::function<std::optional<CutFront::Place>(topology::ElementId)>;
+
 /// Where an element is, see CutFront::place_of; one of which it is not known goes with the
 /// neighbour with which it shares the largest face.
 class Sides {
   public:
     /// @param touched  the elements to look at, and thereby their faces
+    /// @param place_on_cut  asked first, or empty
     Sides(const topology::Mesh& mesh, const CutFront& front,
-          const std::vector<topology::ElementId>& touched);
+          const std::vector<topology::ElementId>& touched, const PlaceOnCut& place_on_cut);
 
     /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the
     /// cut and whose elements are on different sides of it, all three nodes agreeing; at the front,
@@ -44,6 +49,7 @@ class Sides {
 
     const topology::Mesh& mesh_;
     const CutFront& front_;
+    const PlaceOnCut& place_on_cut_;
     std::vector<topology::FaceId> faces_;             // joined, on the cut, from their lower side
     std::unordered_map<std::int32_t, Place> places_;  // of elements all of whose corners are on it
 };

@@ -15,6 +15,7 @@
 #include "cutting/cut_border.h"
 #include "cutting/edge_list.h"
 #include "cutting/fitting_place.h"
+#include "cutting/folds.h"
 #include "cutting/near_nodes.h"
 #include "cutting/parting.h"
 #include "cutting/passages.h"
@@ -173,6 +174,7 @@ class Splitter {
     void receive(const Edge& edge, ElementId element, Passages passages);
     Scar scar_at(NodeId n, const Passage& passage) const;
     bool is_at(const EdgeEnd& end, const Passage& passage);
+    bool is_by(NodeId n, NodeId other, const Passage& passage) const;
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
     void divide_next();
@@ -181,6 +183,7 @@ class Splitter {
     void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
               double reach);
     void part();
+    std::optional<CutFront::Place> place_at_fold(ElementId e) const;
     void open(const CutFront& front, const Parting& parting);
     double time_of_parting(FaceId f) const;
     std::array<MovingPoint, 3> points(FaceId f) const {
@@ -293,19 +296,21 @@ void Splitter::part() {
                          [&](ElementId e) { return mesh_.is_alive(e); });
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto parting_of = [&](const CutFront& front, bool snaps, const Course& course) {
-        return parting(mesh_, front, scars_, touched_,
+    const auto parting_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut, bool snaps,
+                                const Course& course) {
+        return parting(mesh_, front, scars_, touched_, place_on_cut,
                        snaps ? std::optional(course) : std::nullopt);
     };
+    const PlaceOnCut place_at_fold = [&](ElementId e) { return this->place_at_fold(e); };
     // A surface at rest does not go on: all is decided at once.
     Parting own =
-        parting_of(front_, options_.snap > 0.0,
+        parting_of(front_, surface_.has_folds() ? place_at_fold : PlaceOnCut(), options_.snap > 0.0,
                    {[&](FaceId f) { return time_of_parting(f); },
                     [&](FaceId f) { return surface_.ends_inside(points(f)).value_or(false); }});
     std::vector<Parting> others;
     for (const RestingBlade& blade : resting_)
         others.push_back(
-            parting_of(blade.front, blade.snaps,
+            parting_of(blade.front, {}, blade.snaps,
                        {[](FaceId) { return 0.0; },
                         [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
     open(front_, own);
@@ -316,6 +321,20 @@ void Splitter::part() {
         std::ranges::copy(front.waiting(), std::back_inserter(others[i].waiting));
         front.set_waiting(std::move(others[i].waiting));
     }
+}
+
+/// By its middle. Corners that the edit has made do not tell: rounding has moved them off their
+/// edges, and crossings are counted as if it had not.
+std::optional<CutFront::Place> Splitter::place_at_fold(ElementId e) const {
+    std::array<MovingPoint, 4> points;
+    NodeId old;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const NodeId n = mesh_.corners(e)[k];
+        points[k] = point(n);
+        if (n.index() < num_old_nodes_) old = n;
+    }
+    if (!old.is_valid()) return std::nullopt;
+    return CutFront::Place{old, is_crossed_from_middle(surface_, points, point(old))};
 }
 
 void Splitter::open(const CutFront& front, const Parting& parting) {
@@ -371,21 +390,40 @@ bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) {
     return scars_.has(end.node, scar_at(end.node, passage), size);
 }
 
+/// Whether the passage through the edge to `other` is no more than where the surface passes by a
+/// node that is near it.
+bool Splitter::is_by(NodeId n, NodeId other, const Passage& passage) const {
+    if (!front_.is_near(n)) return false;
+    if (!surface_.has_folds()) return true;
+    const double length = (point(other)[1] - point(n)[1]).norm();
+    return is_same_sheet(scars_.of(n), scar_at(n, passage), length);
+}
+
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
 bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& passages) {
     auto begin = passages.begin(), end = passages.end();
-    if (begin != end && front_.is_near(edge.a)) ++begin;
-    if (begin != end && front_.is_near(edge.b)) --end;
-    while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
-    while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
+    const auto drop_bends = [&] {
+        while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
+        while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
+    };
     const auto are_both_on = [&] { return front_.is_on(edge.a) && front_.is_on(edge.b); };
+    if (begin != end && is_by(edge.a, edge.b, *begin)) ++begin;
+    if (begin != end && is_by(edge.b, edge.a, *(end - 1))) --end;
+    drop_bends();
     if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
-    const auto is_at_a = [&](const Passage& p) {
+    const auto is_near_a = [&](const Passage& p) {
         return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
     };
-    const auto is_at_b = [&](const Passage& p) {
+    const auto is_near_b = [&](const Passage& p) {
         return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
+    };
+    // At both of them: at the nearer one.
+    const auto is_at_a = [&](const Passage& p) {
+        return is_near_a(p) && (p.from_a <= p.from_b || !is_near_b(p));
+    };
+    const auto is_at_b = [&](const Passage& p) {
+        return is_near_b(p) && (p.from_b < p.from_a || !is_near_a(p));
     };
     const auto bring = [&](NodeId n, const Passage& passage) {
         if (front_.is_on(n)) return;
@@ -394,6 +432,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& p
     };
     for (; begin != end && is_at_a(*begin); ++begin) bring(edge.a, *begin);
     for (; begin != end && is_at_b(*(end - 1)); --end) bring(edge.b, *(end - 1));
+    drop_bends();
     if (begin == end || are_both_on()) return false;
     passages = Passages(begin, end);
     return true;

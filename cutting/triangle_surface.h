@@ -21,6 +21,7 @@ class TriangleSurface final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
+    bool has_folds() const override { return true; }
     /// Of its triangles.
     SurfaceIdentity identity() const override { return identity_; }
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/folds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace incise::cutting {
+
+namespace {
+
+/// Cosine of the angle from which on a bend is a fold: 18 degrees.
+constexpr double sharp = 0.95;
+/// Sheets whose planes are this share of an edge apart are two, even if they are parallel.
+constexpr double apart = 0.5;
+
+}  // namespace
+
+bool is_same_sheet(std::span<const Scar> scars, const Scar& passage, double length) {
+    return scars.empty() || std::ranges::any_of(scars, [&](const Scar& scar) {
+               const Vec3 way = passage.to_surface - scar.to_surface;
+               return std::abs(scar.normal.dot(passage.normal)) >= sharp &&
+                      std::abs(scar.normal.dot(way)) < apart * length;
+           });
+}
+
+bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPoint, 4>& corners,
+                            const MovingPoint& corner) {
+    MovingPoint middle{Vec3::Zero(), Vec3::Zero()};
+    for (const MovingPoint& x : corners)
+        for (std::size_t k = 0; k < 2; ++k) middle[k] += 0.25 * x[k];
+    std::vector<Crossing> crossings;
+    surface.append_crossings(middle, corner, crossings);
+    return crossings.size() % 2 == 1;
+}
+
+}  // namespace incise::cutting
