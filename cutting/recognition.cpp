@@ -56,15 +56,19 @@ class Recognizer {
     }
 
     /// Or beside it: at a fold of the surface, rounding may have put that place beyond the fold.
+    /// One that runs as the cut did, if there is any.
     std::optional<Crossing> passage_near(NodeId n, const Scar& scar, double length) const {
-        std::optional<Crossing> passage = passage_by(n, scar.to_surface, scar.normal, length);
         const Vec3 u = 2.0 * Scars::rounding * length * scar.normal.unitOrthogonal();
         const Vec3 v = scar.normal.cross(u);
-        for (const Vec3& aside : {u, v, Vec3(-u), Vec3(-v)}) {
-            if (passage) break;
-            passage = passage_by(n, scar.to_surface + aside, scar.normal, length);
-        }
-        return passage;
+        std::optional<Crossing> other;
+        for (const int s : {0, 1, -1})
+            for (const int t : {0, 1, -1}) {
+                const auto passage =
+                    passage_by(n, scar.to_surface + s * u + t * v, scar.normal, length);
+                if (passage && is_along(scar, passage->normal)) return passage;
+                if (!other) other = passage;
+            }
+        return other;
     }
 
     /// Whether this is the surface of that cut, and the node where it was then.
