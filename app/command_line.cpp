@@ -85,7 +85,8 @@ void declare_bench(CLI::App& app, Action& action) {
     auto options = std::make_shared<BenchOptions>();
     auto* verb = app.add_subcommand(
         "bench", "Measure how fast this machine computes forces, steps and edits");
-    verb->add_option("--json", options->json, "Write all figures to this file; - for the screen")
+    verb->add_option("--json", options->json,
+                     "Also write all figures to this file; with - only these, to the screen")
         ->type_name("FILE");
     verb->footer(
         "Makes its own meshes and takes some minutes. For figures that mean something let nothing\n"

@@ -71,6 +71,11 @@ struct Measured {
     double bytes;       ///< of one element in a group of lanes
 };
 
+topology::CellKind kind_of(const Measured& measured) {
+    return measured.method == "hybmss" ? topology::CellKind::hexahedron
+                                       : topology::CellKind::tetrahedron;
+}
+
 /// The three laws that the papers time, and the springs, with the stiffness of the tissue.
 std::vector<Measured> measured_materials() {
     const sim::Tissue& tissue = *sim::find_tissue(tissue_name);
@@ -92,7 +97,7 @@ std::vector<Measured> measured_materials() {
         Measured{"hybmss",
                  {},
                  {tissue.density, springs},
-                 690.0,
+                 662.0,
                  sizeof(physics::CellGroup<double>) / double{physics::CellGroup<double>::size}}};
 }
 
@@ -176,13 +181,15 @@ double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_
 
 /// A cube that tools cut.
 struct CutCube {
+    std::string_view method;
     topology::Mesh mesh;
     physics::Model model;
     cutting::ElementBoxes boxes;
 
-    CutCube(std::size_t num_elements, const physics::Material& material)
-        : mesh(make_cube(topology::CellKind::tetrahedron, num_elements)),
-          model(mesh, table_of(material)),
+    CutCube(std::size_t num_elements, const Measured& measured)
+        : method(measured.method),
+          mesh(make_cube(kind_of(measured), num_elements)),
+          model(mesh, table_of(measured.material)),
           boxes(mesh, model.positions()) {}
 
     cutting::TissueMotion at_rest() const {
@@ -205,8 +212,8 @@ std::vector<Vec3> edge_of_blade(int step) {
 /// A tool that does cut(cube, step), which returns how many items it took, in every step. Between
 /// these forces are evaluated, as in a run: the caches are full of other things.
 template <class Cut>
-EditRate time_tool(EditRate rate, CutCube& cube, Cut cut) {
-    rate.elements = cube.mesh.num_elements();
+EditRate time_tool(std::string_view kind, std::string_view item, CutCube& cube, Cut cut) {
+    EditRate rate{cube.method, kind, item, cube.mesh.num_elements()};
     double seconds = 0.0;
     for (int step = 0; step < num_cut_steps; ++step) {
         cube.model.compute_forces(0.0);
@@ -222,7 +229,7 @@ EditRate measure_split(CutCube& cube) {
     const cutting::SplitOptions options{cutting::default_snap, cutting::uncut_body(cube.mesh)};
     cutting::CutFront front;
     cutting::Scars scars;
-    return time_tool({"split", "element crossed"}, cube, [&](CutCube& c, int step) {
+    return time_tool("split", "element crossed", cube, [&](CutCube& c, int step) {
         const cutting::SweptEdge way(edge_of_blade(step), edge_of_blade(step + 1));
         const auto done = cutting::split(c.mesh, c.at_rest(), way, front, options, scars);
         c.follow(done.changes);
@@ -231,7 +238,7 @@ EditRate measure_split(CutCube& cube) {
 }
 
 EditRate measure_separation(CutCube& cube) {
-    return time_tool({"separate", "face opened"}, cube, [](CutCube& c, int step) {
+    return time_tool("separate", "face opened", cube, [](CutCube& c, int step) {
         const auto from = edge_of_blade(step), to = edge_of_blade(step + 1);
         const auto changes =
             cutting::execute({{}, cutting::faces_to_open(c.at_rest(), from, to)}, c.mesh);
@@ -247,7 +254,7 @@ EditRate measure_carving(CutCube& cube) {
         pose.position = cube_size * Vec3(-0.1 + 0.6 * step / num_cut_steps, 0.48, 0.53);
         return pose;
     };
-    return time_tool({"carve", "element removed"}, cube, [&](CutCube& c, int step) {
+    return time_tool("carve", "element removed", cube, [&](CutCube& c, int step) {
         const cutting::Sphere ball{0.12 * cube_size};
         const auto changes = cutting::execute(
             {cutting::covered_elements(c.at_rest(), ball, at(step), at(step + 1)), {}}, c.mesh);
@@ -260,7 +267,7 @@ EditRate measure_carving(CutCube& cube) {
 EditRate measure_removal(CutCube& cube) {
     const std::size_t stride = cube.mesh.element_capacity() / (num_cut_steps + 1);
     const std::size_t batch = std::min<std::size_t>(50, stride);
-    return time_tool({"remove", "element removed"}, cube, [&](CutCube& c, int step) {
+    return time_tool("remove", "element removed", cube, [&](CutCube& c, int step) {
         topology::MeshEdit edit(c.mesh);
         for (std::size_t i = 0; i < batch; ++i)
             edit.remove(topology::ElementId(static_cast<std::size_t>(step + 1) * stride - i - 1));
@@ -269,14 +276,16 @@ EditRate measure_removal(CutCube& cube) {
     });
 }
 
-void measure_edits(std::size_t num_elements, const physics::Material& material, double seconds,
+void measure_edits(std::size_t num_elements, const Measured& measured, double seconds,
                    Throughput& result) {
+    const bool is_split = kind_of(measured) == topology::CellKind::tetrahedron;
     const auto time_forces = [&](physics::Model& model) {
         const double best = best_time(seconds, [&] { model.compute_forces(0.0); });
         return 1e9 * best / static_cast<double>(model.mesh().num_elements());
     };
     const auto measure_edited = [&](std::string_view edits, CutCube& cube, auto edit) {
-        EditedRate rate{.edits = edits,
+        EditedRate rate{.method = measured.method,
+                        .edits = edits,
                         .elements_before = cube.mesh.num_elements(),
                         .nodes_before = cube.mesh.num_nodes(),
                         .forces_before = time_forces(cube.model)};
@@ -286,7 +295,7 @@ void measure_edits(std::size_t num_elements, const physics::Material& material, 
         rate.forces = time_forces(cube.model);
         const auto anew =
             topology::Mesh::build(topology::to_mesh_data(cube.mesh, cube.mesh.rest_positions()));
-        physics::Model built_anew(anew.mesh, table_of(material));
+        physics::Model built_anew(anew.mesh, table_of(measured.material));
         rate.forces_built_anew = time_forces(built_anew);
         result.edited.push_back(rate);
     };
@@ -294,16 +303,20 @@ void measure_edits(std::size_t num_elements, const physics::Material& material, 
     constexpr int num_passes = 3;
     for (const auto measure :
          {measure_split, measure_separation, measure_carving, measure_removal}) {
+        if (measure == measure_split && !is_split) continue;
         EditRate best;
         for (int pass = 0; pass < num_passes; ++pass) {
-            CutCube cube(num_elements, material);
+            CutCube cube(num_elements, measured);
             const EditRate rate = measure(cube);
             if (pass == 0 || rate.microseconds < best.microseconds) best = rate;
         }
         result.edits.push_back(best);
     }
-    CutCube split(num_elements, material), halved(num_elements, material);
-    measure_edited("split", split, [&] { measure_split(split); });
+    if (is_split) {
+        CutCube split(num_elements, measured);
+        measure_edited("split", split, [&] { measure_split(split); });
+    }
+    CutCube halved(num_elements, measured);
     measure_edited("half removed", halved, [&] {
         std::mt19937_64 random(1);
         topology::MeshEdit edit(halved.mesh);
@@ -345,7 +358,8 @@ Throughput measure_throughput(const ThroughputPlan& plan,
     constexpr double num_edited = 10.0;
     for (const auto* sizes : {&plan.tetrahedra, &plan.hexahedra})
         for (const std::size_t n : *sizes) work += work_of(n, 1.0);
-    for (const std::size_t n : plan.edited) work += work_of(n, num_edited);
+    for (const auto* sizes : {&plan.edited_tetrahedra, &plan.edited_hexahedra})
+        for (const std::size_t n : *sizes) work += work_of(n, num_edited);
     const auto next = [&](double share, const std::string& name) {
         tell(finished / work, name);
         finished += share;
@@ -375,9 +389,18 @@ Throughput measure_throughput(const ThroughputPlan& plan,
         part(n, " hexahedra");
         measure_bodies(topology::CellKind::hexahedron, n, "hybmss");
     }
-    for (const std::size_t n : plan.edited) {
+    for (const std::size_t n : plan.edited_tetrahedra) {
         part(n, " tetrahedra, edited", num_edited);
-        measure_edits(n, materials[1].material, plan.seconds, result);
+        measure_edits(n, materials[1], plan.seconds, result);
+    }
+    for (const std::size_t n : plan.edited_hexahedra) {
+        part(n, " hexahedra, edited", num_edited);
+        measure_edits(n, materials.back(), plan.seconds, result);
+    }
+    for (StepRate& rate : result.steps) {
+        rate.share_of_peak = rate.gigaflops / (rate.num_threads * result.machine.gigaflops);
+        rate.share_of_bandwidth =
+            rate.gigabytes_per_second / (rate.num_threads * result.machine.gigabytes_per_second);
     }
     return result;
 }

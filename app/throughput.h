@@ -37,11 +37,14 @@ struct StepRate {
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
     double gigaflops = 0.0;             ///< of the forces
     double gigabytes_per_second = 0.0;  ///< that the elements' own data take, of the forces
+    double share_of_peak = 0.0;         ///< these over what as many cores as threads can do at most
+    double share_of_bandwidth = 0.0;
 };
 
 /// An edit with the search for what it takes, and body and boxes following: microseconds of one
 /// thread for each item, the best of some passes through bodies that are new.
 struct EditRate {
+    std::string_view method;   ///< heml: of tetrahedra; hybmss: of hexahedra, which nothing splits
     std::string_view kind;     ///< split, separate, carve; or remove, where nothing is searched for
     std::string_view item;     ///< element crossed, face opened, element removed
     std::size_t elements = 0;  ///< of the body
@@ -54,6 +57,7 @@ struct EditRate {
 /// left of disorder. Where elements are removed at random there are more nodes to each: those that
 /// share no face any more share no node.
 struct EditedRate {
+    std::string_view method;
     std::string_view edits;  ///< "half removed": each element with a chance of one half; "split"
     std::size_t elements_before = 0, elements = 0;
     std::size_t nodes_before = 0, nodes = 0;
@@ -72,7 +76,7 @@ struct Throughput {
 struct ThroughputPlan {
     std::vector<std::size_t> tetrahedra = {5'000, 20'000, 100'000, 500'000};
     std::vector<std::size_t> hexahedra = {1'000, 27'000, 125'000};
-    std::vector<std::size_t> edited = {20'000, 100'000, 500'000};
+    std::vector<std::size_t> edited_tetrahedra = tetrahedra, edited_hexahedra = hexahedra;
     double seconds = 0.3;  ///< for each figure, at least
     int num_threads = 0;   ///< besides one thread; 0: as many as there are cores
 };

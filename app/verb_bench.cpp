@@ -43,7 +43,9 @@ ordered_json as_json(const Throughput& throughput) {
                             {"steps_per_second", rate.steps_per_second},
                             {"real_time_factor", rate.real_time_factor},
                             {"gflops", rate.gigaflops},
-                            {"gbytes_per_second", rate.gigabytes_per_second}};
+                            {"gbytes_per_second", rate.gigabytes_per_second},
+                            {"share_of_peak", rate.share_of_peak},
+                            {"share_of_bandwidth", rate.share_of_bandwidth}};
         if (rate.reference) row["reference_ns_per_element"] = *rate.reference;
         if (rate.reference_ratio) row["reference_step_over_step"] = *rate.reference_ratio;
         if (rate.arithmetic) {
@@ -54,14 +56,16 @@ ordered_json as_json(const Throughput& throughput) {
     }
     json["edits"] = ordered_json::array();
     for (const EditRate& rate : throughput.edits)
-        json["edits"].push_back({{"kind", rate.kind},
+        json["edits"].push_back({{"method", rate.method},
+                                 {"kind", rate.kind},
                                  {"item", rate.item},
                                  {"elements", rate.elements},
                                  {"items", rate.items},
                                  {"microseconds_per_item", rate.microseconds}});
     json["edited"] = ordered_json::array();
     for (const EditedRate& rate : throughput.edited)
-        json["edited"].push_back({{"edits", rate.edits},
+        json["edited"].push_back({{"method", rate.method},
+                                  {"edits", rate.edits},
                                   {"elements_before", rate.elements_before},
                                   {"elements", rate.elements},
                                   {"nodes_before", rate.nodes_before},
@@ -80,12 +84,13 @@ void print_text(const Throughput& throughput) {
                 machine.gigaflops, machine.gigabytes_per_second);
     std::printf("bodies      cubes of 10 cm with the stiffness of %s\n\n",
                 std::string(throughput.tissue).c_str());
-    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %6s | %9s %9s\n", "law",
-                "elements", "threads", "forces", "step", "reference", "step", "arithmetic", "step",
-                "steps/s", "real time", "GFLOP/s", "GB/s", "forces in", "step in");
-    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %6s | %9s %9s\n", "", "",
-                "", "ns/elem.", "ns/elem.", "forces, ns", "over", "alone, ns", "us", "", "factor",
-                "", "", "single", "single");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %5s %6s %5s | %9s %9s\n",
+                "law", "elements", "threads", "forces", "step", "reference", "step", "arithmetic",
+                "step", "steps/s", "real time", "GFLOP/s", "of", "GB/s", "of", "forces in",
+                "step in");
+    std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %5s %6s %5s | %9s %9s\n",
+                "", "", "", "ns/elem.", "ns/elem.", "forces, ns", "over", "alone, ns", "us", "",
+                "factor", "", "limit", "", "limit", "single", "single");
     const auto text = [](const std::optional<double>& value) {
         char digits[32] = "";
         if (value) std::snprintf(digits, sizeof digits, "%.1f", *value);
@@ -94,25 +99,28 @@ void print_text(const Throughput& throughput) {
     for (const StepRate& rate : throughput.steps) {
         const auto name = std::string(rate.law.empty() ? rate.method : rate.law);
         std::printf(
-            "%-22s %8zu %7d | %9.2f %9.2f %11s %7s %10s | %9.0f %8.0f %9.3g | %7.1f %6.1f | %9.2f "
-            "%9.2f\n",
+            "%-22s %8zu %7d | %9.2f %9.2f %11s %7s %10s | %9.0f %8.0f %9.3g | %7.1f %4.0f%% %6.1f "
+            "%4.0f%% | %9.2f %9.2f\n",
             name.c_str(), rate.elements, rate.num_threads, rate.forces, rate.step,
             text(rate.reference).c_str(), text(rate.reference_ratio).c_str(),
             text(rate.arithmetic).c_str(), 1e6 / rate.steps_per_second, rate.steps_per_second,
-            rate.real_time_factor, rate.gigaflops, rate.gigabytes_per_second, rate.single_forces,
+            rate.real_time_factor, rate.gigaflops, 100.0 * rate.share_of_peak,
+            rate.gigabytes_per_second, 100.0 * rate.share_of_bandwidth, rate.single_forces,
             rate.single_step);
     }
-    std::printf("\n%-10s %-16s %8s %7s | %9s\n", "edit", "item", "elements", "items", "us/item");
+    std::printf("\n%-6s %-10s %-16s %8s %7s | %9s\n", "method", "edit", "item", "elements", "items",
+                "us/item");
     for (const EditRate& rate : throughput.edits)
-        std::printf("%-10s %-16s %8zu %7zu | %9.2f\n", std::string(rate.kind).c_str(),
-                    std::string(rate.item).c_str(), rate.elements, rate.items, rate.microseconds);
-    std::printf("\n%-13s %8s %8s | %8s %8s | %13s %9s %11s\n", "forces after", "elements", "then",
-                "nodes", "then", "before, ns/e.", "then", "built anew");
+        std::printf("%-6s %-10s %-16s %8zu %7zu | %9.2f\n", std::string(rate.method).c_str(),
+                    std::string(rate.kind).c_str(), std::string(rate.item).c_str(), rate.elements,
+                    rate.items, rate.microseconds);
+    std::printf("\n%-6s %-13s %8s %8s | %8s %8s | %13s %9s %11s\n", "method", "forces after",
+                "elements", "then", "nodes", "then", "before, ns/e.", "then", "built anew");
     for (const EditedRate& rate : throughput.edited)
-        std::printf("%-13s %8zu %8zu | %8zu %8zu | %13.2f %9.2f %11.2f\n",
-                    std::string(rate.edits).c_str(), rate.elements_before, rate.elements,
-                    rate.nodes_before, rate.nodes, rate.forces_before, rate.forces,
-                    rate.forces_built_anew);
+        std::printf("%-6s %-13s %8zu %8zu | %8zu %8zu | %13.2f %9.2f %11.2f\n",
+                    std::string(rate.method).c_str(), std::string(rate.edits).c_str(),
+                    rate.elements_before, rate.elements, rate.nodes_before, rate.nodes,
+                    rate.forces_before, rate.forces, rate.forces_built_anew);
 }
 
 }  // namespace
@@ -126,16 +134,14 @@ int bench(const BenchOptions& options) {
             {}, [&](double share, const std::string& part) { progress.update(share, part); });
         progress.finish();
     }
-    if (!options.json) {
-        print_text(throughput);
-        return done;
-    }
     const auto text =
         as_json(throughput).dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-    if (*options.json == "-")
+    if (options.json == "-") {
         std::cout << text;
-    else
-        io::write_file(*options.json, text);
+        return done;
+    }
+    print_text(throughput);
+    if (options.json) io::write_file(*options.json, text);
     return done;
 }
 

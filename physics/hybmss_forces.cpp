@@ -24,12 +24,12 @@ template <class Number>
     std::copy(edges.begin(), edges.end(), x.begin() + 1);
 #pragma GCC unroll 7
     for (std::size_t g = 0; g < 7; ++g) {
-        const Scalar k = load(group.stiffnesses[g]), rest = load(group.lengths[g]);
+        const Scalar k = load(group.stiffnesses[g]), at_rest = load(group.rest_pulls[g]);
 #pragma GCC unroll 4
         for (const auto& [i, j] : HybmssKernel::springs[g]) {
             const Vector v = x[j] - x[i];
             // Finite, so that a spring without length, v = 0, does not push.
-            const Scalar pull = k * (1.0 - rest * reciprocal_sqrt(dot(v, v)));
+            const Scalar pull = k - at_rest * reciprocal_sqrt(dot(v, v));
             f[i] = f[i] + pull * v;
             f[j] = f[j] - pull * v;
         }

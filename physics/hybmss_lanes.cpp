@@ -60,7 +60,8 @@ void HybmssLanes::set(std::size_t i, const HybmssElement& element) {
             const std::size_t lane = i / groups.size();
             for (std::size_t g = 0; g < 7; ++g) {
                 group.stiffnesses[g][lane] = static_cast<Number>(element.springs.stiffnesses[g]);
-                group.lengths[g][lane] = static_cast<Number>(element.springs.lengths[g]);
+                group.rest_pulls[g][lane] = static_cast<Number>(element.springs.stiffnesses[g] *
+                                                                element.springs.lengths[g]);
             }
             group.volume[lane] = static_cast<Number>(element.volume);
         },

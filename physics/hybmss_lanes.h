@@ -22,7 +22,7 @@ template <class Number>
 struct alignas(64) CellGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
     Number stiffnesses[7][size];         ///< of springs by group, as in SpringShares: N/m
-    Number lengths[7][size];             ///< m
+    Number rest_pulls[7][size];          ///< stiffness times rest length: N
     Number volume[size];                 ///< m3
     std::uint16_t places[8][size] = {};  ///< of the corners: place_of
 };

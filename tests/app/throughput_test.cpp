@@ -15,7 +15,8 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     const std::size_t num_tetrahedra = test::is_sanitized ? 1'500 : 3'000;
     plan.tetrahedra = {400, num_tetrahedra};
     plan.hexahedra = {64};
-    plan.edited = {num_tetrahedra};
+    plan.edited_tetrahedra = {num_tetrahedra};
+    plan.edited_hexahedra = {512};
     plan.seconds = 0.0;
     plan.num_threads = 2;
     double last = -1.0;
@@ -39,21 +40,33 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
         EXPECT_GT(rate.arithmetic.value_or(1.0), 0.0);
         EXPECT_GT(rate.real_time_factor, 0.0);
         EXPECT_GT(rate.gigaflops, 0.0);
+        EXPECT_NEAR(rate.share_of_peak * throughput.machine.gigaflops * rate.num_threads,
+                    rate.gigaflops, 1e-9 * rate.gigaflops);
+        EXPECT_NEAR(
+            rate.share_of_bandwidth * throughput.machine.gigabytes_per_second * rate.num_threads,
+            rate.gigabytes_per_second, 1e-9 * rate.gigabytes_per_second);
     }
     EXPECT_EQ(throughput.steps.back().method, "hybmss");
     EXPECT_EQ(throughput.steps.back().elements, 64u);
-    ASSERT_EQ(throughput.edits.size(), 4u);
-    EXPECT_EQ(throughput.edits[0].kind, "split");
-    EXPECT_EQ(throughput.edits[3].kind, "remove");
+    std::string edits;
+    for (const EditRate& rate : throughput.edits) {
+        edits += std::string(rate.method) + " " + std::string(rate.kind) + ", ";
+        EXPECT_GT(rate.items, 20u) << rate.kind;
+    }
+    EXPECT_EQ(edits,
+              "heml split, heml separate, heml carve, heml remove, "
+              "hybmss separate, hybmss carve, hybmss remove, ");
     EXPECT_EQ(throughput.edits[3].items, 1000u);
-    for (const EditRate& rate : throughput.edits) EXPECT_GT(rate.items, 20u) << rate.kind;
-    ASSERT_EQ(throughput.edited.size(), 2u);
+    EXPECT_EQ(throughput.edits.back().elements, 512u);
+    ASSERT_EQ(throughput.edited.size(), 3u);
     EXPECT_GT(throughput.edited[0].elements, throughput.edited[0].elements_before);
-    const EditedRate& halved = throughput.edited[1];
-    EXPECT_NEAR(static_cast<double>(halved.elements),
-                0.5 * static_cast<double>(halved.elements_before),
-                0.1 * static_cast<double>(halved.elements_before));
-    EXPECT_GT(halved.nodes, halved.nodes_before);  // fewer elements share them
+    for (const std::size_t i : {1u, 2u}) {
+        const EditedRate& halved = throughput.edited[i];
+        EXPECT_NEAR(static_cast<double>(halved.elements),
+                    0.5 * static_cast<double>(halved.elements_before),
+                    0.1 * static_cast<double>(halved.elements_before));
+        EXPECT_GT(halved.nodes, halved.nodes_before);  // fewer elements share them
+    }
     for (const EditedRate& rate : throughput.edited) {
         EXPECT_GT(rate.forces_before, 0.0);
         EXPECT_GT(rate.forces, 0.0);
@@ -63,7 +76,11 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
 
 // Steps of a few bricks are so fast that hours of simulated time pass.
 TEST(Throughput, IsMeasuredForAnyTime) {
-    ThroughputPlan plan{.tetrahedra = {}, .hexahedra = {8}, .edited = {}, .seconds = 0.05};
+    const ThroughputPlan plan{.tetrahedra = {},
+                              .hexahedra = {8},
+                              .edited_tetrahedra = {},
+                              .edited_hexahedra = {},
+                              .seconds = 0.05};
     EXPECT_FALSE(measure_throughput(plan, [](double, const std::string&) {}).steps.empty());
 }
 
