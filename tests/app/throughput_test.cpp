@@ -16,7 +16,7 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     plan.tetrahedra = {400, num_tetrahedra};
     plan.hexahedra = {64};
     plan.edited_tetrahedra = {num_tetrahedra};
-    plan.edited_hexahedra = {512};
+    plan.edited_hexahedra = {1000};
     plan.seconds = 0.0;
     plan.num_threads = 2;
     double last = -1.0;
@@ -57,7 +57,7 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
               "heml split, heml separate, heml carve, heml remove, "
               "hybmss separate, hybmss carve, hybmss remove, ");
     EXPECT_EQ(throughput.edits[3].items, 1000u);
-    EXPECT_EQ(throughput.edits.back().elements, 512u);
+    EXPECT_EQ(throughput.edits.back().elements, 1000u);
     ASSERT_EQ(throughput.edited.size(), 3u);
     EXPECT_GT(throughput.edited[0].elements, throughput.edited[0].elements_before);
     for (const std::size_t i : {1u, 2u}) {
