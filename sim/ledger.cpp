@@ -2,6 +2,7 @@
 #include "sim/ledger.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -56,16 +57,17 @@ double least_altitude(const topology::Mesh& mesh) {
 Ledger::Ledger(const physics::Model& model)
     : model_(model),
       counts_(count()),
+      pieces_(model.mesh()),
       initial_min_altitude_(least_altitude(model.mesh())),
       initial_(account()) {}
 
 Ledger::Counts Ledger::count() const {
     const topology::Mesh& mesh = model_.mesh();
-    return {mesh.num_nodes(), mesh.num_elements(), topology::components(mesh).count};
+    return {mesh.num_nodes(), mesh.num_elements()};
 }
 
 Account Ledger::account() const {
-    return {counts_.nodes, counts_.elements, counts_.components, model_.totals(),
+    return {counts_.nodes, counts_.elements, pieces_.value(), model_.totals(),
             model_.stable_step()};
 }
 
@@ -93,6 +95,8 @@ const EditRecord& Ledger::record(double time, std::uint64_t step, const std::str
     edit.mass_removed = mass_removed;
     edit.before = before;
     counts_ = count();
+    pieces_.follow(model_.mesh(), changes);
+    assert(pieces_.value() == topology::components(model_.mesh()).count);
     edit.after = account();
     add(std::move(edit));
     return edits_.back();
@@ -121,6 +125,7 @@ void Ledger::restore(topology::ArchiveReader& ar, const std::vector<EditTrace>& 
         throw InputError("its books are not of its edits");
     for (EditRecord& edit : edits) add(std::move(edit));
     counts_ = count();
+    pieces_ = topology::PieceCount(model_.mesh());
 }
 
 double Ledger::mass_error() const {

@@ -11,6 +11,7 @@
 #include "physics/model.h"
 #include "topology/change_set.h"
 #include "topology/mesh.h"
+#include "topology/piece_count.h"
 
 namespace incise::sim {
 
@@ -93,13 +94,13 @@ class Ledger {
   private:
     struct Counts {
         std::size_t nodes, elements;
-        int components;
     };
     Counts count() const;
     void add(EditRecord edit);
 
     const physics::Model& model_;
     Counts counts_;
+    topology::PieceCount pieces_;
     double initial_min_altitude_;
     Account initial_;
     std::vector<EditRecord> edits_;

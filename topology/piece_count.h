@@ -1,0 +1,31 @@
+// How many pieces a mesh has, edit after edit.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "topology/change_set.h"
+#include "topology/mesh.h"
+
+namespace incise::topology {
+
+/// The number of Components, without a look at the whole mesh for each edit.
+class PieceCount {
+  public:
+    /// Cost: that of components().
+    explicit PieceCount(const Mesh& mesh) : value_(components(mesh).count) {}
+
+    int value() const { return value_; }
+
+    /// Follows an edit of the mesh, which has not been edited since.
+    /// Cost: a look at the elements round what it changed, as far as it takes to find that they
+    /// still hang together; where they do not, at the smaller pieces, too.
+    void follow(const Mesh& mesh, const ChangeSet& changes);
+
+  private:
+    int value_;
+    std::vector<std::int32_t> group_of_;  // by element; -1 between edits: kept for its memory only
+};
+
+}  // namespace incise::topology
