@@ -158,6 +158,7 @@ ElementBlock& ElementStore::editable(std::size_t block) {
 }
 
 void ElementStore::note_change(std::size_t block) {
+    if (block < energies_.size()) energies_[block].reset();
     if (changed_blocks_.empty() || changed_blocks_.back() != block)
         changed_blocks_.push_back(block);
 }
@@ -205,6 +206,17 @@ void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const 
         const auto& part = parts_[piece.block];
         for (std::size_t i = piece.begin; i < piece.end; ++i) forces[nodes[i]] += part[i].vector();
     }
+}
+
+Sum ElementStore::elastic_energy(std::span<const Vec3> positions, const Workers& workers) const {
+    energies_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (blocks_[b] && !energies_[b]) energies_[b] = blocks_[b]->elastic_energy(positions);
+    });
+    Sum sum;
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+        if (blocks_[b]) sum += *energies_[b];
+    return sum;
 }
 
 std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "physics/element_block.h"
 #include "physics/material.h"
 #include "physics/precision.h"
+#include "physics/sum.h"
 #include "physics/workers.h"
 #include "topology/change_set.h"
 #include "topology/error.h"
@@ -98,6 +100,13 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
+    /// Sum over the elements at `positions`, J. Blocks keep theirs until an edit changes them or
+    /// nodes move, so that another look beside an edit costs what that touched. Not by several
+    /// threads at the same time.
+    Sum elastic_energy(std::span<const Vec3> positions, const Workers& workers) const;
+    /// To be called when nodes have moved that elements had before.
+    void nodes_have_moved() { energies_.clear(); }
+
     /// add(compute(block)) for each block in ascending order: computed at the same time, and so
     /// added up in the same order whatever the number of workers. Takes no memory.
     template <class Compute, class Add>
@@ -142,10 +151,11 @@ class ElementStore {
     MaterialTable table_;
     std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
-    std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
-    std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
-    std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
-    std::vector<double> energies_taken_;           // scratch, by block
+    std::vector<std::vector<Piece>> ranges_;            // of node ids; in ascending order of blocks
+    std::vector<std::vector<LocalVector>> parts_;       // the forces of each block
+    std::vector<std::uint16_t> local_numbers_;          // scratch, by node id
+    std::vector<double> energies_taken_;                // scratch, by block
+    mutable std::vector<std::optional<Sum>> energies_;  // by block, of those that are known
 };
 
 }  // namespace incise::physics

@@ -70,6 +70,7 @@ void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> vel
                       double time) {
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
+    elements_.nodes_have_moved();
     if (!history_.is_empty()) elements_.advance(positions_, positions_, 0.0, workers_, history_);
     compute_forces(time);
 }
@@ -105,6 +106,7 @@ void Model::integrate(double time, double dt) {
             std::span(range_reactions_).subspan(range.number * supports_.size(), supports_.size());
         step_sums_[range.number] = move_nodes(range, time, dt, reactions);
     });
+    elements_.nodes_have_moved();
     StepSums sums;
     for (const StepSums& range : step_sums_) sums += range;
     reactions_.assign(supports_.size(), {});
@@ -217,6 +219,7 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
         taken = elements_.advance(positions_, positions, dt, workers_, history_);
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
+    elements_.nodes_have_moved();
     return taken;
 }
 
@@ -295,6 +298,7 @@ void Model::merge(NodeId absorbed, NodeId survivor) {
     const double mass = masses_[from] + masses_[into];
     const double weight = masses_[from] / mass;
     positions_[into] += weight * (positions_[from] - positions_[into]);
+    elements_.nodes_have_moved();
     velocities_[into] += weight * (velocities_[from] - velocities_[into]);
     masses_[into] = mass;
     merge.position_after = positions_[into];
@@ -313,6 +317,7 @@ bool Model::take_back_merge(NodeId absorbed) {
     if (positions_[n] != merge.position_after || velocities_[n] != merge.velocity_after)
         return false;
     positions_[n] = merge.position_before;
+    elements_.nodes_have_moved();
     velocities_[n] = merge.velocity_before;
     return true;
 }
@@ -424,6 +429,7 @@ void Model::restore(topology::ArchiveReader& ar, double time) {
         !std::all_of(history.begin(), history.end(), [](double x) { return std::isfinite(x); }))
         throw InputError("the state is not finite");
     positions_ = std::move(positions);
+    elements_.nodes_have_moved();
     velocities_ = std::move(velocities);
     history_.set_values(history);
     reactions_ = std::move(reactions);

@@ -76,11 +76,7 @@ Totals Model::totals() const {
 }
 
 double Model::elastic_energy() const {
-    Sum energy;
-    elements_.add_up_blocks(
-        workers_, [&](const ElementBlock& block) { return block.elastic_energy(positions_); },
-        [&](const Sum& of_block) { energy += of_block; });
-    return energy.value();
+    return elements_.elastic_energy(positions_, workers_).value();
 }
 
 double Model::stiffness_energy() const {

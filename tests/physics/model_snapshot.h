@@ -17,7 +17,7 @@ struct ModelSnapshot {
     std::vector<double> masses, volumes, energies;
     std::vector<double> history;
     std::vector<Vec3> fibres;
-    double stable_step;
+    double stable_step, elastic_energy;
     bool operator==(const ModelSnapshot&) const = default;
 
     ModelSnapshot(Model& model, double time) : state(state_of(model)) {
@@ -33,6 +33,7 @@ struct ModelSnapshot {
         history.assign(model.history().values().begin(), model.history().values().end());
         fibres.assign(model.fibres().begin(), model.fibres().end());
         stable_step = model.stable_step();
+        elastic_energy = model.elastic_energy();
     }
 };
 
@@ -47,6 +48,7 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.history, b.history);
     EXPECT_EQ(a.fibres, b.fibres);
     EXPECT_EQ(a.stable_step, b.stable_step);
+    EXPECT_EQ(a.elastic_energy, b.elastic_energy);
 }
 
 /// All materials for the cells of the mesh that there are in the precision; every other law with

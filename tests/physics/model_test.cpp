@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/test_bodies.h"
+#include "topology/archive.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 
@@ -115,6 +116,39 @@ TEST(Model, HasTheEnergyOfDoublesInSinglePrecision) {
     EXPECT_NE(in_floats.elastic_forces()[0], in_doubles.elastic_forces()[0]);
     EXPECT_EQ(in_floats.elastic_energy(), in_doubles.elastic_energy());
     EXPECT_EQ(in_floats.min_volume_ratio(), in_doubles.min_volume_ratio());
+}
+
+// Blocks keep their energies while nothing moves; edits_test.cpp has those of edited bodies.
+TEST(Model, HasTheElasticEnergyOfItsPresentPositions) {
+    const auto table = table_of_all_materials();
+    const Mesh mesh =
+        Mesh::build(with_regions(test::jittered_cube(3, 0.2, 2), table.materials.size())).mesh;
+    Model model(mesh, table);
+    test::Random random(4);
+    const BodyState start = random_state(mesh, random, 0.02, 1.0);
+    double last = model.elastic_energy();
+    const auto expect_present = [&](const char* what) {
+        SCOPED_TRACE(what);
+        Model fresh(mesh, table);
+        set_state(fresh, state_of(model));
+        EXPECT_EQ(model.elastic_energy(), fresh.elastic_energy());
+        EXPECT_NE(model.elastic_energy(), last);
+        last = model.elastic_energy();
+    };
+    set_state(model, start);
+    expect_present("set");
+    topology::ArchiveWriter archive;
+    model.save(archive);
+    model.integrate(0.0, 0.1 * model.stable_step());
+    expect_present("integrated");
+    BodyState next = state_of(model);
+    for (Vec3& x : next.positions) x += random.vector(0.001);
+    const std::vector<Vec3> reactions(next.positions.size(), Vec3::Zero());
+    model.take_step(next.positions, next.velocities, reactions, 1e-4);
+    expect_present("step taken");
+    topology::ArchiveReader reader(archive.bytes());
+    model.restore(reader, 0.0);
+    expect_present("restored");
 }
 
 TEST(Model, ReportsTotalsOfARigidMotion) {
