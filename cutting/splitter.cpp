@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "cutting/crossing_counts.h"
 #include "cutting/cut_border.h"
 #include "cutting/edge_list.h"
 #include "cutting/fitting_place.h"
@@ -57,33 +58,6 @@ const Passage& first_of(const Passages& passages) {
     auto skipped = std::count_if(passages.begin(), passages.end(), is_first) / 2;
     return *std::find_if(passages.begin(), passages.end(),
                          [&](const Passage& p) { return is_first(p) && skipped-- == 0; });
-}
-
-/// Counts the crossings of the edges that the middle of the edge from a to b has come to. It counts
-/// as on the side of the end b: where it is, if it was made off the surface. Round a triangle the
-/// crossings are odd in number if the border of the sweep runs through it, and in no other case,
-/// now and after each later step: rounding has moved the middle off the edge, so nothing of this
-/// may be left to its place.
-/// @param has_border  (p, q, r): whether the border runs through a triangle; nothing if the surface
-///                    has a rim instead
-/// @param is_passed_to_b  (i): whether a way from the middle's neighbour ring[i] to b by the middle
-///                        crosses the surface; asked where the rim is in their face
-template <class HasBorder, class IsPassed>
-void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
-                   const std::vector<NodeId>& ring, HasBorder has_border, IsPassed is_passed_to_b) {
-    const bool is_crossed = front.is_crossed(a, b);
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const NodeId n = ring[i];
-        const bool at_a = front.is_crossed(a, n), at_b = front.is_crossed(b, n);
-        bool is_crossed_to_n = at_b;
-        if (const std::optional<bool> border = has_border(middle, b, n))
-            is_crossed_to_n = at_b != *border;
-        else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
-            is_crossed_to_n = is_passed_to_b(i);
-        if (is_crossed_to_n) front.toggle(middle, n);
-    }
-    if (is_crossed) front.toggle(a, b);
-    if (is_crossed != has_border(a, middle, b).value_or(false)) front.toggle(a, middle);
 }
 
 class Splitter {
@@ -180,8 +154,6 @@ class Splitter {
     void divide_next();
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
-    void tell(const RestingBlade& blade, Edge edge, NodeId middle, const std::vector<NodeId>& ring,
-              double reach);
     void part();
     std::optional<CutFront::Place> place_at_fold(ElementId e) const;
     void open(const CutFront& front, const Parting& parting);
@@ -547,7 +519,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         place(edge.a, edge.b, to_b);
     front_.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
     for (const RestingBlade& blade : resting_) {
-        tell(blade, edge, middle, ring, reach);
+        place_for(blade, edge, middle, ring, reach, scars_, [&](NodeId n) { return point(n); });
         blade.front.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
     }
     // What the blade did before, it did to the edge that was there then: in smaller steps these
@@ -560,30 +532,6 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     take(edge.b, std::move(to_b));
     for (std::size_t i = 0; i < ring.size(); ++i) take(ring[i], std::move(to_ring[i]));
     return middle;
-}
-
-/// A blade that this cut comes across. A middle between two nodes on its cut is on it, too; any
-/// other keeps to an end that is off it, as edges without a node on it are not to stay crossed.
-void Splitter::tell(const RestingBlade& blade, Edge edge, NodeId middle,
-                    const std::vector<NodeId>& ring, double reach) {
-    CutFront& front = blade.front;
-    if (front.is_on(edge.a) && front.is_on(edge.b))
-        front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,
-                     scars_.take_rank());
-    else if (front.is_on(edge.b))
-        std::swap(edge.a, edge.b);
-    place_on_side(
-        front, edge.a, edge.b, middle, ring,
-        [&](NodeId p, NodeId q, NodeId r) {
-            return blade.is_inside({point(p), point(q), point(r)});
-        },
-        [](std::size_t) { return false; });
-    // Its cut ends beyond the middle, and goes through an edge that would have been divided.
-    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](NodeId n) {
-        return !front.is_on(n) && front.is_crossed(middle, n);
-    });
-    if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))
-        front.put_on(middle, false, reach, scars_.take_rank());
 }
 
 }  // namespace
