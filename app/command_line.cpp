@@ -86,7 +86,7 @@ void declare_bench(CLI::App& app, Action& action) {
     auto* verb = app.add_subcommand(
         "bench", "Measure how fast this machine computes forces, steps and edits");
     verb->add_option("--json", options->json,
-                     "Also write all figures to this file; with - only these, to the screen")
+                     "Also write all figures to this file; - to stdout, instead of the tables")
         ->type_name("FILE");
     verb->footer(
         "Makes its own meshes and takes some minutes. For figures that mean something let nothing\n"
@@ -129,14 +129,15 @@ constexpr const char* cut_footer =
     "\n"
     "What is reported: cut_area is that of one side of the opened faces. surface_distance is how\n"
     "far they are from the surface that was given, at most: max at their nodes, the middles of\n"
-    "their edges and their centres; relative is this over the mean length of the edges before;\n"
+    "their edges and their centres; relative is max over the mean length of the edges before;\n"
     "nodes is at their nodes alone, which is less where the surface has folds.\n"
     "stable_step_ratio is geometric: what the shape of the tetrahedra does to the stable step of\n"
     "a body of one material. microseconds_per_crossed_element is the time of the splits alone,\n"
     "without reading, measuring and writing. Where there is nothing to measure, JSON has null.\n"
     "\n"
-    "A mesh that is written does not know where it was cut. To cut it along the same surface once\n"
-    "more cuts flakes off, unless snap is 0: give all tools at once.\n"
+    "A mesh that is written does not know where it was cut, and to cut it along the same surface\n"
+    "once more cuts flakes off: give all tools at once. With --snap 0 nothing changes along a\n"
+    "plane.\n"
     "\n"
     "Examples:\n"
     "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"

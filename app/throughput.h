@@ -37,8 +37,9 @@ struct StepRate {
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
     double gigaflops = 0.0;             ///< of the forces
     double gigabytes_per_second = 0.0;  ///< that the elements' own data take, of the forces
-    double share_of_peak = 0.0;         ///< these over what as many cores as threads can do at most
-    double share_of_bandwidth = 0.0;
+    /// These over the limits of one core times the number of threads: more than several cores
+    /// have, as they share the memory, and some of them their arithmetic.
+    double share_of_peak = 0.0, share_of_bandwidth = 0.0;
 };
 
 /// An edit with the search for what it takes, and body and boxes following: microseconds of one
