@@ -50,9 +50,9 @@ void place_on_side(CutFront& front, topology::NodeId a, topology::NodeId b, topo
 /// @param reach  see CutFront::put_on
 /// @param point  (node): where it is, a MovingPoint
 template <class PointOf>
-void place_for(const RestingBlade& blade, Edge edge, topology::NodeId middle,
-               const std::vector<topology::NodeId>& ring, double reach, Scars& scars,
-               PointOf point) {
+void place_for_resting(const RestingBlade& blade, Edge edge, topology::NodeId middle,
+                       const std::vector<topology::NodeId>& ring, double reach, Scars& scars,
+                       PointOf point) {
     CutFront& front = blade.front;
     if (front.is_on(edge.a) && front.is_on(edge.b))
         front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,

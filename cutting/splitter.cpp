@@ -148,7 +148,7 @@ class Splitter {
     void receive(const Edge& edge, ElementId element, Passages passages);
     Scar scar_at(NodeId n, const Passage& passage) const;
     bool is_at(const EdgeEnd& end, const Passage& passage);
-    bool is_by(NodeId n, NodeId other, const Passage& passage) const;
+    bool passes_by(NodeId n, NodeId other, const Passage& passage) const;
     void settle(const Edge& edge, const Passages& passages);
     bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
     void divide_next();
@@ -364,7 +364,7 @@ bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) {
 
 /// Whether the passage through the edge to `other` is no more than where the surface passes by a
 /// node that is near it.
-bool Splitter::is_by(NodeId n, NodeId other, const Passage& passage) const {
+bool Splitter::passes_by(NodeId n, NodeId other, const Passage& passage) const {
     if (!front_.is_near(n)) return false;
     if (!surface_.has_folds()) return true;
     const double length = (point(other)[1] - point(n)[1]).norm();
@@ -379,8 +379,8 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& p
         while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
     };
     const auto are_both_on = [&] { return front_.is_on(edge.a) && front_.is_on(edge.b); };
-    if (begin != end && is_by(edge.a, edge.b, *begin)) ++begin;
-    if (begin != end && is_by(edge.b, edge.a, *(end - 1))) --end;
+    if (begin != end && passes_by(edge.a, edge.b, *begin)) ++begin;
+    if (begin != end && passes_by(edge.b, edge.a, *(end - 1))) --end;
     drop_bends();
     if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
@@ -519,7 +519,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         place(edge.a, edge.b, to_b);
     front_.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
     for (const RestingBlade& blade : resting_) {
-        place_for(blade, edge, middle, ring, reach, scars_, [&](NodeId n) { return point(n); });
+        place_for_resting(blade, edge, middle, ring, reach, scars_,
+                          [&](NodeId n) { return point(n); });
         blade.front.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
     }
     // What the blade did before, it did to the edge that was there then: in smaller steps these

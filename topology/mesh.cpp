@@ -6,6 +6,8 @@
 #include <bit>
 #include <cassert>
 
+#include "topology/groups.h"
+
 namespace incise::topology {
 
 namespace {
@@ -175,33 +177,23 @@ double rest_area(const Mesh& mesh, FaceId f) {
     return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
 }
 
-// Elements point to a lower one that they hang together with, the lowest of a piece to itself. They
-// are taken in ascending order, in which neighbours lie near each other in memory.
+// Elements are taken in ascending order, in which neighbours lie near each other in memory.
 Components components(const Mesh& mesh) {
-    std::vector<int> lower(mesh.element_capacity());
-    const auto at = [&](int e) -> int& { return lower[static_cast<std::size_t>(e)]; };
-    const auto lowest = [&](int e) {
-        while (at(e) != e) e = at(e) = at(at(e));
-        return e;
-    };
+    Groups groups(mesh.element_capacity());
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const ElementId e(i);
         if (!mesh.is_alive(e)) continue;
-        at(e.value) = e.value;
-        int own = e.value;
+        std::int32_t own = e.value;
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const ElementId other = mesh.neighbor({e, f}).element;
-            if (!other.is_valid() || other > e) continue;
-            const int others = lowest(other.value);
-            at(std::max(own, others)) = std::min(own, others);
-            own = std::min(own, others);
+            if (other.is_valid() && other < e) own = groups.join(own, other.value);
         }
     }
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
         if (const ElementId e(i); mesh.is_alive(e)) {
-            const int first = lowest(e.value);
+            const std::int32_t first = groups.find(e.value);
             result.of_element[i] = first == e.value
                                        ? result.count++
                                        : result.of_element[static_cast<std::size_t>(first)];

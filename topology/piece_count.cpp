@@ -3,31 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
+
+#include "topology/groups.h"
 
 namespace incise::topology {
 
 namespace {
-
-/// Numbers from 0 that are found to belong together.
-class Groups {
-  public:
-    explicit Groups(std::size_t size) : lower_(size) { std::iota(lower_.begin(), lower_.end(), 0); }
-
-    std::int32_t find(std::int32_t i) {
-        while (at(i) != i) i = at(i) = at(at(i));
-        return i;
-    }
-    void join(std::int32_t i, std::int32_t j) {
-        i = find(i), j = find(j);
-        at(std::max(i, j)) = std::min(i, j);
-    }
-
-  private:
-    std::int32_t& at(std::int32_t i) { return lower_[static_cast<std::size_t>(i)]; }
-
-    std::vector<std::int32_t> lower_;
-};
 
 /// The elements that an edit touched, in ascending order: those at opened and closed faces, the
 /// removed and the added ones.
@@ -59,31 +40,23 @@ bool has(const std::vector<ElementRecord>& records, ElementId e) {
 
 }  // namespace
 
-// Pieces without a touched element are what they were. The others are counted before and after: by
-// the faces that were joined before and still are, all touched elements search for each other at
-// once, each from where it is, until no more than one group of them has anywhere left to go; what
-// has hung together before does so by the opened faces as well, and now by the closed ones.
-void PieceCount::follow(const Mesh& mesh, const ChangeSet& changes) {
-    const std::vector<ElementId> touched = touched_elements(changes);
+// By the faces that were joined before and still are, the touched elements search for each other,
+// each from where it is, all at once, until no more than one group of them has anywhere left to go.
+Groups PieceCount::search(const Mesh& mesh, const ChangeSet& changes,
+                          const std::vector<ElementId>& touched, std::vector<ElementId>& found) {
     const std::vector<FaceId> new_faces = sides_of(changes.faces_closed);
-    group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);
-    const auto group_of = [&](ElementId e) -> std::int32_t& { return group_of_[e.index()]; };
-
     Groups groups(touched.size());
     std::vector<ElementId> queue;
     std::vector<int> num_waiting(touched.size());  // in the queue, by group
-    for (std::size_t i = 0; i < touched.size(); ++i) {
-        const ElementId e = touched[i];
-        group_of(e) = static_cast<std::int32_t>(i);
-        if (!mesh.is_alive(e) || has(changes.elements_added, e)) continue;
-        queue.push_back(e);
-        num_waiting[i] = 1;
-    }
-    auto num_searching = static_cast<std::ptrdiff_t>(queue.size());
     const auto waiting = [&](std::int32_t g) -> int& {
         return num_waiting[static_cast<std::size_t>(g)];
     };
-    std::vector<ElementId> found;
+    for (const ElementId e : touched) {
+        if (!mesh.is_alive(e) || has(changes.elements_added, e)) continue;
+        queue.push_back(e);
+        waiting(group_of(e)) = 1;
+    }
+    auto num_searching = static_cast<std::ptrdiff_t>(queue.size());
     for (std::size_t next = 0; next < queue.size() && num_searching > 1; ++next) {
         const ElementId e = queue[next];
         std::int32_t own = groups.find(group_of(e));
@@ -98,17 +71,27 @@ void PieceCount::follow(const Mesh& mesh, const ChangeSet& changes) {
                 found.push_back(other);
                 queue.push_back(other);
             } else if (const std::int32_t others = groups.find(group_of(other)); others != own) {
-                groups.join(own, others);
-                const int sum = waiting(own) + waiting(others);
                 num_searching -= waiting(others) > 0;
-                own = groups.find(own);
+                const int sum = waiting(own) + waiting(others);
+                own = groups.join(own, others);
                 waiting(own) = sum;
             }
         }
         num_searching -= --waiting(own) == 0;
     }
+    return groups;
+}
 
-    Groups before = groups, after = groups;
+// Pieces without a touched element are what they were. The others are counted before and after:
+// what the search finds to hang together did and does; before, it did by the opened faces as well,
+// and now by the closed ones.
+void PieceCount::follow(const Mesh& mesh, const ChangeSet& changes) {
+    const std::vector<ElementId> touched = touched_elements(changes);
+    group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);
+    for (std::size_t i = 0; i < touched.size(); ++i)
+        group_of(touched[i]) = static_cast<std::int32_t>(i);
+    std::vector<ElementId> found;
+    Groups before = search(mesh, changes, touched, found), after = before;
     for (const FacePair& pair : changes.faces_opened)
         before.join(group_of(pair.a.element), group_of(pair.b.element));
     for (const FacePair& pair : changes.faces_closed)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "topology/change_set.h"
+#include "topology/groups.h"
 #include "topology/mesh.h"
 
 namespace incise::topology {
@@ -24,6 +25,12 @@ class PieceCount {
     void follow(const Mesh& mesh, const ChangeSet& changes);
 
   private:
+    /// Which of the touched elements, by their places in the list, have hung together all the time,
+    /// as far as it takes to count pieces. `found` receives the others that it came through.
+    Groups search(const Mesh& mesh, const ChangeSet& changes, const std::vector<ElementId>& touched,
+                  std::vector<ElementId>& found);
+    std::int32_t& group_of(ElementId e) { return group_of_[e.index()]; }
+
     int value_;
     std::vector<std::int32_t> group_of_;  // by element; -1 between edits: kept for its memory only
 };
