@@ -86,9 +86,12 @@ class ElementBlock {
     /// Sets `forces` to the sums of the elements' elastic forces, N, at `positions`, m, with those
     /// of viscosity as far as the history goes. Both by local number; each has one place more than
     /// there are nodes, for the block's own use.
+    /// @param next  of the block that the thread most likely takes then
     virtual void compute_forces(std::span<const LocalVector> positions,
-                                const ViscousHistory& history,
-                                std::span<LocalVector> forces) const = 0;
+                                const ViscousHistory& history, std::span<LocalVector> forces,
+                                std::span<const std::byte> next) const = 0;
+    /// What compute_forces reads first of its elements.
+    virtual std::span<const std::byte> bytes_of_elements() const = 0;
     /// Adds the forces (N) at the end of a step, viscous ones by the exact rule of advance().
     virtual void add_forces(const EndOfStep& end, std::span<Vec3> forces) const = 0;
     /// Whose gradient by the positions are minus these forces, J; without viscosity the energy.

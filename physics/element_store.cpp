@@ -190,12 +190,19 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
     changed_blocks_.clear();
 }
 
+std::span<const std::byte> ElementStore::bytes_from(std::size_t block) const {
+    while (block < blocks_.size() && !blocks_[block]) ++block;
+    if (block == blocks_.size()) return {};
+    return blocks_[block]->bytes_of_elements();
+}
+
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   const Workers& workers) {
     assert(changed_blocks_.empty() && ranges_.size() == num_node_ranges(positions.size()));
     workers.for_each(blocks_.size(), [&](std::size_t b) {
         if (!blocks_[b]) return;
-        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions), history, parts_[b]);
+        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions), history, parts_[b],
+                                   bytes_from(b + 1));
     });
 }
 

@@ -141,6 +141,8 @@ class ElementStore {
     };
 
     void note_change(std::size_t block);
+    /// Those of the elements of the first block from the given number on, if there is one.
+    std::span<const std::byte> bytes_from(std::size_t block) const;
     /// The block, or a copy that takes its place if somebody shares it.
     ElementBlock& editable(std::size_t block);
 

@@ -58,8 +58,9 @@ void put(DoubleLanes values, double* to) { std::memcpy(to, &values.v, sizeof(val
 /// Calls visit(group's number, first lane) for as many elements at a time as there are lanes.
 template <class Visit>
 [[gnu::always_inline]] inline void for_each_part(std::span<const DoubleGroup> groups, Visit visit) {
+    const FetchAhead fetch_ahead(groups, {});
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        fetch_ahead(groups, g);
+        fetch_ahead(g);
         for (std::size_t first = 0; first < DoubleGroup::size; first += num_lanes<double>)
             visit(g, first);
     }

@@ -112,13 +112,18 @@ void HemlLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t 
 }
 
 void HemlLanes::add_forces(const HemlKernel& kernel, const LocalVector* positions,
-                           LocalVector* forces) const {
+                           LocalVector* forces, std::span<const std::byte> next) const {
     std::visit(
         [&]<class Number>(const LinkGroups<Number>& groups) {
             static AddHemlForces<Number>* const add = heml_forces_for<Number>(processor());
-            add(kernel.law, kernel.inversion_threshold, groups, positions, forces);
+            add(kernel.law, kernel.inversion_threshold, groups, positions, forces, next);
         },
         groups_);
+}
+
+std::span<const std::byte> HemlLanes::bytes() const {
+    return std::visit([](const auto& groups) { return std::as_bytes(std::span(groups.links)); },
+                      groups_);
 }
 
 template <class Visit>

@@ -58,8 +58,10 @@ class HemlLanes {
 
     /// Adds each element's forces, N, to those of its nodes. The same bits on every processor.
     /// @param positions m; both by local number
-    void add_forces(const HemlKernel& kernel, const LocalVector* positions,
-                    LocalVector* forces) const;
+    void add_forces(const HemlKernel& kernel, const LocalVector* positions, LocalVector* forces,
+                    std::span<const std::byte> next) const;
+    /// What add_forces reads of the elements.
+    std::span<const std::byte> bytes() const;
 
     /// Sum of the elements' energies by the law of the kernel, J, in the order of their numbers:
     /// those of HemlKernel::energy within rounding, zero at rest. The same bits on every processor.
@@ -87,7 +89,7 @@ class HemlLanes {
 template <class Number>
 using AddHemlForces = void(const Law& law, double inversion_threshold,
                            const LinkGroups<Number>& groups, const LocalVector* positions,
-                           LocalVector* forces);
+                           LocalVector* forces, std::span<const std::byte> next);
 /// What HemlLanes calls, by processor; for double and float.
 template <class Number>
 AddHemlForces<Number>* heml_forces_for(Processor processor);

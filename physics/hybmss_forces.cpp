@@ -63,9 +63,11 @@ template <class Number>
 
 template <class Number>
 [[gnu::flatten]] void add_forces(double volume_modulus, std::span<const CellGroup<Number>> groups,
-                                 const LocalVector* positions, LocalVector* forces) {
+                                 const LocalVector* positions, LocalVector* forces,
+                                 std::span<const std::byte> next) {
+    const FetchAhead fetch_ahead(groups, next);
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        fetch_ahead(groups, g);
+        fetch_ahead(g);
         for (std::size_t first = 0; first < CellGroup<Number>::size; first += num_lanes<Number>)
             add_forces_of(volume_modulus, groups[g], first, positions, forces);
     }
@@ -74,13 +76,15 @@ template <class Number>
 }  // namespace
 
 void add_hybmss_forces(double volume_modulus, std::span<const CellGroup<double>> groups,
-                       const LocalVector* positions, LocalVector* forces) {
-    add_forces(volume_modulus, groups, positions, forces);
+                       const LocalVector* positions, LocalVector* forces,
+                       std::span<const std::byte> next) {
+    add_forces(volume_modulus, groups, positions, forces, next);
 }
 
 void add_hybmss_forces(double volume_modulus, std::span<const CellGroup<float>> groups,
-                       const LocalVector* positions, LocalVector* forces) {
-    add_forces(volume_modulus, groups, positions, forces);
+                       const LocalVector* positions, LocalVector* forces,
+                       std::span<const std::byte> next) {
+    add_forces(volume_modulus, groups, positions, forces, next);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

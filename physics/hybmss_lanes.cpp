@@ -73,13 +73,17 @@ void HybmssLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16_
 }
 
 void HybmssLanes::add_forces(const HybmssKernel& kernel, const LocalVector* positions,
-                             LocalVector* forces) const {
+                             LocalVector* forces, std::span<const std::byte> next) const {
     std::visit(
         [&]<class Number>(const std::vector<CellGroup<Number>>& groups) {
             static AddHybmssForces<Number>* const add = hybmss_forces_for<Number>(processor());
-            add(kernel.material.volume_modulus, groups, positions, forces);
+            add(kernel.material.volume_modulus, groups, positions, forces, next);
         },
         groups_);
+}
+
+std::span<const std::byte> HybmssLanes::bytes() const {
+    return std::visit([](const auto& groups) { return std::as_bytes(std::span(groups)); }, groups_);
 }
 
 }  // namespace incise::physics

@@ -39,8 +39,10 @@ class HybmssLanes {
 
     /// Adds each cell's forces, N, to those of its nodes. The same bits on every processor.
     /// @param positions m; both by local number
-    void add_forces(const HybmssKernel& kernel, const LocalVector* positions,
-                    LocalVector* forces) const;
+    void add_forces(const HybmssKernel& kernel, const LocalVector* positions, LocalVector* forces,
+                    std::span<const std::byte> next) const;
+    /// What add_forces reads of the cells.
+    std::span<const std::byte> bytes() const;
 
     /// Those in the numbers that the kernel's precision asks for.
     template <class Number>
@@ -54,7 +56,8 @@ class HybmssLanes {
 
 template <class Number>
 using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup<Number>> groups,
-                             const LocalVector* positions, LocalVector* forces);
+                             const LocalVector* positions, LocalVector* forces,
+                             std::span<const std::byte> next);
 /// What HybmssLanes calls, by processor; for double and float.
 template <class Number>
 AddHybmssForces<Number>* hybmss_forces_for(Processor processor);

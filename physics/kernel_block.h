@@ -63,13 +63,18 @@ class KernelBlock final : public ElementBlock {
 
     void compute_forces(std::span<const LocalVector> positions,
                         [[maybe_unused]] const ViscousHistory& history,
-                        std::span<LocalVector> forces) const override {
+                        std::span<LocalVector> forces,
+                        [[maybe_unused]] std::span<const std::byte> next) const override {
         assert(is_numbered_ && forces.size() > nodes_.size());
         std::fill(forces.begin(), forces.end(), LocalVector{});
-        if constexpr (HasLanes<Kernel>) lanes_.add_forces(kernel_, positions.data(), forces.data());
-        if constexpr (HasMemoryLanes<Kernel>)
-            memory_lanes_.add_forces(kernel_, history, positions.data(), forces.data());
-        else if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
+        if constexpr (HasMemoryLanes<Kernel>) {
+            lanes_.add_forces(kernel_, positions.data(), forces.data(), memory_lanes_.bytes());
+            memory_lanes_.add_forces(kernel_, history, positions.data(), forces.data(), next);
+            return;
+        }
+        if constexpr (HasLanes<Kernel>)
+            lanes_.add_forces(kernel_, positions.data(), forces.data(), next);
+        if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
             for (std::size_t s = 0; s < elements_.size(); ++s) {
                 const Corners x = gather(s, positions);
                 Corners f;
@@ -80,6 +85,13 @@ class KernelBlock final : public ElementBlock {
                 for (std::size_t k = 0; k < num_corners; ++k)
                     forces[local_corners(s)[k]].vector() += f[k];
             }
+    }
+
+    std::span<const std::byte> bytes_of_elements() const override {
+        if constexpr (HasLanes<Kernel>)
+            return lanes_.bytes();
+        else
+            return {};
     }
 
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const override {

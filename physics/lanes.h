@@ -398,17 +398,40 @@ template <class Number>
     }
 }
 
-/// Has the processor fetch the group that a loop over them comes to some rounds later. The groups
-/// of a body that the caches do not hold would be waited for: by itself the processor begins too
-/// late.
+/// Has the processor fetch what a loop over groups comes to some rounds later: near its end, what
+/// the loop after it begins with. The groups of a body that the caches do not hold would be waited
+/// for: by itself the processor begins too late, and with each loop anew.
 template <class Group>
-[[gnu::always_inline]] inline void fetch_ahead(std::span<const Group> groups, std::size_t now) {
-    constexpr std::size_t num_rounds = 8, cache_line = 64;
-    constexpr int for_reading = 0, to_second_cache = 2;  // the first is full of what is in use
-    const Group& group = groups[std::min(now + num_rounds, groups.size() - 1)];
-    for (std::size_t i = 0; i < sizeof(Group); i += cache_line)
-        __builtin_prefetch(reinterpret_cast<const char*>(&group) + i, for_reading, to_second_cache);
-}
+class FetchAhead {
+  public:
+    /// @param next  groups of the loop after this; may be empty
+    FetchAhead(std::span<const Group> groups, std::span<const std::byte> next)
+        : size_(groups.size()),
+          groups_(address(groups.data())),
+          next_(next.empty() ? groups_ : address(next.data()) - groups.size_bytes()) {}
+
+    /// Called with each group's number in turn.
+    [[gnu::always_inline]] void operator()(std::size_t now) const {
+        constexpr int for_reading = 0, to_second_cache = 2;  // the first is full of what is in use
+        const std::size_t then = now + num_rounds;
+        // A choice of addresses, where a branch would cost more; what lies behind the end of what
+        // comes next is fetched in vain, which does no harm.
+        const std::uintptr_t group = (then < size_ ? groups_ : next_) + then * sizeof(Group);
+        for (std::size_t i = 0; i < sizeof(Group); i += cache_line)
+            __builtin_prefetch(reinterpret_cast<const void*>(group + i), for_reading,
+                               to_second_cache);
+    }
+
+  private:
+    static constexpr std::size_t num_rounds = 8, cache_line = 64;
+
+    static std::uintptr_t address(const void* memory) {
+        return reinterpret_cast<std::uintptr_t>(memory);
+    }
+
+    std::size_t size_;
+    std::uintptr_t groups_, next_;
+};
 
 }  // namespace incise::physics::INCISE_PROCESSOR
 

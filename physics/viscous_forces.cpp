@@ -262,8 +262,9 @@ double advance(const Law& law, const ViscousRule& rule, const ViscousGroups& gro
     const std::size_t num_groups = groups.elements.size();
     LaneSums sums;
     double others = 0.0;
+    const FetchAhead fetch_ahead(std::span<const ViscousGroup>(groups.elements), {});
     for (std::size_t g = 0; g < num_groups; ++g) {
-        fetch_ahead(std::span<const ViscousGroup>(groups.elements), g);
+        fetch_ahead(g);
         const ViscousGroup& group = groups.elements[g];
         for (std::size_t first = 0; first < ViscousGroup::size; first += num_together) {
             const Edges v = gather_edges<double>(positions, group.places, first),
@@ -307,10 +308,11 @@ double advance_memory(const ViscousRule& rule, const ViscousGroups& groups,
 
 void add_forces_of_memory(const ViscousRule& rule, const ViscousGroups& groups,
                           MemoryRows<const double> memory, const LocalVector* positions,
-                          LocalVector* forces) {
+                          LocalVector* forces, std::span<const std::byte> next) {
     const Scalar share = rule.relaxing_share;
+    const FetchAhead fetch_ahead(std::span<const ViscousGroup>(groups.elements), next);
     for (std::size_t g = 0; g < groups.elements.size(); ++g) {
-        fetch_ahead(std::span<const ViscousGroup>(groups.elements), g);
+        fetch_ahead(g);
         const ViscousGroup& group = groups.elements[g];
         for (std::size_t first = 0; first < ViscousGroup::size; first += num_together) {
             const auto rows = rows_of(memory, group, first);

@@ -76,9 +76,10 @@ void ViscousLanes::set_nodes(std::span<const std::uint16_t> corners, std::uint16
 }
 
 void ViscousLanes::add_forces(const ViscousKernel& kernel, const ViscousHistory& history,
-                              const LocalVector* positions, LocalVector* forces) const {
+                              const LocalVector* positions, LocalVector* forces,
+                              std::span<const std::byte> next) const {
     viscous_functions().add_forces(rule_of(kernel), groups_, rows_from(history.of(ElementId(0))),
-                                   positions, forces);
+                                   positions, forces, next);
 }
 
 double ViscousLanes::advance(const ViscousKernel& kernel, const LocalVector* before,

@@ -76,7 +76,10 @@ class ViscousLanes {
     /// on every processor.
     /// @param positions m; both by local number
     void add_forces(const ViscousKernel& kernel, const ViscousHistory& history,
-                    const LocalVector* positions, LocalVector* forces) const;
+                    const LocalVector* positions, LocalVector* forces,
+                    std::span<const std::byte> next) const;
+    /// What add_forces reads of the elements, but what they remember.
+    std::span<const std::byte> bytes() const { return std::as_bytes(std::span(groups_.elements)); }
 
     /// ViscousKernel::advance of all elements; returns the sum of what that does, J. The same bits
     /// on every processor.
@@ -94,7 +97,7 @@ class ViscousLanes {
 
 using AddForcesOfMemory = void(const ViscousRule& rule, const ViscousGroups& groups,
                                MemoryRows<const double> memory, const LocalVector* positions,
-                               LocalVector* forces);
+                               LocalVector* forces, std::span<const std::byte> next);
 using AdvanceMemory = double(const ViscousRule& rule, const ViscousGroups& groups,
                              MemoryRows<double> memory, const LocalVector* before,
                              const LocalVector* positions,

@@ -74,7 +74,7 @@ struct Elements {
     std::vector<LocalVector> forces(const HemlKernel& kernel, Processor processor) const {
         std::vector<LocalVector> f(positions.size());
         heml_forces_for<Number>(processor)(kernel.law, kernel.inversion_threshold, groups,
-                                           positions.data(), f.data());
+                                           positions.data(), f.data(), {});
         return f;
     }
 

@@ -128,7 +128,7 @@ void expect_lanes_like_the_reference(HybmssKernel kernel, const Cell& X,
     const auto forces_on = [&](Processor processor, std::span<const CellGroup<Number>> cells) {
         std::vector<LocalVector> f(positions.size());
         hybmss_forces_for<Number>(processor)(kernel.material.volume_modulus, cells,
-                                             positions.data(), f.data());
+                                             positions.data(), f.data(), {});
         return f;
     };
     const auto plain = forces_on(Processor::plain, groups),

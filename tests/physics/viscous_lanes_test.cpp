@@ -89,7 +89,7 @@ struct ViscousElements {
         const auto places = local(now);
         std::vector<LocalVector> f(places.size());
         viscous_functions_for(processor).add_forces(rule(), lanes.groups(), {memory.data(), length},
-                                                    places.data(), f.data());
+                                                    places.data(), f.data(), {});
         return f;
     }
     /// Of all in turn, by the reference.
