@@ -42,6 +42,11 @@ class CutSurface {
     /// Whether it may turn sharply within an element and is there all at once. Not so if it is
     /// swept: what is decided at folds would depend on the steps.
     virtual bool has_folds() const { return false; }
+    /// Normal, of unit length, of a surface with folds where it is no farther from the point than
+    /// `distance`, m; nothing if it is.
+    virtual std::optional<Vec3> normal_near(const Vec3&, double /*distance*/) const {
+        return std::nullopt;
+    }
     virtual SurfaceIdentity identity() const { return no_identity; }
     /// Whether the border at which a sweep ends, and the next one begins, runs through the
     /// triangle (as it is after the step), an odd number of times. Exact, and in agreement with the

@@ -34,4 +34,36 @@ bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPo
     return crossings.size() % 2 == 1;
 }
 
+std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotion& tissue,
+                                    std::span<const EdgeList::Entry> edges, double rounding) {
+    if (!surface.has_folds()) return {};
+    struct End {
+        NodeId node;
+        double length, length_at_rest;
+    };
+    std::vector<End> ends;
+    for (const auto& [edge, element] : edges) {
+        const auto length = [&](auto position) {
+            return (position(edge.b) - position(edge.a)).norm();
+        };
+        const double now = length([&](NodeId n) { return tissue.after[n.index()]; }),
+                     at_rest = length([&](NodeId n) { return tissue.mesh.rest_position(n); });
+        for (const NodeId n : {edge.a, edge.b}) ends.push_back({n, now, at_rest});
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.node < b.node; });
+
+    std::vector<NodeOnSurface> nodes;
+    for (auto end = ends.begin(); end != ends.end();) {
+        End longest = *end;
+        for (; end != ends.end() && end->node == longest.node; ++end) {
+            longest.length = std::max(longest.length, end->length);
+            longest.length_at_rest = std::max(longest.length_at_rest, end->length_at_rest);
+        }
+        const Vec3& x = tissue.after[longest.node.index()];
+        if (const auto normal = surface.normal_near(x, rounding * longest.length))
+            nodes.push_back({longest.node, *normal, longest.length_at_rest});
+    }
+    return nodes;
+}
+
 }  // namespace incise::cutting

@@ -5,9 +5,12 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "cutting/cut_surface.h"
+#include "cutting/edge_list.h"
 #include "cutting/scars.h"
+#include "cutting/tissue_motion.h"
 
 namespace incise::cutting {
 
@@ -21,5 +24,21 @@ bool is_same_sheet(std::span<const Scar> scars, const Scar& passage, double leng
 /// surface. All are as they are after the step.
 bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPoint, 4>& corners,
                             const MovingPoint& corner);
+
+/// A node that lies on a surface with folds, but for rounding.
+struct NodeOnSurface {
+    NodeId node;
+    Vec3 normal;   ///< of the surface there, of unit length
+    double reach;  ///< of its edges that were looked at the longest, m, at rest
+};
+
+/// Those of the nodes of the edges, in ascending order. Crossed edges do not tell of them all:
+/// where the inside of a fold has no edge of the mesh, the surface crosses none of its node's if
+/// rounding has put that outside.
+/// @param edges     those of the elements near the surface, in any order
+/// @param rounding  share of the longest edge at a node: as far away it is on the surface
+/// Cost: a search of the surface for each node.
+std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotion& tissue,
+                                    std::span<const EdgeList::Entry> edges, double rounding);
 
 }  // namespace incise::cutting

@@ -254,9 +254,17 @@ void Splitter::find_crossed_edges() {
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
-    if (!found.empty())
+    if (!found.empty()) {
         for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
             came_on_[n.value] = time;
+        for (const auto& [n, normal, reach] :
+             nodes_on(surface_, tissue_, edges.entries(), smallest_snap)) {
+            if (front_.is_on(n)) continue;
+            snap_to(n, reach);
+            const Vec3 x = point(n)[1];
+            scars_.add(n, {normal, Vec3::Zero(), false, front_.rank(n), surface_.identity(), x});
+        }
+    }
     for (const Found& f : found)
         if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
     for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));

@@ -67,6 +67,23 @@ struct AnyInBox {
     }
 };
 
+struct NearestWithin {
+    const Vec3& x;
+    double square;
+    Box box;
+    Vec3 normal = Vec3::Zero();
+    bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
+    bool intersectObject(const Triangle& t) {
+        const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]);
+        if (across.isZero(0.0)) return false;
+        if (const double found = squared_distance(x, t); found <= square) {
+            square = found;
+            normal = across.normalized();
+        }
+        return false;
+    }
+};
+
 struct CrossingsOf {
     const Vec3 &a, &b;
     std::vector<Crossing>& crossings;
@@ -139,6 +156,14 @@ void TriangleSurface::append_crossings(const MovingPoint& a, const MovingPoint& 
     box.extend(b[1]);
     CrossingsOf query{a[1], b[1], crossings, box};
     Eigen::BVIntersect(tree_->bvh, query);
+}
+
+std::optional<Vec3> TriangleSurface::normal_near(const Vec3& x, double distance) const {
+    if (tree_->is_empty) return std::nullopt;
+    const Vec3 reach = Vec3::Constant(distance);
+    NearestWithin query{x, distance * distance, Box(x - reach, x + reach)};
+    Eigen::BVIntersect(tree_->bvh, query);
+    return query.normal.isZero(0.0) ? std::nullopt : std::optional(query.normal);
 }
 
 double TriangleSurface::distance(const Vec3& x) const {

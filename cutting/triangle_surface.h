@@ -22,6 +22,7 @@ class TriangleSurface final : public CutSurface {
                           std::vector<Crossing>& crossings) const override;
 
     bool has_folds() const override { return true; }
+    std::optional<Vec3> normal_near(const Vec3& x, double distance) const override;
     /// Of its triangles.
     SurfaceIdentity identity() const override { return identity_; }
 

@@ -167,6 +167,45 @@ TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfTheMeshFreesAllThatIsInIt) {
             }
 }
 
+// Rounding then puts nodes of the box's sides on either side of them, each by itself.
+TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfATurnedOrStrainedMeshFreesAllThatIsInIt) {
+    for (const bool is_strained : {false, true})
+        for (const double snap : {0.0, 0.1, 0.6})
+            for (int n = 3; n <= 7; ++n)
+                for (int low = 1; low < n - 1; ++low) {
+                    SCOPED_TRACE(testing::Message()
+                                 << (is_strained ? "strained" : "turned") << ", snap " << snap
+                                 << ", from " << low << " on, " << n << " bricks");
+                    Random random(static_cast<std::uint64_t>(100 * n + low));
+                    const Eigen::Matrix3d turn =
+                        Eigen::AngleAxisd(random.uniform(0.1, 1.0), random.vector(1.0).normalized())
+                            .toRotationMatrix();
+                    Eigen::Matrix3d F = turn;
+                    if (is_strained)
+                        for (int c = 0; c < 3; ++c) F.col(c) += random.vector(0.3);
+                    topology::MeshData mesh = test::jittered_cube(n, 0.0, 0);
+                    if (!is_strained)
+                        for (Vec3& x : mesh.points) x = F * x;
+                    SplitBody body(mesh);
+                    if (is_strained)
+                        for (Vec3& x : body.positions) x = F * x;
+                    Box box(Vec3::Constant(static_cast<double>(low) / n));
+                    box.extend(Vec3::Constant(static_cast<double>(n - 1) / n));
+                    SurfaceData data = box_surface(box);
+                    for (Vec3& x : data.points) x = F * x;
+
+                    const Split done = body.cut(TriangleSurface(data), guarded(body.mesh, snap));
+                    EXPECT_TRUE(done.changes.elements_added.empty());
+                    const auto width = static_cast<std::size_t>(n - 1 - low);
+                    EXPECT_EQ(done.report.faces_opened, 12u * width * width);
+                    const auto volumes = piece_volumes(body.mesh);
+                    ASSERT_EQ(volumes.size(), 2u);
+                    EXPECT_NEAR(std::min(volumes[0], volumes[1]),
+                                std::min(box.volume(), 1.0 - box.volume()), 1e-12);
+                    EXPECT_TRUE(body.cut(TriangleSurface(data)).changes.is_empty());
+                }
+}
+
 // What snapping takes away at folds is little beside what chords of elements do: 0.90 of the boxes
 // would come free if a node near one side forgot where the others pass through its edges.
 TEST(SplitAlongSurface, WithSnappingTurnedBoxesFreeMostOfWhatIsInThem) {
