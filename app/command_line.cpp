@@ -20,6 +20,25 @@ namespace {
 
 using Action = std::function<int()>;
 
+/// Breaks descriptions of options into lines that fit beside their names.
+class HelpFormatter final : public CLI::Formatter {
+  public:
+    std::string make_option_desc(const CLI::Option* option) const override {
+        constexpr std::size_t line_length = 100;
+        const std::size_t width = line_length - get_column_width();
+        std::string text = option->get_description();
+        std::size_t line = 0, blank = std::string::npos;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '\n') line = i + 1;
+            if (text[i] == ' ') blank = i;
+            if (i - line < width || blank == std::string::npos || blank < line) continue;
+            text[blank] = '\n';
+            line = blank + 1;
+        }
+        return text;
+    }
+};
+
 constexpr std::string_view verbs[] = {"run",  "check",     "info",   "cut",  "convert",
                                       "mesh", "materials", "render", "bench"};
 
@@ -136,8 +155,8 @@ constexpr const char* cut_footer =
     "without reading, measuring and writing. Where there is nothing to measure, JSON has null.\n"
     "\n"
     "A mesh that is written does not know where it was cut, and to cut it along the same surface\n"
-    "once more cuts flakes off: give all tools at once. With --snap 0 nothing changes along a\n"
-    "plane.\n"
+    "once more cuts flakes off, but for --snap 0, where hardly anything changes: give all tools\n"
+    "at once.\n"
     "\n"
     "Examples:\n"
     "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
@@ -276,6 +295,7 @@ int dispatch(int argc, const char* const* argv) {
     check_verb(argc, argv);
     Action action;
     CLI::App app(description, "incise");
+    app.formatter(std::make_shared<HelpFormatter>());  // before the verbs, which inherit it
     app.set_version_flag("--version", "incise " INCISE_VERSION);
     app.require_subcommand(1);
     declare_run(app, action);

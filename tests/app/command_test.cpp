@@ -50,6 +50,8 @@ TEST_F(Command, TellsItsVersionAndHelp) {
         EXPECT_EQ(of_verb.status, 0) << verb;
         EXPECT_NE(of_verb.out.find(std::string("Usage: incise ") + verb), std::string::npos);
         EXPECT_NE(of_verb.out.find("Example"), std::string::npos) << verb;
+        std::istringstream lines(of_verb.out);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
     }
 }
 
