@@ -1,4 +1,3 @@
-// Decoding of base64 (RFC 4648), as VTK's XML files use it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "io/base64.h"
 
@@ -14,9 +13,10 @@ namespace {
 
 constexpr std::uint8_t not_a_digit = 255;
 
+constexpr std::string_view digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 constexpr std::array<std::uint8_t, 256> digit_values = [] {
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<std::uint8_t, 256> values{};
     values.fill(not_a_digit);
     for (std::size_t i = 0; i < digits.size(); ++i)
@@ -52,6 +52,20 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t coun
     if (bytes.size() < count && num_digits != 0) return std::nullopt;
     bytes.resize(std::min(count, bytes.size()));
     return bytes;
+}
+
+void append_base64(std::string_view bytes, std::string& text) {
+    const std::size_t begin = text.size();
+    text.resize(begin + (bytes.size() + 2) / 3 * 4, '=');
+    char* digit = text.data() + begin;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k <= count; ++k) digit[k] = digits[group >> (18 - 6 * k) & 63];
+        digit += 4;
+    }
 }
 
 }  // namespace incise::io
