@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "physics/element_result.h"
 #include "physics/local_nodes.h"
 #include "physics/sum.h"
 #include "physics/viscous_history.h"
@@ -19,14 +20,6 @@
 namespace incise::physics {
 
 using topology::NodeId;
-
-/// What one element does at a given state; for output and diagnosis, not for the force loop.
-struct ElementResult {
-    double energy = 0.0;                                      ///< J
-    double volume = 0.0;                                      ///< rest, m3
-    double volume_ratio = 1.0;                                ///< J
-    Eigen::Matrix3d cauchy_stress = Eigen::Matrix3d::Zero();  ///< Pa
-};
 
 /// What one element brings to its corners for good; a pure function of its rest shape.
 struct ElementShares {
@@ -116,7 +109,7 @@ class ElementBlock {
     virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
-    /// Those of all, in the order of elements().
+    /// Those of all, in the order of elements(); within rounding of those one by one.
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
                          std::span<ElementResult> results) const = 0;
     virtual const ElementShares& shares(ElementId e) const = 0;

@@ -55,6 +55,19 @@ template <class L>
 /// Wherever that lies: vectors are aligned to a number only.
 void put(DoubleLanes values, double* to) { std::memcpy(to, &values.v, sizeof(values.v)); }
 
+/// Of the part of the group of number g.
+template <class L>
+[[gnu::always_inline]] inline StrainedLinks<L, double> strained_links(
+    const LinkGroups<double>& groups, std::size_t g, std::size_t first,
+    const std::array<DoubleLanes3, 6>& links) {
+    const DoubleGroup& group = groups.links[g];
+    std::array<DoubleLanes, 6> dl;
+    for (std::size_t k = 0; k < 6; ++k)
+        dl[k] = rounded_dot(links[k], links[k]) - DoubleLanes::load(group.rest_links[k] + first);
+    return {group, groups.fibres.empty() ? nullptr : &groups.fibres[g], first, dl,
+            volume_ratio(links[0], links[1], links[2], DoubleLanes::load(group.volume + first))};
+}
+
 /// Calls visit(group's number, first lane) for as many elements at a time as there are lanes.
 template <class Visit>
 [[gnu::always_inline]] inline void for_each_part(std::span<const DoubleGroup> groups, Visit visit) {
@@ -73,18 +86,43 @@ void heml_energies(const Law& law, double J0, const LinkGroups<double>& groups,
     std::visit(
         [&]<class L>(const L& l) {
             for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
-                const DoubleGroup& group = groups.links[g];
-                const auto links = gather_links(positions, group, first);
-                std::array<DoubleLanes, 6> dl;
-                for (std::size_t k = 0; k < 6; ++k)
-                    dl[k] = rounded_dot(links[k], links[k]) -
-                            DoubleLanes::load(group.rest_links[k] + first);
-                const DoubleLanes volume = DoubleLanes::load(group.volume + first);
-                const StrainedLinks<L, double> strained(
-                    group, groups.fibres.empty() ? nullptr : &groups.fibres[g], first, dl,
-                    volume_ratio(links[0], links[1], links[2], volume));
+                const auto links = gather_links(positions, groups.links[g], first);
+                const auto strained = strained_links<L>(groups, g, first, links);
+                const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
                 const DoubleLanes energy = volume * energy_density(l, strained.strain, J0);
                 put(energy, energies + g * DoubleGroup::size + first);
+            });
+        },
+        law);
+}
+
+void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,
+                 const LocalVector* positions, LinkStates* states) {
+    std::visit(
+        [&]<class L>(const L& l) {
+            for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
+                const DoubleGroup& group = groups.links[g];
+                const auto links = gather_links(positions, group, first);
+                const auto strained = strained_links<L>(groups, g, first, links);
+                const DoubleLanes volume = DoubleLanes::load(group.volume + first);
+                LinkStates& state = states[g];
+                put(volume * energy_density(l, strained.strain, J0), state.energy + first);
+                put(strained.strain.J, state.volume_ratio + first);
+                const LinkVectors<double> edges{links[0], links[1], links[2]};
+                const LinkVectors<double> f =
+                    link_forces(l, J0, group, first, edges, across<double>(edges), strained);
+                const auto rows = [](const LinkVectors<double>& v, auto component) {
+                    return std::array{v[0].*component, v[1].*component, v[2].*component};
+                };
+                using Component = DoubleLanes DoubleLanes3::*;
+                constexpr Component components[3] = {&DoubleLanes3::x, &DoubleLanes3::y,
+                                                     &DoubleLanes3::z};
+                for (std::size_t i = 0; i < 3; ++i)
+                    for (std::size_t j = 0; j < 3; ++j) {
+                        const auto a = rows(f, components[i]), b = rows(edges, components[j]);
+                        const DoubleLanes sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+                        put(sum, state.virial[3 * i + j] + first);
+                    }
             });
         },
         law);

@@ -12,6 +12,7 @@ namespace plain {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
+HemlStates heml_states;
 HemlVolumeRatios heml_volume_ratios;
 }  // namespace plain
 #ifdef INCISE_HAS_AVX
@@ -19,12 +20,14 @@ namespace avx2 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
+HemlStates heml_states;
 HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx2
 namespace avx512 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
+HemlStates heml_states;
 HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx512
 #endif
@@ -47,6 +50,14 @@ HemlEnergies* heml_energies_for([[maybe_unused]] Processor processor) {
     if (processor == Processor::avx2) return avx2::heml_energies;
 #endif
     return plain::heml_energies;
+}
+
+HemlStates* heml_states_for([[maybe_unused]] Processor processor) {
+#ifdef INCISE_HAS_AVX
+    if (processor == Processor::avx512) return avx512::heml_states;
+    if (processor == Processor::avx2) return avx2::heml_states;
+#endif
+    return plain::heml_states;
 }
 
 HemlVolumeRatios* heml_volume_ratios_for([[maybe_unused]] Processor processor) {
@@ -155,6 +166,26 @@ Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* posit
     Sum sum;
     for_each_element(energies, [&](double energy) { sum += energy; });
     return sum;
+}
+
+void HemlLanes::set_results(const HemlKernel& kernel, const LocalVector* positions,
+                            std::span<ElementResult> results) const {
+    static HemlStates* const compute = heml_states_for(processor());
+    const auto& groups = std::get<LinkGroups<double>>(groups_);
+    thread_local std::vector<LinkStates> states;
+    states.resize(groups.links.size());
+    compute(kernel.law, kernel.inversion_threshold, groups, positions, states.data());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const LinkStates& group = states[i % states.size()];
+        const std::size_t lane = i / states.size();
+        results[i].energy = group.energy[lane];
+        results[i].volume_ratio = group.volume_ratio[lane];
+        Eigen::Matrix3d virial;
+        for (std::size_t k = 0; k < 9; ++k)
+            virial(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) =
+                group.virial[k][lane];
+        results[i].set_stress(virial);
+    }
 }
 
 double HemlLanes::min_volume_ratio(const LocalVector* positions) const {

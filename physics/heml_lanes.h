@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "physics/element_result.h"
 #include "physics/law.h"
 #include "physics/local_nodes.h"
 #include "physics/processor.h"
@@ -37,6 +38,14 @@ struct alignas(64) LinkGroup {
 template <class Number>
 struct alignas(64) FibreGroup {
     Number u[3][LinkGroup<Number>::size];
+};
+
+/// What elements have at given positions, by group.
+struct LinkStates {
+    static constexpr std::size_t size = LinkGroup<double>::size;
+    double energy[size];        ///< J
+    double volume_ratio[size];  ///< to the bit as HemlKernel::volume_ratio
+    double virial[9][size];     ///< sum of the corners' forces times positions, f x^T, by rows: J
 };
 
 template <class Number>
@@ -68,6 +77,11 @@ class HemlLanes {
     /// In double precision only, as floats at rest have strains.
     /// @param positions m, by local number
     Sum elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const;
+    /// Sets all of the elements' results, in the order of their numbers, but volumes at rest, which
+    /// are read: as the reference within rounding, and without stress at rest. In double precision
+    /// only, the same bits on every processor.
+    void set_results(const HemlKernel& kernel, const LocalVector* positions,
+                     std::span<ElementResult> results) const;
     /// Of the elements' HemlKernel::volume_ratio, to the bit; also in double precision only.
     double min_volume_ratio(const LocalVector* positions) const;
 
@@ -98,9 +112,14 @@ AddHemlForces<Number>* heml_forces_for(Processor processor);
 using HemlEnergies = void(const Law& law, double inversion_threshold,
                           const LinkGroups<double>& groups, const LocalVector* positions,
                           double* energies);
+/// Sets one for each group.
+using HemlStates = void(const Law& law, double inversion_threshold,
+                        const LinkGroups<double>& groups, const LocalVector* positions,
+                        LinkStates* states);
 using HemlVolumeRatios = void(const LinkGroups<double>& groups, const LocalVector* positions,
                               double* ratios);
 HemlEnergies* heml_energies_for(Processor processor);
+HemlStates* heml_states_for(Processor processor);
 HemlVolumeRatios* heml_volume_ratios_for(Processor processor);
 
 }  // namespace incise::physics

@@ -31,12 +31,13 @@ concept HasLanes = requires {
     typename Kernel::Lanes;
 };
 
-/// One whose fast twin, in double precision, also has their energies and volumes.
+/// One whose fast twin, in double precision, also has their energies, volumes and stresses.
 template <class Kernel>
 concept HasLanesOfEnergy = HasLanes<Kernel> &&
     requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
     lanes.elastic_energy(kernel, x);
     lanes.min_volume_ratio(x);
+    lanes.set_results(kernel, x, std::span<ElementResult>());
 };
 
 /// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
@@ -196,6 +197,13 @@ class KernelBlock final : public ElementBlock {
     void results(std::span<const Vec3> positions, const ViscousHistory& history,
                  std::span<ElementResult> results) const override {
         assert(results.size() == elements_.size());
+        if constexpr (HasLanesOfEnergy<Kernel> && !HasHistory<Kernel>) {
+            for (std::size_t s = 0; s < elements_.size(); ++s)
+                results[s].volume = row(s).rest.volume;
+            const LocalVector* x = local_positions(positions).data();
+            return lanes_in_doubles(
+                [&](const auto& lanes) { lanes.set_results(kernel_, x, results); });
+        }
         for (std::size_t s = 0; s < elements_.size(); ++s)
             results[s] = result_of(s, positions, history);
     }
@@ -325,8 +333,6 @@ class KernelBlock final : public ElementBlock {
             return evaluate(gather(s, end.positions));
     }
 
-    /// The Cauchy stress is the virial of the element's own forces, -sum of f_i x_i^T over its
-    /// volume: exact for linear elements, and the mean stress for springs.
     ElementResult result_of(std::size_t s, std::span<const Vec3> positions,
                             const ViscousHistory& history) const {
         const Corners x = gather(s, positions);
@@ -335,13 +341,9 @@ class KernelBlock final : public ElementBlock {
         result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
         result.energy = kernel_.energy(row(s).rest, x);
         const Corners f = forces_of(s, x, history);
-        for (std::size_t k = 1; k < num_corners; ++k)
-            result.cauchy_stress -= f[k] * (x[k] - x[0]).transpose();
-        const double volume = result.volume * result.volume_ratio;
-        if (volume == 0.0)  // flat: no volume to spread the stress over
-            result.cauchy_stress.setZero();
-        else
-            result.cauchy_stress /= volume;
+        Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
+        for (std::size_t k = 1; k < num_corners; ++k) virial += f[k] * (x[k] - x[0]).transpose();
+        result.set_stress(virial);
         return result;
     }
 

@@ -66,23 +66,22 @@ struct StrainedLinks {
     }
 };
 
+/// Products of edges, each two of which span a face of the element.
+template <class Number>
+[[gnu::always_inline]] inline LinkVectors<Number> across(const LinkVectors<Number>& edges) {
+    const auto& [v1, v2, v3] = edges;
+    return {cross(v2, v3), cross(v3, v1), cross(v1, v2)};
+}
+
 /// Forces on the corners but corner 0, N, of the part of a group that starts at lane `first`.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkVectors<Number> link_forces(
-    const Law& law, double J0, const LinkGroup<Number>& group,
-    [[maybe_unused]] const FibreGroup<Number>* fibres, std::size_t first,
-    const LinkVectors<Number>& edges) {
+    const Law& law, double J0, const LinkGroup<Number>& group, std::size_t first,
+    const LinkVectors<Number>& edges, [[maybe_unused]] const LinkVectors<Number>& across_edges,
+    const StrainedLinks<Law, Number>& links) {
     using Scalar = Lanes<Number>;
     using Vector = Lanes3<Number>;
     const auto& [v1, v2, v3] = edges;
-    const auto dl = [&](const Vector& v, int link) -> Scalar {
-        return rounded_dot(v, v) - Scalar::load(group.rest_links[link] + first);
-    };
-    const Vector across1 = cross(v2, v3), across2 = cross(v3, v1), across3 = cross(v1, v2);
-    const StrainedLinks<Law, Number> links(
-        group, fibres, first,
-        {dl(v1, 0), dl(v2, 1), dl(v3, 2), dl(v2 - v1, 3), dl(v3 - v2, 4), dl(v1 - v3, 5)},
-        dot(across3, v3) * Scalar::load(group.per_six_volumes + first));
     const auto& [G, p11, p12, p13, p21, p22, p23, p31, p32, p33, u, strain] = links;
 
     const LawResponse<Scalar> r = law.response(strain, J0);
@@ -113,11 +112,32 @@ template <class Law, class Number>
            f3 = T.s31 * v1 + T.s23 * v2 + T.d3 * v3;
     if constexpr (NeedsJ<Law>) {
         const Scalar p = (-1.0 / 6.0) * r.w_J;
-        f1 = f1 + p * across1;
-        f2 = f2 + p * across2;
-        f3 = f3 + p * across3;
+        f1 = f1 + p * across_edges[0];
+        f2 = f2 + p * across_edges[1];
+        f3 = f3 + p * across_edges[2];
     }
     return {f1, f2, f3};
+}
+
+/// The same from the edges alone.
+template <class Law, class Number>
+[[gnu::always_inline]] inline LinkVectors<Number> link_forces(const Law& law, double J0,
+                                                              const LinkGroup<Number>& group,
+                                                              const FibreGroup<Number>* fibres,
+                                                              std::size_t first,
+                                                              const LinkVectors<Number>& edges) {
+    using Scalar = Lanes<Number>;
+    using Vector = Lanes3<Number>;
+    const auto& [v1, v2, v3] = edges;
+    const auto dl = [&](const Vector& v, int link) -> Scalar {
+        return rounded_dot(v, v) - Scalar::load(group.rest_links[link] + first);
+    };
+    const LinkVectors<Number> across_edges = across<Number>(edges);
+    const StrainedLinks<Law, Number> links(
+        group, fibres, first,
+        {dl(v1, 0), dl(v2, 1), dl(v3, 2), dl(v2 - v1, 3), dl(v3 - v2, 4), dl(v1 - v3, 5)},
+        dot(across_edges[2], v3) * Scalar::load(group.per_six_volumes + first));
+    return link_forces(law, J0, group, first, edges, across_edges, links);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

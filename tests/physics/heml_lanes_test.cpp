@@ -258,6 +258,85 @@ void expect_energies_of_reference(const HemlKernel& kernel, const Elements<doubl
     }
 }
 
+template <class Number>
+std::vector<ElementResult> results_of(const HemlKernel& kernel, const Elements<Number>& elements) {
+    std::vector<ElementResult> results(elements.volumes.size());
+    for (std::size_t i = 0; i < results.size(); ++i) results[i].volume = elements.volumes[i];
+    elements.lanes.set_results(kernel, elements.positions.data(), results);
+    return results;
+}
+
+// Over strained, flattened and inverted states.
+TEST(HemlLanes, HaveTheResultsOfTheReference) {
+    test::Random random(15);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        for (const std::size_t n : {std::size_t{1}, std::size_t{7}, std::size_t{203}}) {
+            const auto elements = random_elements<double>(kernel, n, random);
+            const auto results = results_of(kernel, elements);
+            const auto energies = elements.lane_energies(kernel, Processor::plain);
+            for (std::size_t i = 0; i < n; ++i) {
+                EXPECT_EQ(results[i].energy, energies[i]);
+                EXPECT_EQ(results[i].volume_ratio, elements.volume_ratios[i]);
+                Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
+                double size = 1e-2 * stiffness(kernel) * elements.volumes[i];
+                for (std::size_t k = 1; k < 4; ++k) {
+                    const Vec3 edge =
+                        elements.positions[4 * i + k].vector() - elements.positions[4 * i].vector();
+                    virial += elements.expected[i][k] * edge.transpose();
+                    size += elements.expected[i][k].norm() * edge.norm();
+                }
+                const double present = elements.volumes[i] * elements.volume_ratios[i];
+                EXPECT_LE((results[i].cauchy_stress * present + virial).norm(),
+                          1e-12 * steepness(kernel.law) * size);
+            }
+        }
+    });
+}
+
+// As the forces: but for laws of which the reference has a rest of rounding there.
+TEST(HemlLanes, HaveNoStressAtRest) {
+    test::Random random(16);
+    std::size_t num_without = 0;
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        std::vector<Tetrahedron> rest;
+        for (int i = 0; i < 50; ++i) rest.push_back(random_tetrahedron(random, 0.01));
+        const Elements<double> elements(kernel, rest, rest);
+        const auto results = results_of(kernel, elements);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const auto& f = elements.expected[i];
+            if (std::ranges::all_of(f, [](const Vec3& v) { return v.isZero(0.0); })) {
+                EXPECT_TRUE(results[i].cauchy_stress.isZero(0.0));
+                ++num_without;
+            }
+            EXPECT_LE(results[i].cauchy_stress.norm(), 1e-12 * stiffness(kernel));
+        }
+    });
+    EXPECT_GE(num_without, 150u);
+}
+
+TEST(HemlLanes, HaveTheSameBitsOfResultsOnEachProcessor) {
+    test::Random random(17);
+    for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
+        SCOPED_TRACE(name);
+        const auto elements = random_elements<double>(kernel, 100, random);
+        const auto states_on = [&](Processor processor) {
+            std::vector<LinkStates> states(elements.groups.links.size());
+            heml_states_for(processor)(kernel.law, kernel.inversion_threshold, elements.groups,
+                                       elements.positions.data(), states.data());
+            return states;
+        };
+        const auto expected = states_on(Processor::plain);
+        for (const Processor processor : processors_at_hand()) {
+            const auto states = states_on(processor);
+            EXPECT_EQ(
+                std::memcmp(states.data(), expected.data(), states.size() * sizeof(LinkStates)), 0)
+                << static_cast<int>(processor);
+        }
+    });
+}
+
 // Over strained, flattened and inverted states.
 TEST(HemlLanes, HaveTheEnergiesAndVolumesOfTheReference) {
     test::Random random(11);
