@@ -43,7 +43,7 @@ class CutSurface {
     /// swept: what is decided at folds would depend on the steps.
     virtual bool has_folds() const { return false; }
     /// Normal, of unit length, of a surface with folds where it is no farther from the point than
-    /// `distance`, m; nothing if it is.
+    /// `distance`, m, and its border is; nothing else.
     virtual std::optional<Vec3> normal_near(const Vec3&, double /*distance*/) const {
         return std::nullopt;
     }

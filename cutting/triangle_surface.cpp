@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <limits>
 #include <unsupported/Eigen/BVH>
+#include <utility>
 
 #include "cutting/shifted_sign.h"
 
@@ -67,6 +69,18 @@ struct AnyInBox {
     }
 };
 
+struct AnyWithin {
+    const Vec3& x;
+    double square;
+    Box box;
+    bool found = false;
+    bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
+    bool intersectObject(const Triangle& t) {
+        found = squared_distance(x, t) <= square;
+        return found;
+    }
+};
+
 struct NearestWithin {
     const Vec3& x;
     double square;
@@ -75,7 +89,7 @@ struct NearestWithin {
     bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
     bool intersectObject(const Triangle& t) {
         const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]);
-        if (across.isZero(0.0)) return false;
+        if (across.isZero(0.0)) return false;  // it cuts nothing
         if (const double found = squared_distance(x, t); found <= square) {
             square = found;
             normal = across.normalized();
@@ -116,28 +130,63 @@ struct DistanceFrom {
     double minimumOnObject(const Triangle& t) const { return squared_distance(x, t); }
 };
 
+using TriangleTree = Eigen::KdBVH<double, 3, Triangle>;
+
+void fill(TriangleTree& tree, const std::vector<Triangle>& triangles) {
+    std::vector<Box> boxes;
+    std::ranges::transform(triangles, std::back_inserter(boxes), box_of);
+    if (!triangles.empty())
+        tree.init(triangles.begin(), triangles.end(), boxes.begin(), boxes.end());
+}
+
+/// Edges of an odd number of triangles, as triangles without area.
+std::vector<Triangle> border_of(const std::vector<Triangle>& triangles) {
+    const auto is_before = [](const Vec3& a, const Vec3& b) {
+        return std::ranges::lexicographical_compare(a, b);
+    };
+    using Segment = std::pair<Vec3, Vec3>;
+    std::vector<Segment> edges;
+    for (const Triangle& t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+            edges.push_back(is_before(b, a) ? Segment{b, a} : Segment{a, b});
+        }
+    std::ranges::sort(edges, [&](const Segment& s, const Segment& t) {
+        return s.first == t.first ? is_before(s.second, t.second) : is_before(s.first, t.first);
+    });
+    std::vector<Triangle> border;
+    for (std::size_t begin = 0; begin < edges.size();) {
+        std::size_t end = begin;
+        while (end < edges.size() && edges[end] == edges[begin]) ++end;
+        if ((end - begin) % 2 == 1)
+            border.push_back({edges[begin].first, edges[begin].second, edges[begin].second});
+        begin = end;
+    }
+    return border;
+}
+
 }  // namespace
 
 struct TriangleSurface::Tree {
-    Eigen::KdBVH<double, 3, Triangle> bvh;
-    bool is_empty = true;
+    TriangleTree bvh, border;
+    bool is_empty = true, has_border = false;
 };
 
 TriangleSurface::TriangleSurface(const topology::SurfaceData& surface)
     : tree_(std::make_unique<Tree>()) {
     std::vector<Triangle> triangles;
-    std::vector<Box> boxes;
     for (const auto& corners : surface.triangles) {
         const auto at = [&](std::size_t k) {
             return surface.points[static_cast<std::size_t>(corners[k])];
         };
         triangles.push_back({at(0), at(1), at(2)});
-        boxes.push_back(box_of(triangles.back()));
     }
     identity_ = identity_of(triangles);
     tree_->is_empty = triangles.empty();
-    if (!triangles.empty())
-        tree_->bvh.init(triangles.begin(), triangles.end(), boxes.begin(), boxes.end());
+    fill(tree_->bvh, triangles);
+    const std::vector<Triangle> border = border_of(triangles);
+    tree_->has_border = !border.empty();
+    fill(tree_->border, border);
 }
 
 TriangleSurface::~TriangleSurface() = default;
@@ -161,7 +210,13 @@ void TriangleSurface::append_crossings(const MovingPoint& a, const MovingPoint& 
 std::optional<Vec3> TriangleSurface::normal_near(const Vec3& x, double distance) const {
     if (tree_->is_empty) return std::nullopt;
     const Vec3 reach = Vec3::Constant(distance);
-    NearestWithin query{x, distance * distance, Box(x - reach, x + reach)};
+    const Box box(x - reach, x + reach);
+    if (tree_->has_border) {
+        AnyWithin is_at_border{x, distance * distance, box};
+        Eigen::BVIntersect(tree_->border, is_at_border);
+        if (is_at_border.found) return std::nullopt;
+    }
+    NearestWithin query{x, distance * distance, box};
     Eigen::BVIntersect(tree_->bvh, query);
     return query.normal.isZero(0.0) ? std::nullopt : std::optional(query.normal);
 }

@@ -33,7 +33,7 @@ concept HasLanes = requires {
 
 /// One whose fast twin, in double precision, also has their energies, volumes and stresses.
 template <class Kernel>
-concept HasLanesOfEnergy = HasLanes<Kernel> &&
+concept HasLanesOfResults = HasLanes<Kernel> &&
     requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
     lanes.elastic_energy(kernel, x);
     lanes.min_volume_ratio(x);
@@ -150,7 +150,7 @@ class KernelBlock final : public ElementBlock {
 
     Sum elastic_energy(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
-        if constexpr (HasLanesOfEnergy<Kernel>) {
+        if constexpr (HasLanesOfResults<Kernel>) {
             const LocalVector* x = local_positions(positions).data();
             const Sum sum = lanes_in_doubles(
                 [&](const auto& lanes) { return lanes.elastic_energy(kernel_, x); });
@@ -179,7 +179,7 @@ class KernelBlock final : public ElementBlock {
 
     double min_volume_ratio(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
-        if constexpr (HasLanesOfEnergy<Kernel>) {
+        if constexpr (HasLanesOfResults<Kernel>) {
             const LocalVector* x = local_positions(positions).data();
             return lanes_in_doubles([&](const auto& lanes) { return lanes.min_volume_ratio(x); });
         }
@@ -197,7 +197,7 @@ class KernelBlock final : public ElementBlock {
     void results(std::span<const Vec3> positions, const ViscousHistory& history,
                  std::span<ElementResult> results) const override {
         assert(results.size() == elements_.size());
-        if constexpr (HasLanesOfEnergy<Kernel> && !HasHistory<Kernel>) {
+        if constexpr (HasLanesOfResults<Kernel> && !HasHistory<Kernel>) {
             for (std::size_t s = 0; s < elements_.size(); ++s)
                 results[s].volume = row(s).rest.volume;
             const LocalVector* x = local_positions(positions).data();

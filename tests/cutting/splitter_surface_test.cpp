@@ -18,6 +18,7 @@ namespace incise::cutting {
 namespace {
 
 using test::Random;
+using topology::ElementId;
 using topology::Mesh;
 using topology::NodeId;
 using topology::SurfaceData;
@@ -204,6 +205,63 @@ TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfATurnedOrStrainedMeshFreesAllTh
                                 std::min(box.volume(), 1.0 - box.volume()), 1e-12);
                     EXPECT_TRUE(body.cut(TriangleSurface(data)).changes.is_empty());
                 }
+}
+
+/// The faces of a tetrahedron of the mesh, or so many of them.
+SurfaceData faces_of(const Mesh& mesh, ElementId e, std::size_t num_faces) {
+    SurfaceData data;
+    for (std::size_t f = 0; f < num_faces; ++f) {
+        for (int p = 0; p < 3; ++p)
+            data.points.push_back(
+                mesh.rest_position(mesh.face_corner({e, static_cast<std::int32_t>(f)}, p)));
+        const auto first = static_cast<std::int64_t>(3 * f);
+        data.triangles.push_back({first, first + 1, first + 2});
+    }
+    return data;
+}
+
+// No edge need be crossed then, and all nodes of what is inside are on the surface.
+TEST(SplitAlongSurface, FacesOfATetrahedronFreeItIfTheyAreAllOfThem) {
+    for (const double jitter : {0.0, 0.2}) {
+        const auto data = test::jittered_cube(3, jitter, 1);
+        const Mesh mesh = SplitBody(data).mesh;
+        for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+            for (const std::size_t num_faces : {3u, 4u}) {
+                SCOPED_TRACE(testing::Message() << num_faces << " faces of element " << i);
+                const ElementId e(i);
+                SplitBody body(data);
+                const Split done =
+                    body.cut(TriangleSurface(faces_of(mesh, e, num_faces)), {0.0, {}});
+                EXPECT_TRUE(done.changes.elements_added.empty());
+                EXPECT_LE(done.report.faces_opened, num_faces);
+                const auto volumes = piece_volumes(body.mesh);
+                bool is_inside = true;
+                for (int f = 0; f < 4; ++f) is_inside &= mesh.neighbor({e, f}).is_valid();
+                if (num_faces == 4 || is_inside) {
+                    EXPECT_EQ(volumes.size(), num_faces == 4 ? 2u : 1u);
+                }
+            }
+    }
+}
+
+// All of its sides but one are in faces of the mesh, and that one is nearer than an edge to the
+// opposite side: passages of either in edges at nodes of the other are not to be forgotten.
+TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
+    for (const int across : {0, 1})
+        for (int n = 4; n <= 6; ++n)
+            for (int width = 1; width <= n - 2; ++width) {
+                SCOPED_TRACE(testing::Message() << "thin along axis " << across << ", " << width
+                                                << " of " << n << " bricks");
+                Vec3 far = Vec3::Constant(1.0 + width);
+                far[across] = 1.8;
+                Box box(Vec3::Constant(1.0 / n));
+                box.extend(far / n);
+                SplitBody body(test::jittered_cube(n, 0.0, 0));
+                body.cut(TriangleSurface(box_surface(box)), {0.0, {}});
+                const auto volumes = piece_volumes(body.mesh);
+                ASSERT_EQ(volumes.size(), 2u);
+                EXPECT_LE(volumes[1], box.volume() * (1.0 + 1e-12));
+            }
 }
 
 // What snapping takes away at folds is little beside what chords of elements do: 0.90 of the boxes
