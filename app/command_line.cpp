@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/cut_tools.h"
+#include "app/help_formatter.h"
 #include "app/verbs.h"
 #include "io/mesh_writer.h"
 #include "io/number_format.h"
@@ -19,25 +20,6 @@ namespace incise::app {
 namespace {
 
 using Action = std::function<int()>;
-
-/// Breaks descriptions of options into lines that fit beside their names.
-class HelpFormatter final : public CLI::Formatter {
-  public:
-    std::string make_option_desc(const CLI::Option* option) const override {
-        constexpr std::size_t line_length = 100;
-        const std::size_t width = line_length - get_column_width();
-        std::string text = option->get_description();
-        std::size_t line = 0, blank = std::string::npos;
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            if (text[i] == '\n') line = i + 1;
-            if (text[i] == ' ') blank = i;
-            if (i - line < width || blank == std::string::npos || blank < line) continue;
-            text[blank] = '\n';
-            line = blank + 1;
-        }
-        return text;
-    }
-};
 
 constexpr std::string_view verbs[] = {"run",  "check",     "info",   "cut",  "convert",
                                       "mesh", "materials", "render", "bench"};
@@ -109,7 +91,9 @@ void declare_bench(CLI::App& app, Action& action) {
         ->type_name("FILE");
     verb->footer(
         "Makes its own meshes and takes some minutes. For figures that mean something let nothing\n"
-        "else run meanwhile; ratios of figures of one run hold best.");
+        "else run meanwhile; ratios of figures of one run hold best.\n"
+        "\n"
+        "Example: incise bench --json machine.json");
     verb->callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

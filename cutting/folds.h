@@ -25,7 +25,7 @@ bool is_same_sheet(std::span<const Scar> scars, const Scar& passage, double leng
 bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPoint, 4>& corners,
                             const MovingPoint& corner);
 
-/// A node that lies on a surface with folds, but for rounding.
+/// A node that lies on a surface with folds, but for rounding, and not at its border.
 struct NodeOnSurface {
     NodeId node;
     Vec3 normal;   ///< of the surface there, of unit length

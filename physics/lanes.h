@@ -404,7 +404,8 @@ template <class Number>
 template <class Group>
 class FetchAhead {
   public:
-    /// @param next  groups of the loop after this; may be empty
+    /// @param next  groups of the loop after this; may be empty, and what lies behind `groups` is
+    ///              fetched in vain
     FetchAhead(std::span<const Group> groups, std::span<const std::byte> next)
         : size_(groups.size()),
           groups_(address(groups.data())),

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <iostream>
+#include <memory>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
+#include "app/help_formatter.h"
 #include "io/number_text.h"
 
 namespace incise::render {
@@ -47,6 +49,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
         "Pictures of a finished run, drawn off screen.\n"
         "Without --frame and --all: the last frame. The paths written go to stdout.",
         "incise-render");
+    app.formatter(std::make_shared<incise::app::HelpFormatter>());
     app.set_version_flag("--version", "incise-render " INCISE_VERSION);
 
     std::string input, out;
