@@ -12,7 +12,7 @@ namespace {
 /// Cosine of the angle from which on a bend is a fold: 18 degrees.
 constexpr double sharp = 0.95;
 /// Sheets whose planes are this share of an edge apart are two, even if they are parallel.
-constexpr double apart = 0.5;
+constexpr double apart = 0.2;
 
 }  // namespace
 

@@ -247,21 +247,22 @@ TEST(SplitAlongSurface, FacesOfATetrahedronFreeItIfTheyAreAllOfThem) {
 // All of its sides but one are in faces of the mesh, and that one is nearer than an edge to the
 // opposite side: passages of either in edges at nodes of the other are not to be forgotten.
 TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
-    for (const int across : {0, 1})
-        for (int n = 4; n <= 6; ++n)
-            for (int width = 1; width <= n - 2; ++width) {
-                SCOPED_TRACE(testing::Message() << "thin along axis " << across << ", " << width
-                                                << " of " << n << " bricks");
-                Vec3 far = Vec3::Constant(1.0 + width);
-                far[across] = 1.8;
-                Box box(Vec3::Constant(1.0 / n));
-                box.extend(far / n);
-                SplitBody body(test::jittered_cube(n, 0.0, 0));
-                body.cut(TriangleSurface(box_surface(box)), {0.0, {}});
-                const auto volumes = piece_volumes(body.mesh);
-                ASSERT_EQ(volumes.size(), 2u);
-                EXPECT_LE(volumes[1], box.volume() * (1.0 + 1e-12));
-            }
+    for (const double thickness : {0.4, 0.5, 0.6, 0.7, 0.8})
+        for (const int across : {0, 1, 2})
+            for (int n = 4; n <= 6; ++n)
+                for (int width = 1; width <= n - 2; ++width) {
+                    SCOPED_TRACE(testing::Message() << thickness << " along axis " << across << ", "
+                                                    << width << " of " << n << " bricks");
+                    Vec3 far = Vec3::Constant(1.0 + width);
+                    far[across] = 1.0 + thickness;
+                    Box box(Vec3::Constant(1.0 / n));
+                    box.extend(far / n);
+                    SplitBody body(test::jittered_cube(n, 0.0, 0));
+                    body.cut(TriangleSurface(box_surface(box)), {0.0, {}});
+                    const auto volumes = piece_volumes(body.mesh);
+                    ASSERT_EQ(volumes.size(), 2u);
+                    EXPECT_LE(volumes[1], box.volume() * (1.0 + 1e-12));
+                }
 }
 
 // What snapping takes away at folds is little beside what chords of elements do: 0.90 of the boxes
