@@ -236,9 +236,11 @@ bool Crumbs::may_hang(const std::vector<ElementId>& piece) const {
 
 Parting parting(const Mesh& mesh, const CutFront& front, const Scars& scars,
                 const std::vector<ElementId>& touched, const PlaceOnCut& place_on_cut,
+                const std::function<bool(FaceId)>& is_reached,
                 const std::optional<Course>& course) {
     const Sides sides(mesh, front, touched, place_on_cut);
     Parting result{sides.parted_faces(), {}, {}};
+    if (is_reached) std::erase_if(result.faces, [&](FaceId f) { return !is_reached(f); });
     const auto is_settled_face = [&](FaceId f) { return is_settled(mesh, front, f); };
     if (!course) {
         std::erase_if(result.faces, is_settled_face);

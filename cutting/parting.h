@@ -40,9 +40,11 @@ struct Course {
 ///
 /// @param touched  the elements to look at: all that the edit has changed, and any besides
 /// @param place_on_cut  see Sides
+/// @param is_reached  whether a face that parts the two sides is to open at all; empty: all are
 /// @param course  nothing if there are no crumbs: an exact cut leaves none
 Parting parting(const topology::Mesh& mesh, const CutFront& front, const Scars& scars,
                 const std::vector<topology::ElementId>& touched, const PlaceOnCut& place_on_cut,
+                const std::function<bool(topology::FaceId)>& is_reached,
                 const std::optional<Course>& course);
 
 }  // namespace incise::cutting

@@ -14,6 +14,7 @@
 
 #include "cutting/crossing_counts.h"
 #include "cutting/cut_border.h"
+#include "cutting/cut_end.h"
 #include "cutting/edge_list.h"
 #include "cutting/fitting_place.h"
 #include "cutting/folds.h"
@@ -46,6 +47,10 @@ constexpr double share_always_snapped = 1.0 / 3.0;
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
 
+/// How much farther than out of the elements that it is in a blade is taken to go on, so that
+/// rounding does not decide.
+constexpr double beyond = 1.001;
+
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
 
@@ -63,7 +68,8 @@ const Passage& first_of(const Passages& passages) {
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting)
+             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting,
+             const BladeEnd* blade_end = nullptr)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
@@ -74,7 +80,9 @@ class Splitter {
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
           num_old_nodes_(mesh.node_capacity()),
-          near_nodes_(mesh, {snap_, farthest_}) {}
+          near_nodes_(mesh, {snap_, farthest_}) {
+        if (blade_end) end_.emplace(mesh, *blade_end, [&](NodeId n) { return point(n)[1]; });
+    }
 
     Split run() {
         const bool begins = front_.is_empty();
@@ -87,6 +95,7 @@ class Splitter {
         edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
         put_on_lying_nodes();
+        divide_at_end();
         part();
         Split result{edit_->commit(), report_};
         front_.follow(result.changes, true);
@@ -155,6 +164,15 @@ class Splitter {
     void divide_next();
     double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
     NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
+    struct Division {
+        NodeId middle;
+        std::vector<NodeId> ring;  // of the other nodes of the elements round the edge
+        const std::vector<MeshEdit::DividedElement>& elements;
+    };
+    Division bisect(const Edge& edge, ElementId element, double place);
+    void place_halves(const Edge& edge, const Division& division, double reach);
+    void divide_at_end();
+    NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
     void part();
     std::optional<CutFront::Place> place_at_fold(ElementId e) const;
     void open(const CutFront& front, const Parting& parting);
@@ -182,6 +200,7 @@ class Splitter {
     const std::size_t num_old_nodes_;
     NearNodes near_nodes_;
     std::optional<MeshEdit> edit_;  // from when there is something to do
+    std::optional<CutEnd> end_;     // where the surface goes on ahead of the cut
 
     std::vector<MovingPoint> new_points_;
     double now_ = 0.0;                                  // the time of what is being done
@@ -275,21 +294,24 @@ void Splitter::part() {
                          [&](ElementId e) { return mesh_.is_alive(e); });
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto parting_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut, bool snaps,
+    const auto parting_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut,
+                                const std::function<bool(FaceId)>& is_reached, bool snaps,
                                 const Course& course) {
-        return parting(mesh_, front, scars_, touched_, place_on_cut,
+        return parting(mesh_, front, scars_, touched_, place_on_cut, is_reached,
                        snaps ? std::optional(course) : std::nullopt);
     };
     const PlaceOnCut place_at_fold = [&](ElementId e) { return this->place_at_fold(e); };
-    // A surface at rest does not go on: all is decided at once.
-    Parting own =
-        parting_of(front_, surface_.has_folds() ? place_at_fold : PlaceOnCut(), options_.snap > 0.0,
-                   {[&](FaceId f) { return time_of_parting(f); },
-                    [&](FaceId f) { return surface_.ends_inside(points(f)).value_or(false); }});
+    const auto is_behind_end = [&](FaceId f) { return !end_ || end_->is_behind(f); };
+    // A surface at rest does not go on, nor does a blade at its end: all is decided at once.
+    Parting own = parting_of(
+        front_, surface_.has_folds() ? place_at_fold : PlaceOnCut(), is_behind_end,
+        options_.snap > 0.0,
+        {[&](FaceId f) { return time_of_parting(f); },
+         [&](FaceId f) { return !end_ && surface_.ends_inside(points(f)).value_or(false); }});
     std::vector<Parting> others;
     for (const RestingBlade& blade : resting_)
         others.push_back(
-            parting_of(blade.front, {}, blade.snaps,
+            parting_of(blade.front, {}, {}, blade.snaps,
                        {[](FaceId) { return 0.0; },
                         [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
     open(front_, own);
@@ -503,9 +525,7 @@ double Splitter::place_to_divide(const Edge& edge, ElementId element, const Pass
                          {options_.uncut, least_step_share(options_.snap), farthest_});
 }
 
-/// Returns the new node.
-NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Passage& passage) {
-    const double reach = rest_length(edge);
+Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double t) {
     const MovingPoint from = point(edge.a), to = point(edge.b);
     const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
     const NodeId middle = halves.node;
@@ -529,11 +549,30 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
     const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
     scars_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
+    return {middle, std::move(ring), halves.elements};
+}
+
+/// On this cut and on those of the other blades, once its crossings of the new edges are counted.
+void Splitter::place_halves(const Edge& edge, const Division& division, double reach) {
+    const auto& [middle, ring, elements] = division;
+    front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
+    for (const RestingBlade& blade : resting_) {
+        place_for_resting(blade, edge, middle, ring, reach, scars_,
+                          [&](NodeId n) { return point(n); });
+        blade.front.place_halves(mesh_, edge.a, edge.b, middle, elements);
+    }
+}
+
+/// Returns the new node.
+NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Passage& passage) {
+    const double reach = rest_length(edge);
+    const Division division = bisect(edge, element, t);
+    const auto& [middle, ring, elements] = division;
     put_on(middle, t == passage.place, reach);
 
     const auto holder = [&](NodeId other) {
         ElementId found;
-        for (const auto& [kept, added] : halves.elements)
+        for (const auto& [kept, added] : division.elements)
             for (const ElementId e : {kept, added})
                 if (mesh_.corner_of(e, other) >= 0) found = e;
         return found;
@@ -556,12 +595,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         place(edge.b, edge.a, to_a);
     else
         place(edge.a, edge.b, to_b);
-    front_.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
-    for (const RestingBlade& blade : resting_) {
-        place_for_resting(blade, edge, middle, ring, reach, scars_,
-                          [&](NodeId n) { return point(n); });
-        blade.front.place_halves(mesh_, edge.a, edge.b, middle, halves.elements);
-    }
+    place_halves(edge, division, reach);
     // What the blade did before, it did to the edge that was there then: in smaller steps these
     // would not be asked for it.
     const auto take = [&](NodeId other, Passages&& passed) {
@@ -574,6 +608,42 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
     return middle;
 }
 
+/// The faces on the cut, where they run on ahead of the edge at which it ends.
+void Splitter::divide_at_end() {
+    if (!end_) return;
+    now_ = 1.0;
+    const PlaceOnCut unknown;
+    const auto faces = Sides(mesh_, front_, touched_, unknown).parted_faces();
+    for (const auto& [edge, element, passage] : end_->crossed_edges(faces, snap_, farthest_))
+        receive(edge, element, {passage});
+    while (!queue_.empty()) {
+        const Edge edge = queue_.top().edge;
+        queue_.pop();
+        const auto [element, passages] = std::move(pending_.extract(edge).mapped());
+        if (end_->is_at(edge.a) || end_->is_at(edge.b)) continue;
+        const Passage& passage = passages.front();
+        const double t = place_to_divide(edge, element, passage);
+        if (t > 0.0)
+            end_->put_at(divide_on_cut(edge, element, t));
+        else
+            end_->put_at(passage.from_a < passage.from_b ? edge.a : edge.b);
+    }
+}
+
+/// Both ends are on the cut: so is the new node, on the side of one of them.
+NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
+    const double reach = rest_length(edge);
+    const Division division = bisect(edge, element, t);
+    const auto& [middle, ring, elements] = division;
+    put_on(middle, !front_.is_near(edge.a) && !front_.is_near(edge.b), reach);
+    place_on_side(
+        front_, edge.a, edge.b, middle, ring,
+        [](NodeId, NodeId, NodeId) { return std::optional(false); },
+        [](std::size_t) { return false; });
+    place_halves(edge, division, reach);
+    return middle;
+}
+
 }  // namespace
 
 double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
@@ -581,6 +651,17 @@ double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
     return Splitter(mesh, tissue, surface, front, options, scars, resting).run();
+}
+
+Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
+             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
+    if (front.is_empty()) return {};
+    const double way = beyond * way_out(tissue, blade);
+    Split result =
+        Splitter(mesh, tissue, blade.continuation(way), front, options, scars, resting, &blade)
+            .run();
+    front = {};
+    return result;
 }
 
 }  // namespace incise::cutting

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "cutting/blade_end.h"
 #include "cutting/cut_front.h"
 #include "cutting/cut_surface.h"
 #include "cutting/resting_blade.h"
@@ -70,5 +71,16 @@ struct Split {
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
             CutFront& front, const SplitOptions& options, Scars& scars,
             std::span<RestingBlade> resting = {});
+
+/// Ends the cut of a blade whose way has ended, at its edge: elements that the edge is in are
+/// divided along the continuation of its way, the faces on the cut at the edge, to the same limits,
+/// and those behind it open. Small pieces that have waited come off or stay. The front is empty
+/// afterwards.
+///
+/// @param tissue  at rest: before and after are the same
+/// Else as split(). Nothing happens if the front is empty.
+Split finish(topology::Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade,
+             CutFront& front, const SplitOptions& options, Scars& scars,
+             std::span<RestingBlade> resting = {});
 
 }  // namespace incise::cutting

@@ -133,6 +133,17 @@ topology::SurfaceData swept_surface(const SweepCut& sweep) {
     return surface;
 }
 
+/// Its direction is that of the last stretch in which it moved.
+cutting::BladeEnd end_of(const SweepCut& sweep) {
+    const auto& last = sweep.poses.back();
+    std::vector<Vec3> motion(last.size(), Vec3::Zero());
+    const auto before = std::find_if(sweep.poses.rbegin(), sweep.poses.rend(),
+                                     [&](const auto& pose) { return pose != last; });
+    if (before != sweep.poses.rend())
+        for (std::size_t i = 0; i < last.size(); ++i) motion[i] = last[i] - (*before)[i];
+    return {last, motion};
+}
+
 /// Scaled by a power of two, which changes no sign and no plane, so that squares neither overflow
 /// nor vanish.
 Vec3 well_scaled(const Vec3& normal) {
@@ -250,6 +261,7 @@ class Cutter {
                 open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
             }
         }
+        if (!front.is_empty()) finish(end_of(sweep), front);
         if (counts_.faces_opened == 0) return;
         const cutting::TriangleSurface surface(swept_surface(sweep));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
@@ -275,13 +287,25 @@ class Cutter {
     }
 
     void split(const cutting::CutSurface& surface, CutFront& front) {
+        carry_out([&](const TissueMotion& tissue) {
+            return cutting::split(mesh_, tissue, surface, front, split_options_, scars_);
+        });
+    }
+
+    void finish(const cutting::BladeEnd& blade, CutFront& front) {
+        carry_out([&](const TissueMotion& tissue) {
+            return cutting::finish(mesh_, tissue, blade, front, split_options_, scars_);
+        });
+    }
+
+    /// edit(tissue) returns a cutting::Split.
+    template <class Edit>
+    void carry_out(Edit edit) {
         // A copy: the split adds positions to those of the mesh.
         const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
-        const TissueMotion tissue{mesh_, rest, rest, &boxes_};
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
-        const cutting::Split result =
-            cutting::split(mesh_, tissue, surface, front, split_options_, scars_);
+        const cutting::Split result = edit(TissueMotion{mesh_, rest, rest, &boxes_});
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;

@@ -192,21 +192,32 @@ void Simulation::warn_of_lost_elements() {
 
 void Simulation::cut(Tool& tool, double from, double to) {
     if (!tool.is_present(from, to)) return;
-    const cutting::TissueMotion tissue{mesh_, previous_positions_, model_.positions(), &boxes_};
     std::vector<cutting::RestingBlade> resting;
     for (Tool& other : tools_)
         if (&other != &tool)
             if (const auto blade = other.resting(from, to, &other < &tool))
                 resting.push_back(*blade);
-    const cutting::Split done = [&] {
+    const auto now = [&] { return model_.positions(); };
+    const auto carry_out = [&](auto edit) -> cutting::Split {
         try {
-            return tool.cut(mesh_, tissue, scars_, resting, from, to);
+            return edit();
         } catch (const InputError& error) {
             std::ostringstream text;
             text << "tool '" << tool.name() << "', at t = " << to << " s: " << error.what();
             throw InputError(text.str());
         }
-    }();
+    };
+    follow(tool, carry_out([&] {
+               return tool.cut(mesh_, {mesh_, previous_positions_, now(), &boxes_}, scars_, resting,
+                               from, to);
+           }));
+    if (tool.is_to_finish(from, to))
+        follow(tool, carry_out([&] {
+                   return tool.finish(mesh_, {mesh_, now(), now(), &boxes_}, scars_, resting);
+               }));
+}
+
+void Simulation::follow(Tool& tool, const cutting::Split& done) {
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     edits_(changes);

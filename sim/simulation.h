@@ -85,6 +85,7 @@ class Simulation {
     Interval next_step() const;
     double step_limit() const;
     void cut(Tool& tool, double from, double to);
+    void follow(Tool& tool, const cutting::Split& done);
     void warn_of_lost_elements();
     void tell_frame();
     void tell_pause();

@@ -170,6 +170,27 @@ cutting::Split Tool::cut(topology::Mesh& mesh, const cutting::TissueMotion& tiss
         spec_.kind);
 }
 
+bool Tool::is_to_finish(double from, double to) const {
+    return !front_.is_empty() && is_present(from, to) && to >= spec_.path.back().time;
+}
+
+cutting::Split Tool::finish(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
+                            cutting::Scars& scars, std::span<cutting::RestingBlade> resting) {
+    const auto& blade = std::get<Blade>(spec_.kind);
+    const std::vector<Vec3> there = edge_at(blade, spec_.path.back().time);
+    // It may have rested before the end. The way between two keys is curved if it turns: a short
+    // part of it before its end tells the direction.
+    constexpr double part = 1e-3;
+    std::vector<Vec3> motion(there.size(), Vec3::Zero());
+    for (std::size_t key = spec_.path.size() - 1; key > 0; --key) {
+        const double from = spec_.path[key - 1].time, to = spec_.path[key].time;
+        const auto before = edge_at(blade, to - part * (to - from)), after = edge_at(blade, to);
+        for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = after[i] - before[i];
+        if (before != after) break;
+    }
+    return cutting::finish(mesh, tissue, {there, motion}, front_, options_, scars, resting);
+}
+
 std::optional<cutting::RestingBlade> Tool::resting(double from, double to, bool has_moved) {
     if (front_.is_empty()) return std::nullopt;
     const auto edge = edge_at(std::get<Blade>(spec_.kind), has_moved ? to : from);

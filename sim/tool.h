@@ -50,6 +50,12 @@ class Tool {
                        cutting::Scars& scars, std::span<cutting::RestingBlade> resting, double from,
                        double to);
 
+    /// Whether its way ends in the step (from, to], s, and it has cut elements in part.
+    bool is_to_finish(double from, double to) const;
+    /// Then: ends its cut where it is (cutting::finish). The tissue is at rest.
+    cutting::Split finish(topology::Mesh& mesh, const cutting::TissueMotion& tissue,
+                          cutting::Scars& scars, std::span<cutting::RestingBlade> resting);
+
     /// Of a blade that has cut elements in part: what it is while another tool cuts in [from, to],
     /// before or after its own turn in that step. Refers to its front.
     std::optional<cutting::RestingBlade> resting(double from, double to, bool has_moved);

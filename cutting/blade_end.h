@@ -1,0 +1,35 @@
+// Where the way of a blade ends inside the body.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "cutting/swept_edge.h"
+#include "topology/types.h"
+
+namespace incise::cutting {
+
+/// The edge of a blade where it stops, and the direction in which it was moving.
+class BladeEnd {
+  public:
+    /// @param edge    a polyline of at least two points, m
+    /// @param motion  of each point, of any length; a point without goes on as its neighbours do
+    BladeEnd(std::vector<Vec3> edge, std::vector<Vec3> motion);
+
+    const std::vector<Vec3>& edge() const { return edge_; }
+
+    /// How far the point is ahead of the edge, m; negative behind it.
+    double distance_ahead(const Vec3& x) const;
+
+    /// What the edge would sweep if it went straight on, each of its points by this distance (m)
+    /// across the edge.
+    SweptEdge continuation(double distance) const;
+
+  private:
+    Vec3 along(std::size_t segment) const;
+
+    std::vector<Vec3> edge_;
+    std::vector<Vec3> ahead_;  // by point: its motion, as long as it takes to get 1 across the edge
+};
+
+}  // namespace incise::cutting

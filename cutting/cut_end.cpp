@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/cut_end.h"
+
+#include <algorithm>
+#include <set>
+
+namespace incise::cutting {
+
+using topology::ElementId;
+using topology::FaceId;
+using topology::NodeId;
+
+std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces, double share,
+                                                       double farthest) {
+    std::vector<CrossedEdge> crossed;
+    std::set<std::pair<NodeId, NodeId>> known;
+    for (const FaceId f : faces)
+        for (int p = 0; p < 3; ++p) {
+            const Edge edge =
+                edge_between(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % 3));
+            if (!known.insert({edge.a, edge.b}).second) continue;
+            const double a = distance_ahead(edge.a), b = distance_ahead(edge.b);
+            if (!(a < 0.0 && b > 0.0) && !(a > 0.0 && b < 0.0)) continue;
+            const Vec3 from = position_(edge.a), to = position_(edge.b);
+            const double length = (to - from).norm();
+            const double place = a / (a - b);
+            Passage passage{place,
+                            std::abs(a) / length,
+                            std::abs(b) / length,
+                            1.0,
+                            (1.0 - place) * from + place * to,
+                            Vec3::Zero(),
+                            Vec3::Zero()};
+            crossed.push_back({edge, f.element, passage});
+        }
+    for (const auto& [edge, element, passage] : crossed) {
+        const double length = (mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)).norm();
+        const bool is_a_nearer = passage.from_a <= passage.from_b;
+        const double from = std::min(passage.from_a, passage.from_b);
+        if (from < share && from * length <= farthest) put_at(is_a_nearer ? edge.a : edge.b);
+    }
+    std::erase_if(crossed,
+                  [&](const CrossedEdge& c) { return is_at(c.edge.a) || is_at(c.edge.b); });
+    return crossed;
+}
+
+bool CutEnd::is_behind(FaceId f) const {
+    int num_at = 0;
+    double sum = 0.0;
+    for (int p = 0; p < 3; ++p) {
+        const NodeId n = mesh_.face_corner(f, p);
+        const double ahead = distance_ahead(n);
+        sum += ahead;
+        if (is_at(n))
+            ++num_at;
+        else if (ahead > 0.0)
+            return false;
+    }
+    return num_at < 3 || sum <= 0.0;
+}
+
+double way_out(const TissueMotion& tissue, const BladeEnd& blade) {
+    const SweptEdge edge(blade.edge(), blade.edge());
+    double farthest = 0.0;
+    tissue.for_each_near(
+        [&](const Box& box) { return edge.may_meet(box); },
+        [&](ElementId e) {
+            const topology::Mesh& mesh = tissue.mesh;
+            if (mesh.kind(e) != topology::CellKind::tetrahedron) return;
+            bool has_edge = false;
+            for (int f = 0; f < 4 && !has_edge; ++f) {
+                std::array<MovingPoint, 3> points;
+                for (int p = 0; p < 3; ++p) {
+                    const Vec3& x = tissue.after[mesh.face_corner({e, f}, p).index()];
+                    points[static_cast<std::size_t>(p)] = {x, x};
+                }
+                has_edge = *edge.ends_inside(points);
+            }
+            if (!has_edge) return;
+            for (const NodeId n : mesh.corners(e))
+                farthest = std::max(farthest, blade.distance_ahead(tissue.after[n.index()]));
+        });
+    return farthest;
+}
+
+}  // namespace incise::cutting
