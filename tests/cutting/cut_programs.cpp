@@ -66,6 +66,9 @@ void choose_blade(RandomCut& cut, const Box& box, Random& random) {
     for (int i = 1; i <= num_steps; ++i) {
         Polyline to = edge(-1.0 + (end + 1.0) * i / num_steps);
         cut.stroke.push_back(std::make_unique<SweptEdge>(from, to));
+        std::vector<Vec3> motion;
+        for (std::size_t k = 0; k < to.size(); ++k) motion.push_back(to[k] - from[k]);
+        cut.end.emplace(to, motion);
         from = std::move(to);
     }
     cut.description = "blade of " + std::to_string(num_segments) + " segments in " +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,6 +17,7 @@ struct RandomCut {
     CutKind kind{};
     std::string description;
     Stroke stroke;
+    std::optional<BladeEnd> end;  ///< of a blade
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< of a plane
 };
 

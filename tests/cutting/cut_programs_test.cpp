@@ -99,13 +99,27 @@ class Patient {
             if (!is_at_rest_) deform(0.02);
             cut_and_follow(*surface, front, before);
         }
+        if (!cut.end) return;
+        follow([&] {
+            const auto here = model_.positions();
+            return finish(mesh_, {mesh_, here, here}, *cut.end, front, options_, scars_);
+        });
+        EXPECT_TRUE(front.is_empty());
     }
 
     Split cut_and_follow(const CutSurface& surface, CutFront& front,
                          const std::vector<Vec3>& positions_before) {
+        return follow([&] {
+            return split(mesh_, {mesh_, positions_before, model_.positions()}, surface, front,
+                         options_, scars_);
+        });
+    }
+
+    /// Carries out an edit, which returns what it did.
+    template <class Edit>
+    Split follow(Edit edit) {
         const Balance before(model_, table_);
-        const Split done = split(mesh_, {mesh_, positions_before, model_.positions()}, surface,
-                                 front, options_, scars_);
+        const Split done = edit();
         model_.apply(done.changes);
         if (!done.changes.is_empty()) check(before);
         return done;

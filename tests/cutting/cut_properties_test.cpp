@@ -144,6 +144,7 @@ class Patient {
         CutFront front;
         const Stroke stroke = stroke_of(cut);
         for (const auto& surface : stroke) cut_and_check(*surface, front);
+        if (cut.kind == Kind::blade) finish_and_check(cut, front);
         if (cut.kind != Kind::plane) return;
         expect_parted(mesh_, model_.positions(), plane_of(cut),
                       how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm(), scars_);
@@ -180,14 +181,19 @@ class Patient {
             stroke.push_back(
                 std::make_unique<TriangleSurface>(icosphere(at(cut.places[0]), radius, 1)));
         } else {
-            Polyline from, to;
-            for (const Grid& place : cut.places) {
-                from.push_back(at(place));
-                to.push_back(from.back() + vector(cut.direction).cwiseProduct(box_.sizes()) / 4.0);
-            }
-            stroke = sweep(from, to, cut.size);
+            stroke = sweep(edge_of(cut, 0.0), edge_of(cut, 1.0), cut.size);
         }
         return stroke;
+    }
+
+    Vec3 way_of(const Cut& cut) const {
+        return vector(cut.direction).cwiseProduct(box_.sizes()) / 4.0;
+    }
+    /// Of a blade after this share of its way.
+    Polyline edge_of(const Cut& cut, double share) const {
+        Polyline edge;
+        for (const Grid& place : cut.places) edge.push_back(at(place) + share * way_of(cut));
+        return edge;
     }
 
     void deform(const Deformation& deformation) {
@@ -204,10 +210,25 @@ class Patient {
     }
 
     void cut_and_check(const CutSurface& surface, CutFront& front) {
+        edit_and_check([&](const TissueMotion& tissue) {
+            return split(mesh_, tissue, surface, front, options_, scars_);
+        });
+    }
+
+    void finish_and_check(const Cut& cut, CutFront& front) {
+        const BladeEnd end(edge_of(cut, 1.0), {cut.places.size(), way_of(cut)});
+        edit_and_check([&](const TissueMotion& tissue) {
+            return finish(mesh_, tissue, end, front, options_, scars_);
+        });
+        EXPECT_TRUE(front.is_empty());
+    }
+
+    /// edit(tissue) returns a Split.
+    template <class Edit>
+    void edit_and_check(Edit edit) {
         const Balance before(model_, table_);
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
-        const ChangeSet changes =
-            split(mesh_, {mesh_, still, still}, surface, front, options_, scars_).changes;
+        const ChangeSet changes = edit(TissueMotion{mesh_, still, still}).changes;
         model_.apply(changes);
         if (changes.is_empty()) return;
         done_.push_back(changes);

@@ -33,6 +33,9 @@ class SplitBody {
     /// What the parts of a stroke did, one after the other.
     std::vector<Split> cut(const Stroke& stroke, const SplitOptions& options = {0.0, {}});
 
+    /// Ends the cut of a blade in tissue that is still.
+    Split finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options);
+
     Box box() const;  ///< of the present positions
 
     topology::Mesh mesh;
