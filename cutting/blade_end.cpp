@@ -18,27 +18,28 @@ Vec3 without(const Vec3& v, const Vec3& unit) { return v - v.dot(unit) * unit; }
 
 }  // namespace
 
-BladeEnd::BladeEnd(std::vector<Vec3> edge, std::vector<Vec3> motion)
-    : edge_(std::move(edge)), ahead_(std::move(motion)) {
+BladeEnd::BladeEnd(std::vector<Vec3> edge, const std::vector<Vec3>& motion)
+    : edge_(std::move(edge)), ahead_(edge_.size(), Vec3::Zero()) {
     const std::size_t last = edge_.size() - 1;
     std::vector<double> speeds;  // across the edge
     for (std::size_t i = 0; i <= last; ++i) {
         Vec3 tangent = Vec3::Zero();
         if (i > 0) tangent += along(i - 1);
         if (i < last) tangent += along(i);
-        speeds.push_back(without(ahead_[i], tangent.stableNormalized()).norm());
+        speeds.push_back(without(motion[i], tangent.stableNormalized()).norm());
     }
     const double fastest = *std::max_element(speeds.begin(), speeds.end());
     const auto is_known = [&](std::size_t i) {
-        return speeds[i] > least_share * std::max(fastest, ahead_[i].norm());
+        return i <= last && speeds[i] > least_share * std::max(fastest, motion[i].norm());
     };
-    const std::vector<Vec3> given =
-        std::exchange(ahead_, std::vector<Vec3>(edge_.size(), Vec3::Zero()));
     for (std::size_t i = 0; i <= last; ++i) {
         int count = 0;  // of the nearest points that move: one or two
         for (std::size_t away = 0; away <= last && count == 0; ++away)
-            for (const std::size_t j : std::set{i - away, i + away})
-                if (j <= last && is_known(j)) ahead_[i] += given[j] / speeds[j], ++count;
+            for (const std::size_t j : std::set{i - away, i + away}) {
+                if (!is_known(j)) continue;
+                ahead_[i] += motion[j] / speeds[j];
+                ++count;
+            }
         if (count > 1) ahead_[i] /= count;
     }
 }

@@ -14,7 +14,7 @@ class BladeEnd {
   public:
     /// @param edge    a polyline of at least two points, m
     /// @param motion  of each point, of any length; a point without goes on as its neighbours do
-    BladeEnd(std::vector<Vec3> edge, std::vector<Vec3> motion);
+    BladeEnd(std::vector<Vec3> edge, const std::vector<Vec3>& motion);
 
     const std::vector<Vec3>& edge() const { return edge_; }
 

@@ -10,6 +10,32 @@ using topology::ElementId;
 using topology::FaceId;
 using topology::NodeId;
 
+namespace {
+
+/// Share of an edge up to which a place on it is found where the blade's edge is bent.
+constexpr double rounding_of_places = 1e-9;
+constexpr int max_bisections = 50;
+
+}  // namespace
+
+std::optional<Passage> CutEnd::passage(const Edge& edge) const {
+    const double a = distance_ahead(edge.a), b = distance_ahead(edge.b);
+    if (!(a < 0.0 && b > 0.0) && !(a > 0.0 && b < 0.0)) return std::nullopt;
+    const Vec3 from = position_(edge.a), to = position_(edge.b);
+    const auto at = [&](double place) -> Vec3 { return (1.0 - place) * from + place * to; };
+    const double length = (to - from).norm();
+    double place = a / (a - b);  // it is there, if the blade's edge is straight
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < max_bisections; ++i) {
+        const double ahead = blade_.distance_ahead(at(place));
+        if (std::abs(ahead) <= rounding_of_places * length) break;
+        ((ahead < 0.0) == (a < 0.0) ? low : high) = place;
+        place = 0.5 * (low + high);
+    }
+    return Passage{place,     std::abs(a) / length, std::abs(b) / length, 1.0,
+                   at(place), Vec3::Zero(),         Vec3::Zero()};
+}
+
 std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces, double share,
                                                        double farthest) {
     std::vector<CrossedEdge> crossed;
@@ -19,28 +45,14 @@ std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> f
             const Edge edge =
                 edge_between(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % 3));
             if (!known.insert({edge.a, edge.b}).second) continue;
-            const double a = distance_ahead(edge.a), b = distance_ahead(edge.b);
-            if (!(a < 0.0 && b > 0.0) && !(a > 0.0 && b < 0.0)) continue;
-            const Vec3 from = position_(edge.a), to = position_(edge.b);
-            const double length = (to - from).norm();
-            const double place = a / (a - b);
-            Passage passage{place,
-                            std::abs(a) / length,
-                            std::abs(b) / length,
-                            1.0,
-                            (1.0 - place) * from + place * to,
-                            Vec3::Zero(),
-                            Vec3::Zero()};
-            crossed.push_back({edge, f.element, passage});
+            if (const auto there = passage(edge)) crossed.push_back({edge, f.element, *there});
         }
     for (const auto& [edge, element, passage] : crossed) {
         const double length = (mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)).norm();
-        const bool is_a_nearer = passage.from_a <= passage.from_b;
         const double from = std::min(passage.from_a, passage.from_b);
-        if (from < share && from * length <= farthest) put_at(is_a_nearer ? edge.a : edge.b);
+        if (from < share && from * length <= farthest)
+            put_at(passage.from_a <= passage.from_b ? edge.a : edge.b);
     }
-    std::erase_if(crossed,
-                  [&](const CrossedEdge& c) { return is_at(c.edge.a) || is_at(c.edge.b); });
     return crossed;
 }
 

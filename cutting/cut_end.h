@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "cutting/blade_end.h"
@@ -22,14 +24,14 @@ class CutEnd {
     CutEnd(const topology::Mesh& mesh, const BladeEnd& blade, PositionOf position)
         : mesh_(mesh), blade_(blade), position_(std::move(position)) {}
 
-    /// An edge of a face, from behind the blade's edge to ahead of it, and where it passes by.
+    /// An edge of a face, from behind the blade's edge to ahead of it, and where it crosses that.
     struct CrossedEdge {
         Edge edge;
         topology::ElementId element;  ///< one of those that have it
         Passage passage;
     };
     /// Of faces on the cut, each once. Nodes nearer to the blade's edge than a share of an edge
-    /// that passes it, and than `farthest`, m, count as at the blade's edge from now on.
+    /// that crosses it, and than `farthest`, m at rest, count as at the blade's edge from now on.
     std::vector<CrossedEdge> crossed_edges(std::span<const topology::FaceId> faces, double share,
                                            double farthest);
 
@@ -42,6 +44,7 @@ class CutEnd {
     bool is_behind(topology::FaceId f) const;
 
   private:
+    std::optional<Passage> passage(const Edge& edge) const;
     double distance_ahead(topology::NodeId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;

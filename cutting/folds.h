@@ -32,9 +32,9 @@ struct NodeOnSurface {
     double reach;  ///< of its edges that were looked at the longest, m, at rest
 };
 
-/// Those of the nodes of the edges, in ascending order. Crossed edges do not tell of them all:
-/// where the inside of a fold has no edge of the mesh, the surface crosses none of its node's if
-/// rounding has put that outside.
+/// Those of the nodes of the edges, in ascending order of nodes. Crossed edges do not tell of them
+/// all: where the inside of a fold has no edge of the mesh, the surface crosses none of its node's
+/// if rounding has put that outside.
 /// @param edges     those of the elements near the surface, in any order
 /// @param rounding  share of the longest edge at a node: as far away it is on the surface
 /// Cost: a search of the surface for each node.
