@@ -298,27 +298,33 @@ def opening(run):
 
 
 def draw_notch(incise, folder):
-    print("\nnotch: bricks along x; force and opening over the converged ones\n")
+    print("\nnotch: bricks along x; force and opening over the converged ones, snapped and exact\n")
     converged = load("notch_converged")["rows"][0]
     ours = converged["nh26_tet10"]
     bricks = (5, 9, 13, 17, 25)
-    found = {"force": [], "opening at the side": []}
+    ways = ("snap 0.6", "snap 0")
+    found = {(figure, way): [] for way in ways for figure in ("force", "opening at the side")}
     for n in bricks:
-        run = Run(
-            incise,
-            HERE / "notch.toml",
-            f"mesh.box.cells=[{n}, {(n + 1) // 3}, {n}]",
-            "output.compression=none",
-            "output.fields=[]",
-        )
-        found["force"].append(run.history[-1]["reaction_top_z"] / ours["Fz"] - 1)
-        found["opening at the side"].append(opening(run) / ours["COD_mouth_surface"] - 1)
+        for way in ways:
+            run = Run(
+                incise,
+                HERE / "notch.toml",
+                f"mesh.box.cells=[{n}, {(n + 1) // 3}, {n}]",
+                f"tool.0.snap={way.split()[1]}",
+                "output.compression=none",
+                "output.fields=[]",
+            )
+            found["force", way].append(run.history[-1]["reaction_top_z"] / ours["Fz"] - 1)
+            found["opening at the side", way].append(
+                opening(run) / ours["COD_mouth_surface"] - 1
+            )
         row(str(n), *(f"{100 * values[-1]:+.2f} %" for values in found.values()))
     figure, axes = plt.subplots(figsize=(6.5, 4.4))
-    for (label, values), mark, colour in zip(found.items(), "os", (0, 1)):
+    for ((label, way), values), mark, colour in zip(found.items(), "osos", (0, 1, 0, 1)):
         sizes = [100 / n for n in bricks]
-        look = {"color": COLOURS[colour], "label": label}
-        axes.plot(sizes, [100 * value for value in values], mark + "-", **look)
+        look = {"color": COLOURS[colour], "label": f"{label}, {way}"}
+        line = "-" if way == "snap 0" else ":"
+        axes.plot(sizes, [100 * value for value in values], mark + line, **look)
     fitting = next(b for b in load("notch_p1_exact") if b["a"] == converged["a"])["results"]["nh26"]
     fits = (
         fitting["Fz_top"] / ours["Fz"] - 1,
