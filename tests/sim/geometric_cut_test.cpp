@@ -143,6 +143,26 @@ TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
         }
 }
 
+// Also where the blade rests at the end: the last pose is the one before once more.
+TEST(GeometricCut, OfASweepEndsWhereTheBladeDoes) {
+    for (int seed = 0; seed < num_seeds; ++seed) {
+        SCOPED_TRACE(seed);
+        Mesh mesh = Mesh::build(test::jittered_cube(4, 0.2, static_cast<std::uint64_t>(seed))).mesh;
+        test::Random random(400 + static_cast<std::uint64_t>(seed));
+        const double height = random.uniform(0.3, 0.7), end = random.uniform(0.3, 0.7);
+        SweepCut sweep;
+        for (const double x : {-0.5, 0.2, end, end})
+            sweep.poses.push_back({{x, -1.0, height}, {x, 2.0, height}});
+        const CutTool tool{"sweep", sweep};
+        const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, 0.0});
+        EXPECT_TRUE(topology::validate(mesh).empty());
+        EXPECT_NEAR(report.total.cut_area, end, 1e-6);
+        EXPECT_EQ(report.pieces.size(), 1u);
+        ASSERT_TRUE(report.total.surface_distance);
+        EXPECT_LT(report.total.surface_distance->faces, 1e-7);
+    }
+}
+
 TEST(GeometricCut, NamesTheToolThatFails) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.0, 1)).mesh;
     const CutTool all{"the ball", ShapeRemoval{cutting::Sphere{10.0}, Vec3::Zero()}};

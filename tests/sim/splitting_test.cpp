@@ -220,6 +220,27 @@ path = [
     EXPECT_EQ(simulation.ledger().edits().back().after.components, 2);
 }
 
+// The last key only repeats the one before: the way into the body tells where ahead is.
+TEST(SplittingBlade, CutsUpToWhereItsWayEnds) {
+    const std::string blade = R"(
+[[tool]]
+kind = "blade"
+edge = [[0, -0.1, 0.0473], [0, 0.2, 0.0473]]
+snap = 0
+path = [{ time = 0.02, at = [-0.05, 0, 0] }, { time = 0.06, at = [0.0631, 0, 0] },
+        { time = 0.07, at = [0.0631, 0, 0] }]
+)";
+    // At rest: nothing moves before the cut, nor by it.
+    Simulation simulation(scenario_of(soft_cube + blade + dynamics(0.1)));
+    run(simulation);
+    EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
+    double area = 0.0;
+    for (const EditRecord& edit : simulation.ledger().edits()) area += edit.cut_area;
+    EXPECT_NEAR(area, 0.0631 * 0.1, 1e-8);
+    EXPECT_NEAR(simulation.ledger().edits().back().time, 0.07, 0.01);
+    EXPECT_EQ(simulation.ledger().edits().back().after.components, 1);
+}
+
 TEST(Cut, AlongAPlaneComesAtItsTime) {
     Simulation simulation(scenario_of(soft_cube + dynamics(0.05) + R"(
 [[tool]]
