@@ -7,6 +7,8 @@
 
 namespace incise::cutting {
 
+using topology::NodeId;
+
 namespace {
 
 /// Cosine of the angle from which on a bend is a fold: 18 degrees.
@@ -34,9 +36,9 @@ bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPo
     return crossings.size() % 2 == 1;
 }
 
-std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotion& tissue,
-                                    std::span<const EdgeList::Entry> edges, double rounding) {
-    if (!surface.has_folds()) return {};
+NodesOnSurface::NodesOnSurface(const CutSurface& surface, const TissueMotion& tissue,
+                               std::span<const EdgeList::Entry> edges, double rounding) {
+    if (!surface.has_folds()) return;
     struct End {
         NodeId node;
         double length, length_at_rest;
@@ -52,7 +54,6 @@ std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotio
     }
     std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.node < b.node; });
 
-    std::vector<NodeOnSurface> nodes;
     for (auto end = ends.begin(); end != ends.end();) {
         End longest = *end;
         for (; end != ends.end() && end->node == longest.node; ++end) {
@@ -61,9 +62,18 @@ std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotio
         }
         const Vec3& x = tissue.after[longest.node.index()];
         if (const auto normal = surface.normal_near(x, rounding * longest.length))
-            nodes.push_back({longest.node, *normal, longest.length_at_rest});
+            nodes_.push_back({longest.node, *normal, longest.length_at_rest});
     }
-    return nodes;
+}
+
+bool NodesOnSurface::contains(NodeId n) const {
+    const auto place = std::ranges::lower_bound(nodes_, n, {}, &NodeOnSurface::node);
+    return place != nodes_.end() && place->node == n;
+}
+
+bool NodesOnSurface::have_face_of(const topology::Mesh& mesh, topology::ElementId e) const {
+    return mesh.kind(e) == topology::CellKind::tetrahedron &&
+           std::ranges::count_if(mesh.corners(e), [&](NodeId n) { return contains(n); }) >= 3;
 }
 
 }  // namespace incise::cutting

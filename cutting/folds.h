@@ -32,13 +32,28 @@ struct NodeOnSurface {
     double reach;  ///< of its edges that were looked at the longest, m, at rest
 };
 
-/// Those of the nodes of the edges, in ascending order of nodes. Crossed edges do not tell of them
-/// all: where the inside of a fold has no edge of the mesh, the surface crosses none of its node's
-/// if rounding has put that outside.
-/// @param edges     those of the elements near the surface, in any order
-/// @param rounding  share of the longest edge at a node: as far away it is on the surface
-/// Cost: a search of the surface for each node.
-std::vector<NodeOnSurface> nodes_on(const CutSurface& surface, const TissueMotion& tissue,
-                                    std::span<const EdgeList::Entry> edges, double rounding);
+/// Those of the nodes of some edges. Crossed edges do not tell of them all: where the inside of a
+/// fold has no edge of the mesh, the surface crosses none of its node's if rounding has put that
+/// outside.
+class NodesOnSurface {
+  public:
+    NodesOnSurface() = default;
+    /// @param edges     those of the elements near the surface, in any order
+    /// @param rounding  share of the longest edge at a node: as far away it is on the surface
+    /// Cost: a search of the surface for each node.
+    NodesOnSurface(const CutSurface& surface, const TissueMotion& tissue,
+                   std::span<const EdgeList::Entry> edges, double rounding);
+
+    bool is_empty() const { return nodes_.empty(); }
+    bool contains(topology::NodeId n) const;
+    /// Whether one of the faces of the element has its nodes on the surface.
+    bool have_face_of(const topology::Mesh& mesh, topology::ElementId e) const;
+
+    auto begin() const { return nodes_.begin(); }  // in ascending order
+    auto end() const { return nodes_.end(); }
+
+  private:
+    std::vector<NodeOnSurface> nodes_;
+};
 
 }  // namespace incise::cutting

@@ -181,9 +181,6 @@ class Splitter {
         return {point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
                 point(mesh_.face_corner(f, 2))};
     }
-    void find_lying_nodes(std::span<const EdgeList::Entry> edges,
-                          std::span<const std::pair<ElementId, std::size_t>> edges_of_elements);
-    bool is_lying(NodeId n) const;
     void put_on_lying_nodes();
     void put_on(NodeId n, bool is_exact, double reach);
     void snap_to(NodeId n, double reach);
@@ -208,9 +205,9 @@ class Splitter {
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
-    std::vector<NodeOnSurface> lying_;  // on the surface but for rounding, in ascending order
-    std::vector<ElementId> touched_;    // crossed, made of such, or with a face on the surface
-    std::vector<ElementId> ring_;       // scratch
+    NodesOnSurface lying_;            // but for rounding
+    std::vector<ElementId> touched_;  // crossed, made of such, or with a face on the surface
+    std::vector<ElementId> ring_;     // scratch
     std::vector<std::pair<ElementId, std::uint64_t>> crumbs_;  // and the number of the cut
     SplitReport report_;
 };
@@ -279,7 +276,13 @@ void Splitter::find_crossed_edges() {
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
 
-    find_lying_nodes(edges.entries(), edges_of_elements);
+    lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);
+    ElementId last;
+    for (const auto& [e, edge] : edges_of_elements) {
+        if (lying_.is_empty()) break;
+        if (e != last && lying_.have_face_of(mesh_, e)) touched_.push_back(e);
+        last = e;
+    }
     if (!found.empty())
         for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
             came_on_[n.value] = time;
@@ -368,26 +371,6 @@ double Splitter::time_of_parting(FaceId f) const {
     return last;
 }
 
-void Splitter::find_lying_nodes(
-    std::span<const EdgeList::Entry> edges,
-    std::span<const std::pair<ElementId, std::size_t>> edges_of_elements) {
-    lying_ = nodes_on(surface_, tissue_, edges, smallest_snap);
-    if (lying_.empty()) return;
-    ElementId last;
-    for (const auto& [e, edge] : edges_of_elements) {
-        if (e == last || mesh_.kind(e) != CellKind::tetrahedron) continue;
-        last = e;
-        const auto corners = mesh_.corners(e);
-        if (std::ranges::count_if(corners, [&](NodeId n) { return is_lying(n); }) >= 3)
-            touched_.push_back(e);
-    }
-}
-
-bool Splitter::is_lying(NodeId n) const {
-    const auto place = std::ranges::lower_bound(lying_, n, {}, &NodeOnSurface::node);
-    return place != lying_.end() && place->node == n;
-}
-
 /// When all is divided: if they were on the cut before, a bend of the surface or another sheet near
 /// them would count as passing by them.
 void Splitter::put_on_lying_nodes() {
@@ -438,7 +421,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& p
         while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
         while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
     };
-    const auto counts_as_on = [&](NodeId n) { return front_.is_on(n) || is_lying(n); };
+    const auto counts_as_on = [&](NodeId n) { return front_.is_on(n) || lying_.contains(n); };
     const auto are_both_on = [&] { return counts_as_on(edge.a) && counts_as_on(edge.b); };
     if (begin != end && passes_by(edge.a, edge.b, *begin)) ++begin;
     if (begin != end && passes_by(edge.b, edge.a, *(end - 1))) --end;
