@@ -16,6 +16,10 @@ namespace {
 constexpr double rounding_of_places = 1e-9;
 constexpr int max_bisections = 50;
 
+/// So much farther than out of an element, in units of its size, a blade is taken to go on: not
+/// just to its end, where rounding or the shift of exact signs would decide.
+constexpr double room_ahead = 1e-3;
+
 }  // namespace
 
 std::optional<Passage> CutEnd::passage(const Edge& edge) const {
@@ -89,8 +93,11 @@ double way_out(const TissueMotion& tissue, const BladeEnd& blade) {
                 has_edge = *edge.ends_inside(points);
             }
             if (!has_edge) return;
+            // It may be in its hindmost face, or in the foremost.
+            const double more = room_ahead * tissue.box(e).diagonal().norm();
             for (const NodeId n : mesh.corners(e))
-                farthest = std::max(farthest, blade.distance_ahead(tissue.after[n.index()]));
+                farthest = std::max(
+                    farthest, more + std::max(0.0, blade.distance_ahead(tissue.after[n.index()])));
         });
     return farthest;
 }

@@ -47,10 +47,6 @@ constexpr double share_always_snapped = 1.0 / 3.0;
 /// bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
 
-/// How much farther than out of the elements that it is in a blade is taken to go on, so that
-/// rounding does not decide.
-constexpr double beyond = 1.001;
-
 /// How often an edge is divided in one sweep: folds of a surface could go on for ever.
 constexpr int max_generation = 6;
 
@@ -271,10 +267,16 @@ void Splitter::find_crossed_edges() {
         if (is_crossed[edge] && (touched_.empty() || touched_.back() != e)) touched_.push_back(e);
     report_.elements_crossed = touched_.size();
     for (const ElementId e : touched_)
-        if (mesh_.kind(e) != CellKind::tetrahedron)
+        if (mesh_.kind(e) != CellKind::tetrahedron) {
+            if (end_) {  // the blade has not come to it, and its cut ends as the front is
+                touched_.clear();
+                report_ = {};
+                return;
+            }
             throw InputError("element " + std::to_string(mesh_.label(e)) + " is a " +
                              traits(mesh_.kind(e)).name +
                              ", and only tetrahedra can be split; use mode = \"separate\"");
+        }
 
     lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);
     ElementId last;
@@ -639,7 +641,7 @@ Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, C
 Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
              const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
     if (front.is_empty()) return {};
-    const double way = beyond * way_out(tissue, blade);
+    const double way = way_out(tissue, blade);
     Split result =
         Splitter(mesh, tissue, blade.continuation(way), front, options, scars, resting, &blade)
             .run();
