@@ -25,8 +25,13 @@ class BladeEnd {
     /// across the edge.
     SweptEdge continuation(double distance) const;
 
+    /// From its point that is nearest to x.
+    Vec3 away_from_edge(const Vec3& x) const;
+
   private:
     Vec3 along(std::size_t segment) const;
+    double nearest_place(std::size_t segment, const Vec3& x) const;
+    Vec3 point_at(std::size_t segment, double place) const;
 
     std::vector<Vec3> edge_;
     std::vector<Vec3> ahead_;  // by point: its motion, as long as it takes to get 1 across the edge

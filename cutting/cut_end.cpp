@@ -16,6 +16,10 @@ namespace {
 constexpr double rounding_of_places = 1e-9;
 constexpr int max_bisections = 50;
 
+/// How many edge lengths from the blade's edge its cut tells whether it is behind it, and how much
+/// so it is on the mean, as a cosine, if the blade's motion has made it and not that of the tissue.
+constexpr double size_of_surroundings = 3.0, least_share_behind = 0.3;
+
 /// So much farther than out of an element, in units of its size, a blade is taken to go on: not
 /// just to its end, where rounding or the shift of exact signs would decide.
 constexpr double room_ahead = 1e-3;
@@ -73,6 +77,28 @@ bool CutEnd::is_behind(FaceId f) const {
             return false;
     }
     return num_at < 3 || sum <= 0.0;
+}
+
+BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
+                       const PositionOf& position) {
+    // In an order of its own, so that sums are the same however the front has come about.
+    std::vector<NodeId> nodes;
+    front.for_each([&](NodeId n) {
+        if (mesh.is_alive(n)) nodes.push_back(n);
+    });
+    std::sort(nodes.begin(), nodes.end());
+    Vec3 from_cut = Vec3::Zero();
+    double share_behind = 0.0, count = 0.0;
+    for (const NodeId n : nodes) {
+        const Vec3 away = blade.away_from_edge(position(n));
+        const double distance = away.norm();
+        if (!(distance > 0.0 && distance < size_of_surroundings * front.reach(n))) continue;
+        from_cut -= away / distance;
+        share_behind -= blade.distance_ahead(position(n)) / distance;
+        ++count;
+    }
+    if (count == 0.0 || share_behind > least_share_behind * count) return blade;
+    return {blade.edge(), std::vector<Vec3>(blade.edge().size(), from_cut / count)};
 }
 
 double way_out(const TissueMotion& tissue, const BladeEnd& blade) {

@@ -53,6 +53,11 @@ class CutEnd {
     std::unordered_set<std::int32_t> nodes_;  // at the blade's edge
 };
 
+/// The same blade, if its cut is behind it, else one that goes on away from its cut: a blade may
+/// also cut because the tissue moves.
+BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
+                       const PositionOf& position);
+
 /// How far the edge has to go on to be past all of the elements that it is in, m; 0 if it is in
 /// none. An edge in a face between two is in one of them (space_time.h).
 double way_out(const TissueMotion& tissue, const BladeEnd& blade);

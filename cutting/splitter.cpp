@@ -641,10 +641,11 @@ Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, C
 Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
              const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
     if (front.is_empty()) return {};
-    const double way = way_out(tissue, blade);
-    Split result =
-        Splitter(mesh, tissue, blade.continuation(way), front, options, scars, resting, &blade)
-            .run();
+    const BladeEnd end =
+        away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
+    Split result = Splitter(mesh, tissue, end.continuation(way_out(tissue, end)), front, options,
+                            scars, resting, &end)
+                       .run();
     front = {};
     return result;
 }

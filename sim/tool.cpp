@@ -183,10 +183,13 @@ cutting::Split Tool::finish(topology::Mesh& mesh, const cutting::TissueMotion& t
     constexpr double part = 1e-3;
     std::vector<Vec3> motion(there.size(), Vec3::Zero());
     for (std::size_t key = spec_.path.size() - 1; key > 0; --key) {
-        const double from = spec_.path[key - 1].time, to = spec_.path[key].time;
-        const auto before = edge_at(blade, to - part * (to - from)), after = edge_at(blade, to);
-        for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = after[i] - before[i];
-        if (before != after) break;
+        const auto &before = spec_.path[key - 1], &after = spec_.path[key];
+        const cutting::Pose a = rigid(before.value), b = rigid(after.value);
+        if (a.position == b.position && a.rotation.coeffs() == b.rotation.coeffs()) continue;
+        const auto there_before = edge_at(blade, after.time - part * (after.time - before.time));
+        for (std::size_t i = 0; i < motion.size(); ++i)
+            motion[i] = b.to_world(blade.edge[i]) - there_before[i];
+        break;
     }
     return cutting::finish(mesh, tissue, {there, motion}, front_, options_, scars, resting);
 }

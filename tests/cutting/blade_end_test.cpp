@@ -39,6 +39,20 @@ TEST(BladeEnd, TellsWhatIsAheadOfABentEdge) {
     EXPECT_NEAR(end.distance_ahead({1.5, 0, 1}), -std::sqrt(0.125), 1e-15);
 }
 
+// What is ahead of a sharp apex is behind the lines of both segments.
+TEST(BladeEnd, TellsWhatIsAheadOfASharpEdge) {
+    const Vec3 motion(0, 0, -1);
+    const BladeEnd first({{-0.2, 0, 1}, {0, 0, 0}, {0.2, 0, 1}}, {motion, motion, motion});
+    for (const double x : {-0.01, 0.0, 0.01}) EXPECT_GT(first.distance_ahead({x, 0, -0.5}), 0.0);
+    for (const double x : {-0.01, 0.0, 0.01}) EXPECT_LT(first.distance_ahead({x, 0, 0.5}), 0.0);
+    // It gets out of what the edge is in: as far across each of its segments.
+    const SweptEdge ahead = first.continuation(0.1);
+    const auto end = ahead.ends_inside({MovingPoint{Vec3(0, -1, -9), Vec3(0, -1, -9)},
+                                        MovingPoint{Vec3(0, 1, -9), Vec3(0, 1, -9)},
+                                        MovingPoint{Vec3(0.001, 0, -0.5), Vec3(0.001, 0, -0.5)}});
+    EXPECT_TRUE(*end);
+}
+
 TEST(BladeEnd, PointsThatRestGoOnAsTheirNeighboursDo) {
     const Vec3 still = Vec3::Zero();
     const BladeEnd turning({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {still, {0, 1, 0}, {0, 2, 0}});

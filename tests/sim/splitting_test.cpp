@@ -241,6 +241,42 @@ path = [{ time = 0.02, at = [-0.05, 0, 0] }, { time = 0.06, at = [0.0631, 0, 0] 
     EXPECT_EQ(simulation.ledger().edits().back().after.components, 1);
 }
 
+// A blade that stands, into which the tissue moves, and one that the tissue overtakes: where ahead
+// is is told by the cut.
+TEST(SplittingBlade, CutsUpToWhereTheTissueHasComeToIt) {
+    const std::string cube = R"(
+[mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [5, 5, 5] }
+[[material]]
+density = 1000
+young = 10000
+poisson = 0.3
+[[constraint]]
+where = { box = { min = [-1, -1, -1], max = [1, 1, 1] } }
+)";
+    const auto opened = [&](const std::string& move, const std::string& path) {
+        const std::string blade = R"([[tool]]
+kind = "blade"
+edge = [[0, -0.1, 0.0473], [0, 0.2, 0.0473]]
+snap = 0
+path = )" + path + "\n";
+        Simulation simulation(scenario_of(cube + "move = " + move + "\n" + blade + dynamics(0.08)));
+        run(simulation);
+        double area = 0.0;
+        for (const EditRecord& edit : simulation.ledger().edits()) area += edit.cut_area;
+        return area;
+    };
+    const std::string still = "{ time = 0.02, by = [0, 0, 0] }, ";
+    EXPECT_NEAR(
+        opened("[" + still + "{ time = 0.06, by = [-0.1131, 0, 0] }]",
+               "[{ time = 0.02, at = [-0.05, 0, 0] }, { time = 0.06, at = [-0.05, 0, 0] }]"),
+        0.00631, 1e-8);
+    EXPECT_NEAR(
+        opened("[" + still + "{ time = 0.06, by = [0.1131, 0, 0] }]",
+               "[{ time = 0.02, at = [0.15, 0, 0] }, { time = 0.06, at = [0.1762, 0, 0] }]"),
+        0.00369, 1e-8);
+}
+
 TEST(Cut, AlongAPlaneComesAtItsTime) {
     Simulation simulation(scenario_of(soft_cube + dynamics(0.05) + R"(
 [[tool]]
