@@ -17,7 +17,7 @@ struct RandomCut {
     CutKind kind{};
     std::string description;
     Stroke stroke;
-    std::optional<BladeEnd> end;  ///< of a blade
+    std::optional<BladeEnd> end;                       ///< of a blade
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< of a plane
 };
 

@@ -122,8 +122,7 @@ std::vector<Split> SplitBody::cut(const Stroke& stroke, const SplitOptions& opti
 
 Split SplitBody::finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options) {
     const std::vector<Vec3> here = positions;
-    const Split done =
-        cutting::finish(mesh, {mesh, here, here}, blade, front, options, scars);
+    const Split done = cutting::finish(mesh, {mesh, here, here}, blade, front, options, scars);
     positions = followed(here, done.changes);
     EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
     return done;
