@@ -69,6 +69,33 @@ void open(benchmark::State& state) {
 }
 BENCHMARK(open)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
+/// A step in which a face is opened, with what the books of a run ask for before and after; in all
+/// per element of the body.
+void booked_step(benchmark::State& state) {
+    topology::Mesh mesh = make_cube(state.range(0));
+    physics::Model model(mesh, make_material(physics::NeoHookean{2000, 6000}));
+    const double dt = 0.5 * model.stable_step();
+    std::size_t next = mesh.element_capacity() / 2;
+    for (auto _ : state) {
+        model.integrate(0.0, dt);
+        topology::MeshEdit edit(mesh);
+        const ElementId e(next++ % mesh.element_capacity());
+        int face = 0;
+        while (face < 3 && !mesh.neighbor({e, face}).is_valid()) ++face;
+        edit.open({e, face});
+        const auto changes = edit.commit();
+        model.compute_energies_and_forces();
+        benchmark::DoNotOptimize(model.totals());
+        model.apply(changes);
+        benchmark::DoNotOptimize(model.totals());
+        model.compute_forces(0.0);
+    }
+    state.counters["ns/element"] = benchmark::Counter(
+        static_cast<double>(mesh.num_elements()) * 1e-9,
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(booked_step)->Arg(20'000)->Arg(100'000)->Arg(500'000);
+
 /// A blade goes half way through the body in 20 steps, across no ready-made plane; per element that
 /// it crosses, with the search for them, and body and boxes following.
 void split(benchmark::State& state) {

@@ -158,7 +158,7 @@ ElementBlock& ElementStore::editable(std::size_t block) {
 }
 
 void ElementStore::note_change(std::size_t block) {
-    if (block < energies_.size()) energies_[block].reset();
+    if (block < known_.size()) known_[block] = {};
     if (changed_blocks_.empty() || changed_blocks_.back() != block)
         changed_blocks_.push_back(block);
 }
@@ -198,12 +198,31 @@ std::span<const std::byte> ElementStore::bytes_from(std::size_t block) const {
 
 void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                                   const Workers& workers) {
-    assert(changed_blocks_.empty() && ranges_.size() == num_node_ranges(positions.size()));
+    assert(ranges_.size() == num_node_ranges(positions.size()));
+    known_.resize(blocks_.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (!blocks_[b]) return;
-        blocks_[b]->compute_forces(blocks_[b]->local_positions(positions), history, parts_[b],
-                                   bytes_from(b + 1));
+        if (blocks_[b] && !known_[b].has_forces) compute_forces_of(b, positions, history);
+        known_[b].has_forces = false;
     });
+}
+
+void ElementStore::compute_energies_and_forces(std::span<const Vec3> positions,
+                                               const ViscousHistory& history,
+                                               const Workers& workers) {
+    known_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (!blocks_[b] || known_[b].energy) return;
+        known_[b].energy = blocks_[b]->elastic_energy(positions);
+        compute_forces_of(b, positions, history);
+        known_[b].has_forces = true;
+    });
+}
+
+void ElementStore::compute_forces_of(std::size_t block, std::span<const Vec3> positions,
+                                     const ViscousHistory& history) {
+    assert(changed_blocks_.empty());
+    blocks_[block]->compute_forces(blocks_[block]->local_positions(positions), history,
+                                   parts_[block], bytes_from(block + 1));
 }
 
 void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const {
@@ -216,13 +235,14 @@ void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const 
 }
 
 Sum ElementStore::elastic_energy(std::span<const Vec3> positions, const Workers& workers) const {
-    energies_.resize(blocks_.size());
+    known_.resize(blocks_.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (blocks_[b] && !energies_[b]) energies_[b] = blocks_[b]->elastic_energy(positions);
+        if (blocks_[b] && !known_[b].energy)
+            known_[b].energy = blocks_[b]->elastic_energy(positions);
     });
     Sum sum;
     for (std::size_t b = 0; b < blocks_.size(); ++b)
-        if (blocks_[b]) sum += *energies_[b];
+        if (blocks_[b]) sum += *known_[b].energy;
     return sum;
 }
 

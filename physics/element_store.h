@@ -86,8 +86,14 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    Workers& workers, ViscousHistory& history);
 
+    /// Computes the energy of each block at `positions` (m, by node id) that is not known, for
+    /// elastic_energy, and right after it the block's forces, for compute_forces: so what both read
+    /// comes from memory once.
+    void compute_energies_and_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                                     const Workers& workers);
     /// Computes the forces of each block at `positions` (m, by node id), with those of viscosity as
-    /// far as the history goes, for gather_forces.
+    /// far as the history goes, for gather_forces. Those that compute_energies_and_forces computed
+    /// stand, if neither an edit changed the block nor state_has_changed() was called.
     void compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                         const Workers& workers);
     /// Sets `forces` (N, by node id) to those last computed, for one range of nodes: a node's force
@@ -104,8 +110,8 @@ class ElementStore {
     /// nodes move, so that another look beside an edit costs what that touched. Not by several
     /// threads at the same time.
     Sum elastic_energy(std::span<const Vec3> positions, const Workers& workers) const;
-    /// To be called when nodes have moved that elements had before.
-    void nodes_have_moved() { energies_.clear(); }
+    /// To be called when nodes have moved that elements had before, or the history is another.
+    void state_has_changed() { known_.clear(); }
 
     /// add(compute(block)) for each block in ascending order: computed at the same time, and so
     /// added up in the same order whatever the number of workers. Takes no memory.
@@ -140,7 +146,15 @@ class ElementStore {
         std::size_t block, begin, end;
     };
 
+    /// Of a block, until an edit changes it or the state does.
+    struct Known {
+        std::optional<Sum> energy;
+        bool has_forces = false;  ///< which nobody has asked for yet
+    };
+
     void note_change(std::size_t block);
+    void compute_forces_of(std::size_t block, std::span<const Vec3> positions,
+                           const ViscousHistory& history);
     /// Those of the elements of the first block from the given number on, if there is one.
     std::span<const std::byte> bytes_from(std::size_t block) const;
     /// The block, or a copy that takes its place if somebody shares it.
@@ -153,11 +167,11 @@ class ElementStore {
     MaterialTable table_;
     std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
-    std::vector<std::vector<Piece>> ranges_;            // of node ids; in ascending order of blocks
-    std::vector<std::vector<LocalVector>> parts_;       // the forces of each block
-    std::vector<std::uint16_t> local_numbers_;          // scratch, by node id
-    std::vector<double> energies_taken_;                // scratch, by block
-    mutable std::vector<std::optional<Sum>> energies_;  // by block, of those that are known
+    std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
+    std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
+    std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
+    std::vector<double> energies_taken_;           // scratch, by block
+    mutable std::vector<Known> known_;             // by block
 };
 
 }  // namespace incise::physics

@@ -16,22 +16,21 @@ using DoubleGroup = LinkGroup<double>;
 /// The six links of the part of a group that starts at lane `first`, each as the difference of its
 /// own corners: that of two edges is rounded once more, and would leave an element at rest a
 /// strain.
-std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions, const DoubleGroup& group,
-                                         std::size_t first) {
-    Doubles corners[4][4];  // four rows of each, as in gather_edges
-    for (std::size_t k = 0; k < 4; ++k)
+[[gnu::always_inline]] inline std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions,
+                                                                       const DoubleGroup& group,
+                                                                       std::size_t first) {
+    DoubleLanes3 corners[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+        DoubleLanes rows[4];  // as in gather_edges
         for (std::size_t p = 0; p < 4; ++p)
-            corners[k][p] = load_quads(positions, group.places[k] + first + p);
+            rows[p] = load_quads(positions, group.places[k] + first + p);
+        transpose(rows[0], rows[1], rows[2], rows[3]);
+        corners[k] = {rows[0], rows[1], rows[2]};
+    }
     constexpr std::size_t ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}};
     std::array<DoubleLanes3, 6> links;
 #pragma GCC unroll 6
-    for (std::size_t k = 0; k < 6; ++k) {
-        const auto [from, to] = ends[k];
-        DoubleLanes rows[4];
-        for (std::size_t p = 0; p < 4; ++p) rows[p] = corners[to][p] - corners[from][p];
-        transpose(rows[0], rows[1], rows[2], rows[3]);
-        links[k] = {rows[0], rows[1], rows[2]};
-    }
+    for (std::size_t k = 0; k < 6; ++k) links[k] = corners[ends[k][1]] - corners[ends[k][0]];
     return links;
 }
 
@@ -79,21 +78,24 @@ template <class Visit>
     }
 }
 
+// Flattened, as what is not inlined would have its vectors go through memory.
+template <class L>
+[[gnu::flatten]] void set_energies(const L& law, double J0, const LinkGroups<double>& groups,
+                                   const LocalVector* positions, double* energies) {
+    for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
+        const auto links = gather_links(positions, groups.links[g], first);
+        const auto strained = strained_links<L>(groups, g, first, links);
+        const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
+        const DoubleLanes energy = volume * energy_density(law, strained.strain, J0);
+        put(energy, energies + g * DoubleGroup::size + first);
+    });
+}
+
 }  // namespace
 
 void heml_energies(const Law& law, double J0, const LinkGroups<double>& groups,
                    const LocalVector* positions, double* energies) {
-    std::visit(
-        [&]<class L>(const L& l) {
-            for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
-                const auto links = gather_links(positions, groups.links[g], first);
-                const auto strained = strained_links<L>(groups, g, first, links);
-                const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
-                const DoubleLanes energy = volume * energy_density(l, strained.strain, J0);
-                put(energy, energies + g * DoubleGroup::size + first);
-            });
-        },
-        law);
+    std::visit([&](const auto& l) { set_energies(l, J0, groups, positions, energies); }, law);
 }
 
 void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,

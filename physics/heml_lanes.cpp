@@ -2,6 +2,7 @@
 #include "physics/heml_lanes.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "physics/heml_kernel.h"
@@ -163,8 +164,19 @@ Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* posit
     const auto& groups = std::get<LinkGroups<double>>(groups_);
     const std::span<double> energies = buffer(groups.links.size() * LinkGroup<double>::size);
     compute(kernel.law, kernel.inversion_threshold, groups, positions, energies.data());
+    // Lane by lane, as elements stand in them; those that there are not have none.
+    constexpr std::size_t size = LinkGroup<double>::size;
+    const std::size_t num_groups = groups.links.size();
+    for (std::size_t i = num_elements_; i < energies.size(); ++i)
+        energies[i % num_groups * size + i / num_groups] = 0.0;
+    Sums<size> lanes;
+    for (std::size_t g = 0; g < num_groups; ++g) {
+        Sums<size>::Terms of_group;
+        std::memcpy(&of_group, &energies[g * size], sizeof(of_group));
+        lanes += of_group;
+    }
     Sum sum;
-    for_each_element(energies, [&](double energy) { sum += energy; });
+    for (std::size_t lane = 0; lane < size; ++lane) sum += lanes[lane];
     return sum;
 }
 

@@ -49,6 +49,7 @@ void Model::resize(std::size_t num_nodes) {
     elastic_forces_.resize(num_nodes, Vec3::Zero());
     outer_forces_.resize(num_nodes, Vec3::Zero());
     masses_.resize(num_nodes, 0.0);
+    node_sums_.resize(num_nodes);
     stable_step_.truncate(num_nodes);
 }
 
@@ -63,14 +64,20 @@ void Model::gather(NodeId n) {
         stiffness += shares.stiffness[static_cast<std::size_t>(mesh_.corner_of(e, n))];
     }
     masses_[n.index()] = mass;
+    node_sums_.forget(n.index());
     stable_step_.set(n.index(), stiffness, mass);
+}
+
+void Model::state_has_changed() {
+    elements_.state_has_changed();
+    node_sums_.forget_all();
 }
 
 void Model::set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                       double time) {
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
-    elements_.nodes_have_moved();
+    state_has_changed();
     if (!history_.is_empty()) elements_.advance(positions_, positions_, 0.0, workers_, history_);
     compute_forces(time);
 }
@@ -82,6 +89,10 @@ void Model::compute_forces(double time) {
         elements_.gather_forces(range, elastic_forces_);
         set_outer_forces(range, positions_, time, outer_forces_);
     });
+}
+
+void Model::compute_energies_and_forces() {
+    elements_.compute_energies_and_forces(positions_, history_, workers_);
 }
 
 void Model::outer_forces_at(std::span<const Vec3> positions, double time,
@@ -106,7 +117,7 @@ void Model::integrate(double time, double dt) {
             std::span(range_reactions_).subspan(range.number * supports_.size(), supports_.size());
         step_sums_[range.number] = move_nodes(range, time, dt, reactions);
     });
-    elements_.nodes_have_moved();
+    state_has_changed();
     StepSums sums;
     for (const StepSums& range : step_sums_) sums += range;
     reactions_.assign(supports_.size(), {});
@@ -219,7 +230,7 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
         taken = elements_.advance(positions_, positions, dt, workers_, history_);
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::copy(velocities.begin(), velocities.end(), velocities_.begin());
-    elements_.nodes_have_moved();
+    state_has_changed();
     return taken;
 }
 
@@ -298,9 +309,9 @@ void Model::merge(NodeId absorbed, NodeId survivor) {
     const double mass = masses_[from] + masses_[into];
     const double weight = masses_[from] / mass;
     positions_[into] += weight * (positions_[from] - positions_[into]);
-    elements_.nodes_have_moved();
     velocities_[into] += weight * (velocities_[from] - velocities_[into]);
     masses_[into] = mass;
+    state_has_changed();
     merge.position_after = positions_[into];
     merge.velocity_after = velocities_[into];
     merges_[absorbed] = merge;
@@ -317,8 +328,8 @@ bool Model::take_back_merge(NodeId absorbed) {
     if (positions_[n] != merge.position_after || velocities_[n] != merge.velocity_after)
         return false;
     positions_[n] = merge.position_before;
-    elements_.nodes_have_moved();
     velocities_[n] = merge.velocity_before;
+    state_has_changed();
     return true;
 }
 
@@ -429,9 +440,8 @@ void Model::restore(topology::ArchiveReader& ar, double time) {
         !std::all_of(history.begin(), history.end(), [](double x) { return std::isfinite(x); }))
         throw InputError("the state is not finite");
     positions_ = std::move(positions);
-    elements_.nodes_have_moved();
     velocities_ = std::move(velocities);
-    history_.set_values(history);
+    set_history(history);
     reactions_ = std::move(reactions);
     compute_forces(time);
 }

@@ -12,6 +12,7 @@
 #include "physics/element_store.h"
 #include "physics/loads.h"
 #include "physics/node_lanes.h"
+#include "physics/node_sums.h"
 #include "physics/stable_step.h"
 #include "physics/supports.h"
 #include "physics/viscous_history.h"
@@ -72,11 +73,19 @@ class Model {
     const ViscousHistory& history() const { return history_; }
     /// Replaces it after set_state(); values as of history().values(). Forces are those of before
     /// until compute_forces is called.
-    void set_history(std::span<const double> values) { history_.set_values(values); }
+    void set_history(std::span<const double> values) {
+        history_.set_values(values);
+        state_has_changed();
+    }
 
     /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
     /// and of the history as it stands.
     void compute_forces(double time);
+
+    /// Does the work of totals() and, on elements that no edit touches before it is called, of
+    /// compute_forces() in one pass: for who needs both, as an edit's books and the step around it
+    /// do. Results are to the bit what they are without.
+    void compute_energies_and_forces();
 
     /// One step of semi-implicit Euler, from the forces last computed:
     /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
@@ -153,6 +162,8 @@ class Model {
     /// energy are small against.
     double stiffness_energy() const;
 
+    /// Not by several threads at the same time. Cost: O(#nodes + #elements) after nodes have moved;
+    /// after an edit without that what it touched, and a look at each range and block.
     Totals totals() const;
     double min_volume_ratio() const;
     /// Present volume over that at rest, less 1. Not a number without elements.
@@ -229,8 +240,12 @@ class Model {
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
                           std::span<Vec3> forces) const;
 
+    NodeSums sums_of(NodeRange range) const;
     LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
     void resize(std::size_t num_nodes);
+    /// To be called when nodes that elements had before have moved, or are as fast as they were no
+    /// more, or the history is another.
+    void state_has_changed();
     void gather(NodeId n);
     void carry_state(const topology::ChangeSet& changes);
     void take_from_sources(const topology::NodeRecord& record);
@@ -253,6 +268,7 @@ class Model {
     std::vector<Vec3> positions_, velocities_, elastic_forces_, outer_forces_;
     std::vector<double> masses_;
     StableStep stable_step_;
+    mutable KeptNodeSums node_sums_;
     Supports supports_;
     Loads loads_;
     std::vector<Reaction> reactions_;  // of each support

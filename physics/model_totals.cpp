@@ -11,67 +11,44 @@ namespace incise::physics {
 
 namespace {
 
-/// What nodes add up to.
-struct NodeSums {
-    Sum mass, kinetic_energy, gravity_energy;
-    std::array<Sum, 3> momentum, angular_momentum, moment_of_mass;
-
-    NodeSums& operator+=(const NodeSums& o) {
-        mass += o.mass;
-        kinetic_energy += o.kinetic_energy;
-        gravity_energy += o.gravity_energy;
-        for (std::size_t c = 0; c < 3; ++c) {
-            momentum[c] += o.momentum[c];
-            angular_momentum[c] += o.angular_momentum[c];
-            moment_of_mass[c] += o.moment_of_mass[c];
-        }
-        return *this;
-    }
-};
-
-Vec3 value_of(const std::array<Sum, 3>& sums) {
-    return {sums[0].value(), sums[1].value(), sums[2].value()};
+/// Of three components, from the given one on.
+Vec3 vector_of(const NodeSums& sums, std::size_t first) {
+    return {sums[first].value(), sums[first + 1].value(), sums[first + 2].value()};
 }
 
 }  // namespace
 
-Totals Model::totals() const {
-    std::vector<NodeSums> ranges(num_node_ranges(masses_.size()));
-    workers_.for_each(ranges.size(), [&](std::size_t r) {
-        NodeSums& sums = ranges[r];
-        const std::size_t end = std::min((r + 1) * nodes_per_range, masses_.size());
-        for (std::size_t n = r * nodes_per_range; n < end; ++n) {
-            const double m = masses_[n];
-            if (m == 0.0) continue;
-            const Vec3 p = m * velocities_[n];
-            const Vec3 l = positions_[n].cross(p);
-            sums.mass += m;
-            sums.kinetic_energy += 0.5 * p.dot(velocities_[n]);
-            sums.gravity_energy += -m * gravity_.dot(positions_[n]);
-            for (int c = 0; c < 3; ++c) {
-                const auto i = static_cast<std::size_t>(c);
-                sums.momentum[i] += p[c];
-                sums.angular_momentum[i] += l[c];
-                sums.moment_of_mass[i] += m * positions_[n][c];
-            }
-        }
-    });
+NodeSums Model::sums_of(NodeRange range) const {
     NodeSums sums;
-    for (const NodeSums& range : ranges) sums += range;
+    for (std::size_t n = range.begin; n < range.end; ++n) {
+        const double m = masses_[n];
+        if (m == 0.0) continue;  // dead
+        const Vec3 &x = positions_[n], &v = velocities_[n];
+        const Vec3 p = m * v, l = x.cross(p);
+        using Pair = NodeSums::Pair;
+        sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * gravity_.dot(x), p[0]},
+                                Pair{p[1], p[2]},        Pair{l[0], l[1]},
+                                Pair{l[2], m * x[0]},    Pair{m * x[1], m * x[2]}};
+    }
+    return sums;
+}
 
+Totals Model::totals() const {
+    const NodeSums sums =
+        node_sums_.value(masses_.size(), workers_, [&](NodeRange range) { return sums_of(range); });
     Totals t;
-    t.mass = sums.mass.value();
+    t.mass = sums[0].value();
     Sum rest_volume;
     elements_.add_up_blocks(
         workers_, [](const ElementBlock& block) { return block.rest_volume(); },
         [&](const Sum& of_block) { rest_volume += of_block; });
     t.rest_volume = rest_volume.value();
-    t.kinetic_energy = sums.kinetic_energy.value();
+    t.kinetic_energy = sums[1].value();
     t.elastic_energy = elastic_energy();
-    t.gravity_energy = sums.gravity_energy.value();
-    t.momentum = value_of(sums.momentum);
-    t.angular_momentum = value_of(sums.angular_momentum);
-    if (t.mass > 0.0) t.centre_of_mass = value_of(sums.moment_of_mass) / t.mass;
+    t.gravity_energy = sums[2].value();
+    t.momentum = vector_of(sums, 3);
+    t.angular_momentum = vector_of(sums, 6);
+    if (t.mass > 0.0) t.centre_of_mass = vector_of(sums, 9) / t.mass;
     return t;
 }
 

@@ -2,18 +2,23 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <cmath>
+#include <array>
+#include <cstddef>
 
 namespace incise::physics {
 
-/// Compensated sum (Neumaier's variant of Kahan's): the error stays at a few units in the last
+/// Compensated sum: what rounding loses is added up by itself (after Neumaier, with Knuth's sum of
+/// two numbers and its error, which has no branch). The error stays at a few units in the last
 /// place of the sum of absolute values, however many terms. The result depends on their order only
 /// in that error.
 class Sum {
   public:
+    Sum() = default;
+    Sum(double sum, double lost) : sum_(sum), lost_(lost) {}
+
     Sum& operator+=(double term) {
-        const double next = sum_ + term;
-        lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+        const double next = sum_ + term, added = next - sum_;
+        lost_ += (sum_ - (next - added)) + (term - added);
         sum_ = next;
         return *this;
     }
@@ -31,6 +36,33 @@ class Sum {
 
   private:
     double sum_ = 0.0, lost_ = 0.0;
+};
+
+/// Several, an even number of them, side by side: two at a time, as every processor can.
+template <std::size_t n>
+class Sums {
+  public:
+    using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+    using Terms = std::array<Pair, n / 2>;
+
+    Sums& operator+=(const Terms& terms) {
+#pragma GCC unroll 8
+        for (std::size_t i = 0; i < n / 2; ++i) {
+            const Pair next = sums_[i] + terms[i], added = next - sums_[i];
+            lost_[i] += (sums_[i] - (next - added)) + (terms[i] - added);
+            sums_[i] = next;
+        }
+        return *this;
+    }
+    Sums& operator+=(const Sums& other) {
+        *this += other.sums_;
+        for (std::size_t i = 0; i < n / 2; ++i) lost_[i] += other.lost_[i];
+        return *this;
+    }
+    Sum operator[](std::size_t i) const { return {sums_[i / 2][i % 2], lost_[i / 2][i % 2]}; }
+
+  private:
+    Terms sums_{}, lost_{};
 };
 
 }  // namespace incise::physics

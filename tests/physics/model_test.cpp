@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "physics/test_bodies.h"
+#include <algorithm>
+
+#include "physics/model_snapshot.h"
 #include "topology/archive.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -118,22 +120,36 @@ TEST(Model, HasTheEnergyOfDoublesInSinglePrecision) {
     EXPECT_EQ(in_floats.min_volume_ratio(), in_doubles.min_volume_ratio());
 }
 
-// Blocks keep their energies while nothing moves; edits_test.cpp has those of edited bodies.
-TEST(Model, HasTheElasticEnergyOfItsPresentPositions) {
-    const auto table = table_of_all_materials();
-    const Mesh mesh =
-        Mesh::build(with_regions(test::jittered_cube(3, 0.2, 2), table.materials.size())).mesh;
+// Blocks keep energies, ranges of nodes their sums while nothing moves, and forces may be computed
+// ahead; edits_test.cpp has those of edited bodies.
+TEST(Model, HasTheTotalsAndForcesOfItsPresentState) {
+    const topology::MeshData cube = test::jittered_cube(3, 0.2, 2);
+    const auto table = table_for(cube);
+    const Mesh mesh = Mesh::build(with_regions(cube, table.materials.size())).mesh;
     Model model(mesh, table);
     test::Random random(4);
     const BodyState start = random_state(mesh, random, 0.02, 1.0);
-    double last = model.elastic_energy();
+    Totals last = model.totals();
+    const auto compute_ahead = [&] {
+        model.set_history(model.history().values());  // nothing is known any more
+        model.compute_energies_and_forces();
+    };
     const auto expect_present = [&](const char* what) {
         SCOPED_TRACE(what);
         Model fresh(mesh, table);
         set_state(fresh, state_of(model));
-        EXPECT_EQ(model.elastic_energy(), fresh.elastic_energy());
-        EXPECT_NE(model.elastic_energy(), last);
-        last = model.elastic_energy();
+        fresh.set_history(model.history().values());
+        fresh.compute_forces(0.0);
+        model.compute_forces(0.0);
+        EXPECT_TRUE(std::ranges::equal(model.elastic_forces(), fresh.elastic_forces()));
+        compute_ahead();
+        model.compute_forces(0.0);
+        EXPECT_TRUE(std::ranges::equal(model.elastic_forces(), fresh.elastic_forces()));
+        EXPECT_EQ(figures_of(model.totals()), figures_of(fresh.totals()));
+        EXPECT_NE(model.totals().elastic_energy, last.elastic_energy);
+        EXPECT_NE(model.totals().kinetic_energy, last.kinetic_energy);
+        last = model.totals();
+        compute_ahead();  // in vain: the state is another next
     };
     set_state(model, start);
     expect_present("set");
@@ -143,6 +159,7 @@ TEST(Model, HasTheElasticEnergyOfItsPresentPositions) {
     expect_present("integrated");
     BodyState next = state_of(model);
     for (Vec3& x : next.positions) x += random.vector(0.001);
+    for (Vec3& v : next.velocities) v += random.vector(0.1);
     const std::vector<Vec3> reactions(next.positions.size(), Vec3::Zero());
     model.take_step(next.positions, next.velocities, reactions, 1e-4);
     expect_present("step taken");

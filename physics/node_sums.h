@@ -1,0 +1,51 @@
+// What the nodes of a body add up to: for the books.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "physics/sum.h"
+#include "physics/workers.h"
+#include "topology/types.h"
+
+namespace incise::physics {
+
+/// Mass (kg), kinetic energy and that of gravity (J), and of three components each momentum
+/// (kg m/s), angular momentum about the origin (kg m2/s) and mass times position (kg m).
+using NodeSums = Sums<12>;
+
+/// By range of nodes, kept until one of the range changes: so another look beside an edit costs
+/// what that touched.
+class KeptNodeSums {
+  public:
+    /// A node has another mass, position or velocity.
+    void forget(std::size_t node) {
+        if (const std::size_t r = node / nodes_per_range; r < ranges_.size()) ranges_[r].reset();
+    }
+    /// All may have.
+    void forget_all() { ranges_.clear(); }
+    /// There are so many now; those that are gone count no more.
+    void resize(std::size_t num_nodes) {
+        forget(num_nodes);  // the range that has lost some, if any has
+        ranges_.resize(num_node_ranges(num_nodes));
+    }
+
+    /// The sum over all ranges, in order; sums_of(range) of those that are not known.
+    template <class SumsOf>
+    NodeSums value(std::size_t num_nodes, const Workers& workers, SumsOf sums_of) {
+        ranges_.resize(num_node_ranges(num_nodes));
+        workers.for_each_range(num_nodes, [&](NodeRange range) {
+            if (!ranges_[range.number]) ranges_[range.number] = sums_of(range);
+        });
+        NodeSums sums;
+        for (const auto& range : ranges_) sums += *range;
+        return sums;
+    }
+
+  private:
+    std::vector<std::optional<NodeSums>> ranges_;
+};
+
+}  // namespace incise::physics
