@@ -58,31 +58,25 @@ void remove(benchmark::State& state) {
 }
 BENCHMARK(remove)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
-void open(benchmark::State& state) {
-    measure(state, [](const topology::Mesh& mesh, topology::MeshEdit& edit, ElementId e) {
-        for (int f = 0; f < mesh.num_faces(e); ++f)
-            if (mesh.neighbor({e, f}).is_valid()) {
-                edit.open({e, f});
-                break;
-            }
-    });
+/// The first of the element's that are closed.
+void open_a_face(const topology::Mesh& mesh, topology::MeshEdit& edit, ElementId e) {
+    for (int f = 0; f < mesh.num_faces(e); ++f)
+        if (mesh.neighbor({e, f}).is_valid()) return edit.open({e, f});
 }
+
+void open(benchmark::State& state) { measure(state, open_a_face); }
 BENCHMARK(open)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
 /// A step in which a face is opened, with what the books of a run ask for before and after; in all
 /// per element of the body.
-void booked_step(benchmark::State& state) {
-    topology::Mesh mesh = make_cube(state.range(0));
-    physics::Model model(mesh, make_material(physics::NeoHookean{2000, 6000}));
+void booked_step(benchmark::State& state, topology::Mesh mesh, const physics::Material& material) {
+    physics::Model model(mesh, {{material}, {{0, 0}}});
     const double dt = 0.5 * model.stable_step();
     std::size_t next = mesh.element_capacity() / 2;
     for (auto _ : state) {
         model.integrate(0.0, dt);
         topology::MeshEdit edit(mesh);
-        const ElementId e(next++ % mesh.element_capacity());
-        int face = 0;
-        while (face < 3 && !mesh.neighbor({e, face}).is_valid()) ++face;
-        edit.open({e, face});
+        open_a_face(mesh, edit, ElementId(next++ % mesh.element_capacity()));
         const auto changes = edit.commit();
         model.compute_energies_and_forces();
         benchmark::DoNotOptimize(model.totals());
@@ -94,7 +88,21 @@ void booked_step(benchmark::State& state) {
         static_cast<double>(mesh.num_elements()) * 1e-9,
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(booked_step)->Arg(20'000)->Arg(100'000)->Arg(500'000);
+
+void booked_step_of_tetrahedra(benchmark::State& state) {
+    booked_step(state, make_cube(state.range(0)),
+                {1000.0, physics::HyperElasticLinks{physics::NeoHookean{2000, 6000}}});
+}
+BENCHMARK(booked_step_of_tetrahedra)->Arg(20'000)->Arg(100'000)->Arg(500'000);
+
+void booked_step_of_hexahedra(benchmark::State& state) {
+    const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(state.range(0)))));
+    const auto grid =
+        topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n});
+    booked_step(state, topology::Mesh::build(grid).mesh,
+                {1000.0, physics::HybridSprings{2000, 6000, 1.0}});
+}
+BENCHMARK(booked_step_of_hexahedra)->Arg(27'000)->Arg(125'000);
 
 /// A blade goes half way through the body in 20 steps, across no ready-made plane; per element that
 /// it crosses, with the search for them, and body and boxes following.
