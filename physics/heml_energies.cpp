@@ -1,16 +1,13 @@
 // Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <cstring>
-
 #include "physics/gather_lanes.h"
 #include "physics/link_forces.h"
+#include "physics/state_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
 
-using DoubleLanes = Lanes<double>;
-using DoubleLanes3 = Lanes3<double>;
 using DoubleGroup = LinkGroup<double>;
 
 /// The six links of the part of a group that starts at lane `first`, each as the difference of its
@@ -50,9 +47,6 @@ template <class L>
     else
         return law.response(strain, J0).w;
 }
-
-/// Wherever that lies: vectors are aligned to a number only.
-void put(DoubleLanes values, double* to) { std::memcpy(to, &values.v, sizeof(values.v)); }
 
 /// Of the part of the group of number g.
 template <class L>
@@ -99,7 +93,7 @@ void heml_energies(const Law& law, double J0, const LinkGroups<double>& groups,
 }
 
 void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,
-                 const LocalVector* positions, LinkStates* states) {
+                 const LocalVector* positions, ElementStates* states) {
     std::visit(
         [&]<class L>(const L& l) {
             for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
@@ -107,24 +101,13 @@ void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,
                 const auto links = gather_links(positions, group, first);
                 const auto strained = strained_links<L>(groups, g, first, links);
                 const DoubleLanes volume = DoubleLanes::load(group.volume + first);
-                LinkStates& state = states[g];
+                ElementStates& state = states[g];
                 put(volume * energy_density(l, strained.strain, J0), state.energy + first);
                 put(strained.strain.J, state.volume_ratio + first);
                 const LinkVectors<double> edges{links[0], links[1], links[2]};
                 const LinkVectors<double> f =
                     link_forces(l, J0, group, first, edges, across<double>(edges), strained);
-                const auto rows = [](const LinkVectors<double>& v, auto component) {
-                    return std::array{v[0].*component, v[1].*component, v[2].*component};
-                };
-                using Component = DoubleLanes DoubleLanes3::*;
-                constexpr Component components[3] = {&DoubleLanes3::x, &DoubleLanes3::y,
-                                                     &DoubleLanes3::z};
-                for (std::size_t i = 0; i < 3; ++i)
-                    for (std::size_t j = 0; j < 3; ++j) {
-                        const auto a = rows(f, components[i]), b = rows(edges, components[j]);
-                        const DoubleLanes sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-                        put(sum, state.virial[3 * i + j] + first);
-                    }
+                put_virials(f, edges, state, first);
             });
         },
         law);

@@ -2,12 +2,12 @@
 #include "physics/heml_lanes.h"
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 
 #include "physics/heml_kernel.h"
 
 namespace incise::physics {
+
+static_assert(LinkGroup<double>::size == elements_together);
 
 namespace plain {
 AddHemlForces<double> add_heml_forces;
@@ -16,7 +16,6 @@ HemlEnergies heml_energies;
 HemlStates heml_states;
 HemlVolumeRatios heml_volume_ratios;
 }  // namespace plain
-#ifdef INCISE_HAS_AVX
 namespace avx2 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
@@ -31,42 +30,22 @@ HemlEnergies heml_energies;
 HemlStates heml_states;
 HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx512
-#endif
 
 template <class Number>
-AddHemlForces<Number>* heml_forces_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return avx512::add_heml_forces;
-    if (processor == Processor::avx2) return avx2::add_heml_forces;
-#endif
-    return plain::add_heml_forces;
+AddHemlForces<Number>* heml_forces_for(Processor processor) {
+    return INCISE_CHOOSE(processor, AddHemlForces<Number>, add_heml_forces);
 }
-
 template AddHemlForces<double>* heml_forces_for(Processor processor);
 template AddHemlForces<float>* heml_forces_for(Processor processor);
 
-HemlEnergies* heml_energies_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return avx512::heml_energies;
-    if (processor == Processor::avx2) return avx2::heml_energies;
-#endif
-    return plain::heml_energies;
+HemlEnergies* heml_energies_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HemlEnergies, heml_energies);
 }
-
-HemlStates* heml_states_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return avx512::heml_states;
-    if (processor == Processor::avx2) return avx2::heml_states;
-#endif
-    return plain::heml_states;
+HemlStates* heml_states_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HemlStates, heml_states);
 }
-
-HemlVolumeRatios* heml_volume_ratios_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return avx512::heml_volume_ratios;
-    if (processor == Processor::avx2) return avx2::heml_volume_ratios;
-#endif
-    return plain::heml_volume_ratios;
+HemlVolumeRatios* heml_volume_ratios_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HemlVolumeRatios, heml_volume_ratios);
 }
 
 namespace {
@@ -138,76 +117,29 @@ std::span<const std::byte> HemlLanes::bytes() const {
                       groups_);
 }
 
-template <class Visit>
-void HemlLanes::for_each_element(std::span<const double> of_lanes, Visit visit) const {
-    constexpr std::size_t size = LinkGroup<double>::size;
-    const std::size_t num_groups = of_lanes.size() / size;
-    std::size_t left = num_elements_;
-    for (std::size_t lane = 0; left > 0; ++lane)
-        for (std::size_t g = 0; g < num_groups && left > 0; ++g, --left)
-            visit(of_lanes[g * size + lane]);
-}
-
-namespace {
-
-/// For one figure an element, until the next call: a thread takes its memory once for all blocks.
-std::span<double> buffer(std::size_t size) {
-    thread_local std::vector<double> figures;
-    figures.resize(size);
-    return figures;
-}
-
-}  // namespace
-
 Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const {
     static HemlEnergies* const compute = heml_energies_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    const std::span<double> energies = buffer(groups.links.size() * LinkGroup<double>::size);
+    const std::span<double> energies = room_for_figures(groups.links.size());
     compute(kernel.law, kernel.inversion_threshold, groups, positions, energies.data());
-    // Lane by lane, as elements stand in them; those that there are not have none.
-    constexpr std::size_t size = LinkGroup<double>::size;
-    const std::size_t num_groups = groups.links.size();
-    for (std::size_t i = num_elements_; i < energies.size(); ++i)
-        energies[i % num_groups * size + i / num_groups] = 0.0;
-    Sums<size> lanes;
-    for (std::size_t g = 0; g < num_groups; ++g) {
-        Sums<size>::Terms of_group;
-        std::memcpy(&of_group, &energies[g * size], sizeof(of_group));
-        lanes += of_group;
-    }
-    Sum sum;
-    for (std::size_t lane = 0; lane < size; ++lane) sum += lanes[lane];
-    return sum;
+    return sum_of_figures(energies, num_elements_);
 }
 
 void HemlLanes::set_results(const HemlKernel& kernel, const LocalVector* positions,
                             std::span<ElementResult> results) const {
     static HemlStates* const compute = heml_states_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    thread_local std::vector<LinkStates> states;
-    states.resize(groups.links.size());
+    const std::span<ElementStates> states = room_for_states(groups.links.size());
     compute(kernel.law, kernel.inversion_threshold, groups, positions, states.data());
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        const LinkStates& group = states[i % states.size()];
-        const std::size_t lane = i / states.size();
-        results[i].energy = group.energy[lane];
-        results[i].volume_ratio = group.volume_ratio[lane];
-        Eigen::Matrix3d virial;
-        for (std::size_t k = 0; k < 9; ++k)
-            virial(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) =
-                group.virial[k][lane];
-        results[i].set_stress(virial);
-    }
+    physics::set_results(states, results);
 }
 
 double HemlLanes::min_volume_ratio(const LocalVector* positions) const {
     static HemlVolumeRatios* const compute = heml_volume_ratios_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    const std::span<double> ratios = buffer(groups.links.size() * LinkGroup<double>::size);
+    const std::span<double> ratios = room_for_figures(groups.links.size());
     compute(groups, positions, ratios.data());
-    double lowest = std::numeric_limits<double>::infinity();
-    for_each_element(ratios, [&](double ratio) { lowest = std::min(lowest, ratio); });
-    return lowest;
+    return least_of_figures(ratios, num_elements_);
 }
 
 }  // namespace incise::physics

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "physics/element_result.h"
+#include "physics/element_states.h"
 #include "physics/law.h"
 #include "physics/local_nodes.h"
 #include "physics/processor.h"
@@ -38,14 +38,6 @@ struct alignas(64) LinkGroup {
 template <class Number>
 struct alignas(64) FibreGroup {
     Number u[3][LinkGroup<Number>::size];
-};
-
-/// What elements have at given positions, by group.
-struct LinkStates {
-    static constexpr std::size_t size = LinkGroup<double>::size;
-    double energy[size];        ///< J
-    double volume_ratio[size];  ///< to the bit as HemlKernel::volume_ratio
-    double virial[9][size];     ///< sum of the corners' forces times positions, f x^T, by rows: J
 };
 
 template <class Number>
@@ -92,10 +84,6 @@ class HemlLanes {
     }
 
   private:
-    /// Calls visit(value) in the order of elements, from what there is of the lanes of all groups.
-    template <class Visit>
-    void for_each_element(std::span<const double> of_lanes, Visit visit) const;
-
     std::size_t num_elements_ = 0;
     std::variant<LinkGroups<double>, LinkGroups<float>> groups_;
 };
@@ -115,7 +103,7 @@ using HemlEnergies = void(const Law& law, double inversion_threshold,
 /// Sets one for each group.
 using HemlStates = void(const Law& law, double inversion_threshold,
                         const LinkGroups<double>& groups, const LocalVector* positions,
-                        LinkStates* states);
+                        ElementStates* states);
 using HemlVolumeRatios = void(const LinkGroups<double>& groups, const LocalVector* positions,
                               double* ratios);
 HemlEnergies* heml_energies_for(Processor processor);

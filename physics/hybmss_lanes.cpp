@@ -7,34 +7,49 @@
 
 namespace incise::physics {
 
+static_assert(CellGroup<double>::size == elements_together);
+
 namespace plain {
 AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
+HybmssEnergies hybmss_energies;
+HybmssStates hybmss_states;
+HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace plain
-#ifdef INCISE_HAS_AVX
 namespace avx2 {
 AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
+HybmssEnergies hybmss_energies;
+HybmssStates hybmss_states;
+HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace avx2
 namespace avx512 {
 AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
+HybmssEnergies hybmss_energies;
+HybmssStates hybmss_states;
+HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace avx512
-#endif
 
 template <class Number>
-AddHybmssForces<Number>* hybmss_forces_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512) return avx512::add_hybmss_forces;
-    if (processor == Processor::avx2) return avx2::add_hybmss_forces;
-#endif
-    return plain::add_hybmss_forces;
+AddHybmssForces<Number>* hybmss_forces_for(Processor processor) {
+    return INCISE_CHOOSE(processor, AddHybmssForces<Number>, add_hybmss_forces);
 }
-
 template AddHybmssForces<double>* hybmss_forces_for(Processor processor);
 template AddHybmssForces<float>* hybmss_forces_for(Processor processor);
 
+HybmssEnergies* hybmss_energies_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HybmssEnergies, hybmss_energies);
+}
+HybmssStates* hybmss_states_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HybmssStates, hybmss_states);
+}
+HybmssVolumeRatios* hybmss_volume_ratios_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HybmssVolumeRatios, hybmss_volume_ratios);
+}
+
 void HybmssLanes::assign(std::size_t num_elements, const HybmssKernel& kernel) {
+    num_elements_ = num_elements;
     using Singles = std::vector<CellGroup<float>>;
     const bool is_single = kernel.precision == Precision::single_precision;
     if (is_single != std::holds_alternative<Singles>(groups_)) {
@@ -84,6 +99,31 @@ void HybmssLanes::add_forces(const HybmssKernel& kernel, const LocalVector* posi
 
 std::span<const std::byte> HybmssLanes::bytes() const {
     return std::visit([](const auto& groups) { return std::as_bytes(std::span(groups)); }, groups_);
+}
+
+Sum HybmssLanes::elastic_energy(const HybmssKernel& kernel, const LocalVector* positions) const {
+    static HybmssEnergies* const compute = hybmss_energies_for(processor());
+    const auto cells = groups<double>();
+    const std::span<double> energies = room_for_figures(cells.size());
+    compute(kernel.material.volume_modulus, cells, positions, energies.data());
+    return sum_of_figures(energies, num_elements_);
+}
+
+void HybmssLanes::set_results(const HybmssKernel& kernel, const LocalVector* positions,
+                              std::span<ElementResult> results) const {
+    static HybmssStates* const compute = hybmss_states_for(processor());
+    const auto cells = groups<double>();
+    const std::span<ElementStates> states = room_for_states(cells.size());
+    compute(kernel.material.volume_modulus, cells, positions, states.data());
+    physics::set_results(states, results);
+}
+
+double HybmssLanes::min_volume_ratio(const LocalVector* positions) const {
+    static HybmssVolumeRatios* const compute = hybmss_volume_ratios_for(processor());
+    const auto cells = groups<double>();
+    const std::span<double> ratios = room_for_figures(cells.size());
+    compute(cells, positions, ratios.data());
+    return least_of_figures(ratios, num_elements_);
 }
 
 }  // namespace incise::physics

@@ -1,5 +1,6 @@
-// The fast forces of HybMSS: cells side by side, one a lane. Equal to HybmssKernel::forces, the
-// reference, but for rounding: to doubles, or to floats where the kernel has single precision.
+// The fast forces and energies of HybMSS: cells side by side, one a lane. Equal to those of
+// HybmssKernel, the reference, but for rounding: to doubles, or to floats where the kernel has
+// single precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "physics/element_states.h"
 #include "physics/local_nodes.h"
 #include "physics/processor.h"
 
@@ -44,6 +46,18 @@ class HybmssLanes {
     /// What add_forces reads of the cells.
     std::span<const std::byte> bytes() const;
 
+    /// Sum of the cells' energies, J, in the order of their numbers; in double precision only, as
+    /// what follows. All are those of the reference within rounding, the same bits on every
+    /// processor.
+    /// @param positions m, by local number
+    Sum elastic_energy(const HybmssKernel& kernel, const LocalVector* positions) const;
+    /// Sets all of the cells' results, in the order of their numbers, but volumes at rest, which
+    /// are read.
+    void set_results(const HybmssKernel& kernel, const LocalVector* positions,
+                     std::span<ElementResult> results) const;
+    /// The least of the cells' present volumes over those at rest.
+    double min_volume_ratio(const LocalVector* positions) const;
+
     /// Those in the numbers that the kernel's precision asks for.
     template <class Number>
     std::span<const CellGroup<Number>> groups() const {
@@ -51,6 +65,7 @@ class HybmssLanes {
     }
 
   private:
+    std::size_t num_elements_ = 0;
     std::variant<std::vector<CellGroup<double>>, std::vector<CellGroup<float>>> groups_;
 };
 
@@ -61,5 +76,17 @@ using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup<Nu
 /// What HybmssLanes calls, by processor; for double and float.
 template <class Number>
 AddHybmssForces<Number>* hybmss_forces_for(Processor processor);
+
+/// Sets what all lanes have, one group after the other.
+using HybmssEnergies = void(double volume_modulus, std::span<const CellGroup<double>> groups,
+                            const LocalVector* positions, double* energies);
+/// Sets one for each group.
+using HybmssStates = void(double volume_modulus, std::span<const CellGroup<double>> groups,
+                          const LocalVector* positions, ElementStates* states);
+using HybmssVolumeRatios = void(std::span<const CellGroup<double>> groups,
+                                const LocalVector* positions, double* ratios);
+HybmssEnergies* hybmss_energies_for(Processor processor);
+HybmssStates* hybmss_states_for(Processor processor);
+HybmssVolumeRatios* hybmss_volume_ratios_for(Processor processor);
 
 }  // namespace incise::physics

@@ -186,6 +186,9 @@ struct Lanes {
             sum = sum * rest + Format::root_terms[i];
         return t * (sum * rest + per_root_of_middle);
     }
+    friend Lanes sqrt(Lanes a) {
+        return a.each([](Number x) { return std::sqrt(x); });
+    }
     friend Lanes abs(Lanes a) {
         return a.each([](Number x) { return std::abs(x); });
     }

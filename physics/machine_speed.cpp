@@ -20,14 +20,10 @@ struct Loops {
     WorkOutLinks* links;
 };
 
-Loops loops_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512)
-        return {avx512::multiply_and_add, avx512::sum_up, avx512::work_out_links};
-    if (processor == Processor::avx2)
-        return {avx2::multiply_and_add, avx2::sum_up, avx2::work_out_links};
-#endif
-    return {plain::multiply_and_add, plain::sum_up, plain::work_out_links};
+Loops loops_for(Processor processor) {
+    return {INCISE_CHOOSE(processor, MultiplyAndAdd, multiply_and_add),
+            INCISE_CHOOSE(processor, SumUp, sum_up),
+            INCISE_CHOOSE(processor, WorkOutLinks, work_out_links)};
 }
 
 /// Seconds, the best of several times.

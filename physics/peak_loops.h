@@ -27,7 +27,6 @@ MultiplyAndAdd multiply_and_add;
 SumUp sum_up;
 WorkOutLinks work_out_links;
 }  // namespace plain
-#ifdef INCISE_HAS_AVX
 namespace avx2 {
 MultiplyAndAdd multiply_and_add;
 SumUp sum_up;
@@ -38,6 +37,5 @@ MultiplyAndAdd multiply_and_add;
 SumUp sum_up;
 WorkOutLinks work_out_links;
 }  // namespace avx512
-#endif
 
 }  // namespace incise::physics

@@ -11,7 +11,6 @@ namespace plain {
 AddForcesOfMemory add_forces_of_memory;
 AdvanceMemory advance_memory;
 }  // namespace plain
-#ifdef INCISE_HAS_AVX
 namespace avx2 {
 AddForcesOfMemory add_forces_of_memory;
 AdvanceMemory advance_memory;
@@ -20,15 +19,10 @@ namespace avx512 {
 AddForcesOfMemory add_forces_of_memory;
 AdvanceMemory advance_memory;
 }  // namespace avx512
-#endif
 
-ViscousFunctions viscous_functions_for([[maybe_unused]] Processor processor) {
-#ifdef INCISE_HAS_AVX
-    if (processor == Processor::avx512)
-        return {avx512::add_forces_of_memory, avx512::advance_memory};
-    if (processor == Processor::avx2) return {avx2::add_forces_of_memory, avx2::advance_memory};
-#endif
-    return {plain::add_forces_of_memory, plain::advance_memory};
+ViscousFunctions viscous_functions_for(Processor processor) {
+    return {INCISE_CHOOSE(processor, AddForcesOfMemory, add_forces_of_memory),
+            INCISE_CHOOSE(processor, AdvanceMemory, advance_memory)};
 }
 
 namespace {

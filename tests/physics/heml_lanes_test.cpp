@@ -322,7 +322,7 @@ TEST(HemlLanes, HaveTheSameBitsOfResultsOnEachProcessor) {
         SCOPED_TRACE(name);
         const auto elements = random_elements<double>(kernel, 100, random);
         const auto states_on = [&](Processor processor) {
-            std::vector<LinkStates> states(elements.groups.links.size());
+            std::vector<ElementStates> states(elements.groups.links.size());
             heml_states_for(processor)(kernel.law, kernel.inversion_threshold, elements.groups,
                                        elements.positions.data(), states.data());
             return states;
@@ -331,7 +331,8 @@ TEST(HemlLanes, HaveTheSameBitsOfResultsOnEachProcessor) {
         for (const Processor processor : processors_at_hand()) {
             const auto states = states_on(processor);
             EXPECT_EQ(
-                std::memcmp(states.data(), expected.data(), states.size() * sizeof(LinkStates)), 0)
+                std::memcmp(states.data(), expected.data(), states.size() * sizeof(ElementStates)),
+                0)
                 << static_cast<int>(processor);
         }
     });

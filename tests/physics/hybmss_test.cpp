@@ -93,53 +93,63 @@ double force_scale(const HybmssKernel& kernel, const HybmssKernel::Element& e) {
     return kernel.stiffness_energy(e) / std::cbrt(e.volume);
 }
 
+/// Cells side by side, each with nodes of its own, deformed.
+template <class Number>
+struct CellsInLanes {
+    static constexpr std::size_t n = 19;  // no multiple of the lanes
+    HybmssKernel kernel;
+    HybmssKernel::Element element;
+    HybmssLanes lanes;
+    std::vector<LocalVector> positions{8 * n + 1};
+    std::vector<Cell> cells;
+
+    CellsInLanes(const HybmssKernel& of, const Cell& X, const HybmssKernel::Element& e,
+                 test::Random& random)
+        : kernel(of), element(e) {
+        if (sizeof(Number) == sizeof(float)) kernel.precision = Precision::single_precision;
+        lanes.assign(n, kernel);
+        std::vector<std::uint16_t> corners(8 * n);
+        std::iota(corners.begin(), corners.end(), std::uint16_t{0});
+        lanes.set_nodes(corners, 8 * n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Mat3 F = random_deformation(random, {1.1, 0.9, random.uniform(-1.0, 1.5)});
+            Cell x = shaken(deformed(X, F), random, 0.1);
+            if (i == 3) x[1] = x[0];  // a spring without length
+            if (i == 4) x = X;
+            for (std::size_t k = 0; k < 8; ++k) positions[8 * i + k] = x[k];
+            lanes.set(i, e);
+            cells.push_back(x);
+        }
+    }
+};
+
 /// Of the fast forces, on each kind of processor at hand.
 /// @param rounding  of them
 template <class Number>
-void expect_lanes_like_the_reference(HybmssKernel kernel, const Cell& X,
-                                     const HybmssKernel::Element& e, double rounding,
-                                     test::Random& random) {
-    constexpr std::size_t n = 19;  // no multiple of the lanes
-    if (sizeof(Number) == sizeof(float)) kernel.precision = Precision::single_precision;
-    HybmssLanes lanes;
-    lanes.assign(n, kernel);
-    std::vector<std::uint16_t> corners(8 * n);
-    std::iota(corners.begin(), corners.end(), std::uint16_t{0});
-    lanes.set_nodes(corners, 8 * n);
-    std::vector<LocalVector> positions(8 * n + 1);
-    std::vector<Cell> expected;
-    for (std::size_t i = 0; i < n; ++i) {
-        Cell x =
-            shaken(deformed(X, random_deformation(random, {1.1, 0.9, random.uniform(-1.0, 1.5)})),
-                   random, 0.1);
-        if (i == 3) x[1] = x[0];  // a spring without length
-        if (i == 4) x = X;
-        for (std::size_t k = 0; k < 8; ++k) positions[8 * i + k] = x[k];
-        lanes.set(i, e);
-        expected.push_back(kernel.forces(e, x));
-    }
+void expect_forces_of_the_reference(const CellsInLanes<Number>& all, double rounding) {
     // With few nodes, which lanes share, the order of sums tells.
-    const auto groups = lanes.groups<Number>();
+    const auto groups = all.lanes.template groups<Number>();
     std::vector<CellGroup<Number>> sharing(groups.begin(), groups.end());
     for (auto& group : sharing)
         for (auto& corner : group.places)
             for (std::uint16_t& place : corner)
                 place = static_cast<std::uint16_t>(place % place_of(13));
     const auto forces_on = [&](Processor processor, std::span<const CellGroup<Number>> cells) {
-        std::vector<LocalVector> f(positions.size());
-        hybmss_forces_for<Number>(processor)(kernel.material.volume_modulus, cells,
-                                             positions.data(), f.data(), {});
+        std::vector<LocalVector> f(all.positions.size());
+        hybmss_forces_for<Number>(processor)(all.kernel.material.volume_modulus, cells,
+                                             all.positions.data(), f.data(), {});
         return f;
     };
     const auto plain = forces_on(Processor::plain, groups),
                shared = forces_on(Processor::plain, sharing);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double scale = force_scale(kernel, e) + sum_of_norms(expected[i]);
+    for (std::size_t i = 0; i < all.cells.size(); ++i) {
+        const Cell expected = all.kernel.forces(all.element, all.cells[i]);
+        const double scale = force_scale(all.kernel, all.element) + sum_of_norms(expected);
         Vec3 sum = Vec3::Zero();
         for (std::size_t k = 0; k < 8; ++k) {
             const Vec3 f = plain[8 * i + k].vector();
             sum += f;
-            EXPECT_LE((f - expected[i][k]).norm(), rounding * scale);
+            EXPECT_LE((f - expected[k]).norm(), rounding * scale);
         }
         EXPECT_LE(sum.norm(), 1e-15 * scale);
     }
@@ -153,8 +163,68 @@ void expect_lanes_like_the_reference(HybmssKernel kernel, const Cell& X,
 TEST(HybmssLanes, HaveTheForcesOfTheReferenceAndTheSameBitsOnEachProcessor) {
     test::Random random(12);
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
-        expect_lanes_like_the_reference<double>(kernel, X, e, 1e-12, random);
-        expect_lanes_like_the_reference<float>(kernel, X, e, 2e-6, random);
+        expect_forces_of_the_reference(CellsInLanes<double>(kernel, X, e, random), 1e-12);
+        expect_forces_of_the_reference(CellsInLanes<float>(kernel, X, e, random), 2e-6);
+    });
+}
+
+TEST(HybmssLanes, HaveTheEnergiesAndStressesOfTheReference) {
+    test::Random random(13);
+    for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
+        const CellsInLanes<double> all(kernel, X, e, random);
+        std::vector<ElementResult> results(all.cells.size());
+        for (ElementResult& result : results) result.volume = e.volume;
+        all.lanes.set_results(kernel, all.positions.data(), results);
+        Sum sum;
+        double least = infinity, size = 0.0;
+        for (std::size_t i = 0; i < results.size(); ++i) {
+            const Cell &x = all.cells[i], f = kernel.forces(e, x);
+            const double energy = kernel.energy(e, x), ratio = kernel.volume_ratio(e, x);
+            const double scale = kernel.stiffness_energy(e) + std::abs(energy);
+            EXPECT_NEAR(results[i].energy, energy, 1e-14 * scale);
+            EXPECT_NEAR(results[i].volume_ratio, ratio, 1e-14);
+            Mat3 virial = Mat3::Zero();
+            for (std::size_t k = 1; k < 8; ++k) virial += f[k] * (x[k] - x[0]).transpose();
+            const double present = e.volume * results[i].volume_ratio;
+            EXPECT_LE((results[i].cauchy_stress * present + virial).norm(),
+                      1e-13 * (scale + virial.norm()));
+            sum += energy, size += scale;
+            least = std::min(least, ratio);
+        }
+        // At rest, far less than what a strain of rounding would store in the first power.
+        EXPECT_LE(std::abs(results[4].energy), 1e-28 * kernel.stiffness_energy(e));
+        const LocalVector* x = all.positions.data();
+        EXPECT_NEAR(all.lanes.elastic_energy(kernel, x).value(), sum.value(), 1e-14 * size);
+        EXPECT_NEAR(all.lanes.min_volume_ratio(x), least, 1e-14);
+    });
+}
+
+TEST(HybmssLanes, HaveTheSameBitsOfEnergiesAndStressesOnEachProcessor) {
+    test::Random random(14);
+    for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
+        const CellsInLanes<double> all(kernel, X, e, random);
+        const auto groups = all.lanes.groups<double>();
+        const double modulus = kernel.material.volume_modulus;
+        const LocalVector* x = all.positions.data();
+        std::vector<ElementStates> expected(groups.size()), states(groups.size());
+        hybmss_states_for(Processor::plain)(modulus, groups, x, expected.data());
+        std::vector<double> figures(groups.size() * elements_together);
+        for (const Processor p : processors_at_hand()) {
+            SCOPED_TRACE(static_cast<int>(p));
+            hybmss_states_for(p)(modulus, groups, x, states.data());
+            EXPECT_EQ(
+                std::memcmp(states.data(), expected.data(), states.size() * sizeof(ElementStates)),
+                0);
+            const auto expect_figures = [&](const auto& of_group) {
+                for (std::size_t i = 0; i < figures.size(); ++i)
+                    EXPECT_EQ(figures[i],
+                              of_group(expected[i / elements_together])[i % elements_together]);
+            };
+            hybmss_energies_for(p)(modulus, groups, x, figures.data());
+            expect_figures([](const ElementStates& of) { return of.energy; });
+            hybmss_volume_ratios_for(p)(groups, x, figures.data());
+            expect_figures([](const ElementStates& of) { return of.volume_ratio; });
+        }
     });
 }
 

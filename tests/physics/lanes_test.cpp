@@ -38,6 +38,7 @@ TYPED_TEST(LanesOf, HaveTheFunctionsThatTheyState) {
     const auto check = [&](const L& x, int l) {
         const double at = x.v[l], root = 1.0 / std::sqrt(at), ln = std::log(at);
         EXPECT_NEAR(reciprocal_sqrt(x).v[l], root, of_root * root) << at;
+        EXPECT_EQ(sqrt(x).v[l], std::sqrt(x.v[l])) << at;
         EXPECT_NEAR(log(x).v[l], ln, of_others * std::max(1.0, std::abs(ln))) << at;
     };
     for_many_lanes<Number>(-widest, widest, check);
