@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "physics/element_result.h"
+#include "physics/element_states.h"
 #include "physics/local_nodes.h"
 #include "physics/sum.h"
 #include "physics/viscous_history.h"
@@ -100,13 +101,12 @@ class ElementBlock {
     virtual double advance(std::span<const LocalVector> before,
                            std::span<const LocalVector> positions, double dt,
                            ViscousHistory& history) = 0;
-    /// Sum of the elements' elastic energies, J.
-    virtual Sum elastic_energy(std::span<const Vec3> positions) const = 0;
+    /// What the elements come to at `positions`.
+    virtual BlockState state(std::span<const Vec3> positions) const = 0;
     /// Sum of their rest volumes, m3.
     virtual Sum rest_volume() const = 0;
     /// Sum over the elements of modulus times rest volume, J.
     virtual double stiffness_energy() const = 0;
-    virtual double min_volume_ratio(std::span<const Vec3> positions) const = 0;
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
     /// Those of all, in the order of elements(); within rounding of those one by one.

@@ -2,52 +2,33 @@
 #include "physics/element_states.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <limits>
-#include <vector>
 
 namespace incise::physics {
 
-namespace {
-
-/// Gives the lanes without an element a figure: those behind the last element.
-void fill_up(std::span<double> figures, std::size_t num_elements, double figure) {
-    const std::size_t num_groups = figures.size() / elements_together;
-    for (std::size_t i = num_elements; i < figures.size(); ++i)
-        figures[i % num_groups * elements_together + i / num_groups] = figure;
-}
-
-}  // namespace
-
-std::span<double> room_for_figures(std::size_t num_groups) {
-    thread_local std::vector<double> figures;
-    figures.resize(num_groups * elements_together);
-    return figures;
-}
-
-Sum sum_of_figures(std::span<double> figures, std::size_t num_elements) {
-    fill_up(figures, num_elements, 0.0);
-    Sums<elements_together> lanes;
-    for (std::size_t i = 0; i < figures.size(); i += elements_together) {
-        Sums<elements_together>::Terms group;
-        std::memcpy(&group, &figures[i], sizeof group);
-        lanes += group;
+BlockState state_of_block(std::span<ElementEnergies> groups, std::size_t num_elements) {
+    BlockState state;
+    const std::size_t num_groups = groups.size();
+    for (std::size_t i = num_elements; i < num_groups * elements_together; ++i) {
+        ElementEnergies& group = groups[i % num_groups];
+        group.energy[i / num_groups] = 0.0;
+        group.volume_ratio[i / num_groups] = state.min_volume_ratio;
     }
-    Sum sum;
-    for (std::size_t lane = 0; lane < elements_together; ++lane) sum += lanes[lane];
-    return sum;
-}
-
-double least_of_figures(std::span<double> figures, std::size_t num_elements) {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    fill_up(figures, num_elements, none);
-    return figures.empty() ? none : *std::min_element(figures.begin(), figures.end());
-}
-
-std::span<ElementStates> room_for_states(std::size_t num_groups) {
-    thread_local std::vector<ElementStates> states;
-    states.resize(num_groups);
-    return states;
+    Sums<elements_together> energies;
+    std::array<double, elements_together> least;
+    least.fill(state.min_volume_ratio);
+    for (const ElementEnergies& group : groups) {
+        Sums<elements_together>::Terms terms;
+        std::memcpy(&terms, group.energy, sizeof terms);
+        energies += terms;
+        for (std::size_t lane = 0; lane < elements_together; ++lane)
+            least[lane] = std::min(least[lane], group.volume_ratio[lane]);
+    }
+    for (std::size_t lane = 0; lane < elements_together; ++lane)
+        state.elastic_energy += energies[lane];
+    state.min_volume_ratio = *std::min_element(least.begin(), least.end());
+    return state;
 }
 
 void set_results(std::span<const ElementStates> groups, std::span<ElementResult> results) {

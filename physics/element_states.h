@@ -3,8 +3,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "physics/element_result.h"
 #include "physics/sum.h"
@@ -16,23 +19,38 @@ namespace incise::physics {
 inline constexpr std::size_t elements_together = 8;
 
 /// What the elements of a group have at given positions.
-struct ElementStates {
+struct ElementEnergies {
     double energy[elements_together];        ///< J
     double volume_ratio[elements_together];  ///< present over rest volume
+};
+struct ElementStates : ElementEnergies {
     /// Sum of the corners' forces times positions, f x^T, by rows: J.
     double virial[9][elements_together];
 };
 
-/// Room for one figure an element and what lanes are left over, until the thread asks again.
-std::span<double> room_for_figures(std::size_t num_groups);
-/// Their sum in the order of elements, but for rounding of the sum. Figures of left over lanes are
-/// lost.
-Sum sum_of_figures(std::span<double> figures, std::size_t num_elements);
-/// Likewise the least of them; infinite if there are none.
-double least_of_figures(std::span<double> figures, std::size_t num_elements);
+/// What all elements of a block come to.
+struct BlockState {
+    Sum elastic_energy;                                                 ///< J
+    double min_volume_ratio = std::numeric_limits<double>::infinity();  ///< if it has any
 
-/// Room for groups' states, until the thread asks again.
-std::span<ElementStates> room_for_states(std::size_t num_groups);
+    BlockState& operator+=(const BlockState& o) {
+        elastic_energy += o.elastic_energy;
+        min_volume_ratio = std::min(min_volume_ratio, o.min_volume_ratio);
+        return *this;
+    }
+};
+
+/// Room for so many groups, until the thread asks again: it takes memory once for all blocks.
+template <class Group>
+std::span<Group> room_for(std::size_t num_groups) {
+    thread_local std::vector<Group> groups;
+    groups.resize(num_groups);
+    return groups;
+}
+
+/// In the order of elements, but for rounding of the sum. What lanes have that are left over is
+/// lost.
+BlockState state_of_block(std::span<ElementEnergies> groups, std::size_t num_elements);
 /// Sets what the elements have, in their order, but volumes at rest, which are read.
 void set_results(std::span<const ElementStates> groups, std::span<ElementResult> results);
 

@@ -206,13 +206,13 @@ void ElementStore::compute_forces(std::span<const Vec3> positions, const Viscous
     });
 }
 
-void ElementStore::compute_energies_and_forces(std::span<const Vec3> positions,
-                                               const ViscousHistory& history,
-                                               const Workers& workers) {
+void ElementStore::compute_states_and_forces(std::span<const Vec3> positions,
+                                             const ViscousHistory& history,
+                                             const Workers& workers) {
     known_.resize(blocks_.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (!blocks_[b] || known_[b].energy) return;
-        known_[b].energy = blocks_[b]->elastic_energy(positions);
+        if (!blocks_[b] || known_[b].state) return;
+        known_[b].state = blocks_[b]->state(positions);
         compute_forces_of(b, positions, history);
         known_[b].has_forces = true;
     });
@@ -234,16 +234,15 @@ void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const 
     }
 }
 
-Sum ElementStore::elastic_energy(std::span<const Vec3> positions, const Workers& workers) const {
+BlockState ElementStore::state(std::span<const Vec3> positions, const Workers& workers) const {
     known_.resize(blocks_.size());
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (blocks_[b] && !known_[b].energy)
-            known_[b].energy = blocks_[b]->elastic_energy(positions);
+        if (blocks_[b] && !known_[b].state) known_[b].state = blocks_[b]->state(positions);
     });
-    Sum sum;
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
-        if (blocks_[b]) sum += *known_[b].energy;
-    return sum;
+    BlockState all;
+    for (const Known& block : known_)
+        if (block.state) all += *block.state;
+    return all;
 }
 
 std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() const {

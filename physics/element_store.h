@@ -86,13 +86,13 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    Workers& workers, ViscousHistory& history);
 
-    /// Computes the energy of each block at `positions` (m, by node id) that is not known, for
-    /// elastic_energy, and right after it the block's forces, for compute_forces: so what both read
-    /// comes from memory once.
-    void compute_energies_and_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                                     const Workers& workers);
+    /// Computes the state of each block at `positions` (m, by node id) that is not known, for
+    /// state(), and right after it the block's forces, for compute_forces: so what both read comes
+    /// from memory once.
+    void compute_states_and_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                                   const Workers& workers);
     /// Computes the forces of each block at `positions` (m, by node id), with those of viscosity as
-    /// far as the history goes, for gather_forces. Those that compute_energies_and_forces computed
+    /// far as the history goes, for gather_forces. Those that compute_states_and_forces computed
     /// stand, if neither an edit changed the block nor state_has_changed() was called.
     void compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
                         const Workers& workers);
@@ -106,10 +106,10 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
-    /// Sum over the elements at `positions`, J. Blocks keep theirs until an edit changes them or
-    /// nodes move, so that another look beside an edit costs what that touched. Not by several
-    /// threads at the same time.
-    Sum elastic_energy(std::span<const Vec3> positions, const Workers& workers) const;
+    /// Of all elements at `positions`. Blocks keep theirs until an edit changes them or nodes move,
+    /// so that another look beside an edit costs what that touched. Not by several threads at the
+    /// same time.
+    BlockState state(std::span<const Vec3> positions, const Workers& workers) const;
     /// To be called when nodes have moved that elements had before, or the history is another.
     void state_has_changed() { known_.clear(); }
 
@@ -148,7 +148,7 @@ class ElementStore {
 
     /// Of a block, until an edit changes it or the state does.
     struct Known {
-        std::optional<Sum> energy;
+        std::optional<BlockState> state;
         bool has_forces = false;  ///< which nobody has asked for yet
     };
 

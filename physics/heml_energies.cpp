@@ -75,20 +75,20 @@ template <class Visit>
 // Flattened, as what is not inlined would have its vectors go through memory.
 template <class L>
 [[gnu::flatten]] void set_energies(const L& law, double J0, const LinkGroups<double>& groups,
-                                   const LocalVector* positions, double* energies) {
+                                   const LocalVector* positions, ElementEnergies* energies) {
     for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
         const auto links = gather_links(positions, groups.links[g], first);
         const auto strained = strained_links<L>(groups, g, first, links);
         const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
-        const DoubleLanes energy = volume * energy_density(law, strained.strain, J0);
-        put(energy, energies + g * DoubleGroup::size + first);
+        put(volume * energy_density(law, strained.strain, J0), energies[g].energy + first);
+        put(strained.strain.J, energies[g].volume_ratio + first);
     });
 }
 
 }  // namespace
 
 void heml_energies(const Law& law, double J0, const LinkGroups<double>& groups,
-                   const LocalVector* positions, double* energies) {
+                   const LocalVector* positions, ElementEnergies* energies) {
     std::visit([&](const auto& l) { set_energies(l, J0, groups, positions, energies); }, law);
 }
 
@@ -111,16 +111,6 @@ void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,
             });
         },
         law);
-}
-
-void heml_volume_ratios(const LinkGroups<double>& groups, const LocalVector* positions,
-                        double* ratios) {
-    for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
-        const DoubleGroup& group = groups.links[g];
-        const auto [v1, v2, v3] = gather_edges<double>(positions, group.places, first);
-        put(volume_ratio(v1, v2, v3, DoubleLanes::load(group.volume + first)),
-            ratios + g * DoubleGroup::size + first);
-    });
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -14,21 +14,18 @@ AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
-HemlVolumeRatios heml_volume_ratios;
 }  // namespace plain
 namespace avx2 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
-HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx2
 namespace avx512 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
-HemlVolumeRatios heml_volume_ratios;
 }  // namespace avx512
 
 template <class Number>
@@ -43,9 +40,6 @@ HemlEnergies* heml_energies_for(Processor processor) {
 }
 HemlStates* heml_states_for(Processor processor) {
     return INCISE_CHOOSE(processor, HemlStates, heml_states);
-}
-HemlVolumeRatios* heml_volume_ratios_for(Processor processor) {
-    return INCISE_CHOOSE(processor, HemlVolumeRatios, heml_volume_ratios);
 }
 
 namespace {
@@ -117,29 +111,21 @@ std::span<const std::byte> HemlLanes::bytes() const {
                       groups_);
 }
 
-Sum HemlLanes::elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const {
+BlockState HemlLanes::state(const HemlKernel& kernel, const LocalVector* positions) const {
     static HemlEnergies* const compute = heml_energies_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    const std::span<double> energies = room_for_figures(groups.links.size());
+    const auto energies = room_for<ElementEnergies>(groups.links.size());
     compute(kernel.law, kernel.inversion_threshold, groups, positions, energies.data());
-    return sum_of_figures(energies, num_elements_);
+    return state_of_block(energies, num_elements_);
 }
 
 void HemlLanes::set_results(const HemlKernel& kernel, const LocalVector* positions,
                             std::span<ElementResult> results) const {
     static HemlStates* const compute = heml_states_for(processor());
     const auto& groups = std::get<LinkGroups<double>>(groups_);
-    const std::span<ElementStates> states = room_for_states(groups.links.size());
+    const auto states = room_for<ElementStates>(groups.links.size());
     compute(kernel.law, kernel.inversion_threshold, groups, positions, states.data());
     physics::set_results(states, results);
-}
-
-double HemlLanes::min_volume_ratio(const LocalVector* positions) const {
-    static HemlVolumeRatios* const compute = heml_volume_ratios_for(processor());
-    const auto& groups = std::get<LinkGroups<double>>(groups_);
-    const std::span<double> ratios = room_for_figures(groups.links.size());
-    compute(groups, positions, ratios.data());
-    return least_of_figures(ratios, num_elements_);
 }
 
 }  // namespace incise::physics

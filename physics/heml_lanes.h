@@ -64,19 +64,16 @@ class HemlLanes {
     /// What add_forces reads of the elements.
     std::span<const std::byte> bytes() const;
 
-    /// Sum of the elements' energies by the law of the kernel, J, in the order of their numbers:
-    /// those of HemlKernel::energy within rounding, zero at rest. The same bits on every processor.
-    /// In double precision only, as floats at rest have strains.
+    /// From the elements' energies by the law of the kernel, which are those of HemlKernel::energy
+    /// within rounding, zero at rest; and volume ratios, to the bit as HemlKernel::volume_ratio.
+    /// The same bits on every processor. In double precision only, as floats at rest have strains.
     /// @param positions m, by local number
-    Sum elastic_energy(const HemlKernel& kernel, const LocalVector* positions) const;
+    BlockState state(const HemlKernel& kernel, const LocalVector* positions) const;
     /// Sets all of the elements' results, in the order of their numbers, but volumes at rest, which
     /// are read: as the reference within rounding, and without stress at rest. In double precision
     /// only, the same bits on every processor.
     void set_results(const HemlKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
-    /// Of the elements' HemlKernel::volume_ratio, to the bit; also in double precision only.
-    double min_volume_ratio(const LocalVector* positions) const;
-
     /// Those in the numbers that the kernel's precision asks for.
     template <class Number>
     const LinkGroups<Number>& groups() const {
@@ -96,18 +93,14 @@ using AddHemlForces = void(const Law& law, double inversion_threshold,
 template <class Number>
 AddHemlForces<Number>* heml_forces_for(Processor processor);
 
-/// Sets what all lanes have, one group after the other.
+/// Both set what lanes have of each group.
 using HemlEnergies = void(const Law& law, double inversion_threshold,
                           const LinkGroups<double>& groups, const LocalVector* positions,
-                          double* energies);
-/// Sets one for each group.
+                          ElementEnergies* energies);
 using HemlStates = void(const Law& law, double inversion_threshold,
                         const LinkGroups<double>& groups, const LocalVector* positions,
                         ElementStates* states);
-using HemlVolumeRatios = void(const LinkGroups<double>& groups, const LocalVector* positions,
-                              double* ratios);
 HemlEnergies* heml_energies_for(Processor processor);
 HemlStates* heml_states_for(Processor processor);
-HemlVolumeRatios* heml_volume_ratios_for(Processor processor);
 
 }  // namespace incise::physics

@@ -36,11 +36,13 @@ template <class Visit>
     return energy;
 }
 
-[[gnu::always_inline]] inline DoubleLanes energy_of_volume(double volume_modulus,
-                                                           DoubleLanes rest_volume,
-                                                           DoubleLanes ratio) {
-    const DoubleLanes strain = ratio - 1.0;
-    return 0.5 * volume_modulus * rest_volume * (strain * strain);
+/// With the volume term's.
+[[gnu::always_inline]] inline void put_energies(double volume_modulus, DoubleLanes of_springs,
+                                                DoubleLanes volume, DoubleLanes rest_volume,
+                                                ElementEnergies& group, std::size_t first) {
+    const DoubleLanes ratio = volume / rest_volume, strain = ratio - 1.0;
+    put(of_springs + 0.5 * volume_modulus * rest_volume * (strain * strain), group.energy + first);
+    put(ratio, group.volume_ratio + first);
 }
 
 /// Calls visit(group's number, first lane, corners) for as many cells at a time as there are lanes.
@@ -59,12 +61,12 @@ template <class Visit>
 
 // Flattened, as what is not inlined would have its vectors go through memory.
 [[gnu::flatten]] void hybmss_energies(double volume_modulus, Cells groups,
-                                      const LocalVector* positions, double* energies) {
+                                      const LocalVector* positions, ElementEnergies* energies) {
     for_each_part(groups, positions, [&](std::size_t g, std::size_t first, const auto& x) {
-        const DoubleLanes volume = DoubleLanes::load(groups[g].volume + first);
         const DoubleLanes of_springs = visit_springs(groups[g], first, x, [](const auto&...) {});
-        put(of_springs + energy_of_volume(volume_modulus, volume, BoxLanes(x).volume / volume),
-            energies + g * elements_together + first);
+        const DoubleLanes rest_volume = DoubleLanes::load(groups[g].volume + first);
+        put_energies(volume_modulus, of_springs, BoxLanes(x).volume, rest_volume, energies[g],
+                     first);
     });
 }
 
@@ -82,21 +84,11 @@ template <class Visit>
                               f[i] = f[i] + per_length * v;
                               f[j] = f[j] - per_length * v;
                           });
-        const DoubleLanes volume = DoubleLanes::load(groups[g].volume + first);
+        const DoubleLanes rest_volume = DoubleLanes::load(groups[g].volume + first);
         const BoxLanes<double> box(x);
-        if (volume_modulus != 0.0) box.add_forces(volume_modulus, volume, f);
-        const DoubleLanes ratio = box.volume / volume;
-        ElementStates& state = states[g];
-        put(of_springs + energy_of_volume(volume_modulus, volume, ratio), state.energy + first);
-        put(ratio, state.volume_ratio + first);
-        put_virials(f, x, state, first);
-    });
-}
-
-void hybmss_volume_ratios(Cells groups, const LocalVector* positions, double* ratios) {
-    for_each_part(groups, positions, [&](std::size_t g, std::size_t first, const auto& x) {
-        put(BoxLanes(x).volume / DoubleLanes::load(groups[g].volume + first),
-            ratios + g * elements_together + first);
+        if (volume_modulus != 0.0) box.add_forces(volume_modulus, rest_volume, f);
+        put_energies(volume_modulus, of_springs, box.volume, rest_volume, states[g], first);
+        put_virials(f, x, states[g], first);
     });
 }
 

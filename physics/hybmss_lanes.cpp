@@ -14,21 +14,18 @@ AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
 HybmssEnergies hybmss_energies;
 HybmssStates hybmss_states;
-HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace plain
 namespace avx2 {
 AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
 HybmssEnergies hybmss_energies;
 HybmssStates hybmss_states;
-HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace avx2
 namespace avx512 {
 AddHybmssForces<double> add_hybmss_forces;
 AddHybmssForces<float> add_hybmss_forces;
 HybmssEnergies hybmss_energies;
 HybmssStates hybmss_states;
-HybmssVolumeRatios hybmss_volume_ratios;
 }  // namespace avx512
 
 template <class Number>
@@ -43,9 +40,6 @@ HybmssEnergies* hybmss_energies_for(Processor processor) {
 }
 HybmssStates* hybmss_states_for(Processor processor) {
     return INCISE_CHOOSE(processor, HybmssStates, hybmss_states);
-}
-HybmssVolumeRatios* hybmss_volume_ratios_for(Processor processor) {
-    return INCISE_CHOOSE(processor, HybmssVolumeRatios, hybmss_volume_ratios);
 }
 
 void HybmssLanes::assign(std::size_t num_elements, const HybmssKernel& kernel) {
@@ -101,29 +95,21 @@ std::span<const std::byte> HybmssLanes::bytes() const {
     return std::visit([](const auto& groups) { return std::as_bytes(std::span(groups)); }, groups_);
 }
 
-Sum HybmssLanes::elastic_energy(const HybmssKernel& kernel, const LocalVector* positions) const {
+BlockState HybmssLanes::state(const HybmssKernel& kernel, const LocalVector* positions) const {
     static HybmssEnergies* const compute = hybmss_energies_for(processor());
     const auto cells = groups<double>();
-    const std::span<double> energies = room_for_figures(cells.size());
+    const auto energies = room_for<ElementEnergies>(cells.size());
     compute(kernel.material.volume_modulus, cells, positions, energies.data());
-    return sum_of_figures(energies, num_elements_);
+    return state_of_block(energies, num_elements_);
 }
 
 void HybmssLanes::set_results(const HybmssKernel& kernel, const LocalVector* positions,
                               std::span<ElementResult> results) const {
     static HybmssStates* const compute = hybmss_states_for(processor());
     const auto cells = groups<double>();
-    const std::span<ElementStates> states = room_for_states(cells.size());
+    const auto states = room_for<ElementStates>(cells.size());
     compute(kernel.material.volume_modulus, cells, positions, states.data());
     physics::set_results(states, results);
-}
-
-double HybmssLanes::min_volume_ratio(const LocalVector* positions) const {
-    static HybmssVolumeRatios* const compute = hybmss_volume_ratios_for(processor());
-    const auto cells = groups<double>();
-    const std::span<double> ratios = room_for_figures(cells.size());
-    compute(cells, positions, ratios.data());
-    return least_of_figures(ratios, num_elements_);
 }
 
 }  // namespace incise::physics

@@ -46,17 +46,14 @@ class HybmssLanes {
     /// What add_forces reads of the cells.
     std::span<const std::byte> bytes() const;
 
-    /// Sum of the cells' energies, J, in the order of their numbers; in double precision only, as
-    /// what follows. All are those of the reference within rounding, the same bits on every
-    /// processor.
+    /// In double precision only, as what follows; that of the reference within rounding, the same
+    /// bits on every processor.
     /// @param positions m, by local number
-    Sum elastic_energy(const HybmssKernel& kernel, const LocalVector* positions) const;
+    BlockState state(const HybmssKernel& kernel, const LocalVector* positions) const;
     /// Sets all of the cells' results, in the order of their numbers, but volumes at rest, which
     /// are read.
     void set_results(const HybmssKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
-    /// The least of the cells' present volumes over those at rest.
-    double min_volume_ratio(const LocalVector* positions) const;
 
     /// Those in the numbers that the kernel's precision asks for.
     template <class Number>
@@ -77,16 +74,12 @@ using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup<Nu
 template <class Number>
 AddHybmssForces<Number>* hybmss_forces_for(Processor processor);
 
-/// Sets what all lanes have, one group after the other.
+/// Both set what lanes have of each group.
 using HybmssEnergies = void(double volume_modulus, std::span<const CellGroup<double>> groups,
-                            const LocalVector* positions, double* energies);
-/// Sets one for each group.
+                            const LocalVector* positions, ElementEnergies* energies);
 using HybmssStates = void(double volume_modulus, std::span<const CellGroup<double>> groups,
                           const LocalVector* positions, ElementStates* states);
-using HybmssVolumeRatios = void(std::span<const CellGroup<double>> groups,
-                                const LocalVector* positions, double* ratios);
 HybmssEnergies* hybmss_energies_for(Processor processor);
 HybmssStates* hybmss_states_for(Processor processor);
-HybmssVolumeRatios* hybmss_volume_ratios_for(Processor processor);
 
 }  // namespace incise::physics

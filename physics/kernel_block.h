@@ -35,8 +35,7 @@ concept HasLanes = requires {
 template <class Kernel>
 concept HasLanesOfResults = HasLanes<Kernel> &&
     requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
-    lanes.elastic_energy(kernel, x);
-    lanes.min_volume_ratio(x);
+    lanes.state(kernel, x);
     lanes.set_results(kernel, x, std::span<ElementResult>());
 };
 
@@ -148,21 +147,24 @@ class KernelBlock final : public ElementBlock {
         return energy;
     }
 
-    Sum elastic_energy(std::span<const Vec3> positions) const override {
+    BlockState state(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
         if constexpr (HasLanesOfResults<Kernel>) {
             const LocalVector* x = local_positions(positions).data();
-            const Sum sum = lanes_in_doubles(
-                [&](const auto& lanes) { return lanes.elastic_energy(kernel_, x); });
+            BlockState state =
+                lanes_in_doubles([&](const auto& lanes) { return lanes.state(kernel_, x); });
             if constexpr (HasHistory<Kernel>)
-                return kernel_.long_time_share * sum;
-            else
-                return sum;
+                state.elastic_energy = kernel_.long_time_share * state.elastic_energy;
+            return state;
         }
-        Sum sum;
-        for (std::size_t s = 0; s < elements_.size(); ++s)
-            sum += kernel_.energy(row(s).rest, gather(s, positions));
-        return sum;
+        BlockState state;
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            const Corners x = gather(s, positions);
+            state.elastic_energy += kernel_.energy(row(s).rest, x);
+            state.min_volume_ratio =
+                std::min(state.min_volume_ratio, kernel_.volume_ratio(row(s).rest, x));
+        }
+        return state;
     }
 
     Sum rest_volume() const override {
@@ -175,18 +177,6 @@ class KernelBlock final : public ElementBlock {
         for (std::size_t s = 0; s < elements_.size(); ++s)
             sum += kernel_.stiffness_energy(row(s).rest);
         return sum;
-    }
-
-    double min_volume_ratio(std::span<const Vec3> positions) const override {
-        assert(is_numbered_);
-        if constexpr (HasLanesOfResults<Kernel>) {
-            const LocalVector* x = local_positions(positions).data();
-            return lanes_in_doubles([&](const auto& lanes) { return lanes.min_volume_ratio(x); });
-        }
-        double lowest = std::numeric_limits<double>::infinity();
-        for (std::size_t s = 0; s < elements_.size(); ++s)
-            lowest = std::min(lowest, kernel_.volume_ratio(row(s).rest, gather(s, positions)));
-        return lowest;
     }
 
     ElementResult result(ElementId e, std::span<const Vec3> positions,

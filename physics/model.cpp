@@ -91,8 +91,8 @@ void Model::compute_forces(double time) {
     });
 }
 
-void Model::compute_energies_and_forces() {
-    elements_.compute_energies_and_forces(positions_, history_, workers_);
+void Model::compute_states_and_forces() {
+    elements_.compute_states_and_forces(positions_, history_, workers_);
 }
 
 void Model::outer_forces_at(std::span<const Vec3> positions, double time,

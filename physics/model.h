@@ -82,10 +82,10 @@ class Model {
     /// and of the history as it stands.
     void compute_forces(double time);
 
-    /// Does the work of totals() and, on elements that no edit touches before it is called, of
-    /// compute_forces() in one pass: for who needs both, as an edit's books and the step around it
-    /// do. Results are to the bit what they are without.
-    void compute_energies_and_forces();
+    /// Does the work of totals() and min_volume_ratio() and, on elements that no edit touches
+    /// before it is called, of compute_forces() in one pass: for who needs both, as an edit's books
+    /// and the step around it do. Results are to the bit what they are without.
+    void compute_states_and_forces();
 
     /// One step of semi-implicit Euler, from the forces last computed:
     /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have

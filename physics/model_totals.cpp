@@ -53,7 +53,7 @@ Totals Model::totals() const {
 }
 
 double Model::elastic_energy() const {
-    return elements_.elastic_energy(positions_, workers_).value();
+    return elements_.state(positions_, workers_).elastic_energy.value();
 }
 
 double Model::stiffness_energy() const {
@@ -63,11 +63,7 @@ double Model::stiffness_energy() const {
 }
 
 double Model::min_volume_ratio() const {
-    double lowest = std::numeric_limits<double>::infinity();
-    elements_.add_up_blocks(
-        workers_, [&](const ElementBlock& block) { return block.min_volume_ratio(positions_); },
-        [&](double of_block) { lowest = std::min(lowest, of_block); });
-    return lowest;
+    return elements_.state(positions_, workers_).min_volume_ratio;
 }
 
 double Model::volume_change() const {

@@ -224,7 +224,7 @@ void Simulation::follow(Tool& tool, const cutting::Split& done) {
     // The model has not followed yet; and nothing moves between the edits of one step.
     const auto& edits = ledger_.edits();
     const bool is_as_left = !edits.empty() && edits.back().step == num_steps_;
-    if (!is_as_left) model_.compute_energies_and_forces();
+    if (!is_as_left) model_.compute_states_and_forces();
     const Account before = is_as_left ? edits.back().after : ledger_.account();
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);

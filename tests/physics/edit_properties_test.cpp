@@ -323,7 +323,7 @@ class FollowingBody {
 
         const auto changes = mesh_.carry_out(step);
         if (!changes) return;
-        model_.compute_energies_and_forces();  // as a run does
+        model_.compute_states_and_forces();  // as a run does
         model_.apply(*changes);
         acting_.follow(mesh_.mesh(), *changes);
         if (step.fate == Fate::undo) {

@@ -102,7 +102,7 @@ class EditedBody {
         ChangeSet changes = test::random_edit(mesh_, random_);
         while (changes.is_empty()) changes = test::random_edit(mesh_, random_);
         ASSERT_EQ(topology::validate(mesh_), no_violations);
-        model_.compute_energies_and_forces();  // as a run does
+        model_.compute_states_and_forces();  // as a run does
         model_.apply(changes);
         expect_balance(before, model_, changes, carried, model_before.masses);
         const MeshSnapshot mesh_after(mesh_);
@@ -129,7 +129,7 @@ class EditedBody {
     void edit_and_take_back() {
         const ChangeSet changes = test::random_edit(mesh_, random_);
         model_.apply(changes);
-        model_.compute_energies_and_forces();
+        model_.compute_states_and_forces();
         replay(mesh_, inverse(changes));
         model_.apply(inverse(changes));
     }
