@@ -28,6 +28,7 @@ namespace {
 cutting::UncutBody uncut_body(const physics::Model& model) {
     const topology::Mesh& mesh = model.mesh();
     cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
+    const double stable_step = model.stable_step();
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const topology::ElementId e(i);
         if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
@@ -35,7 +36,7 @@ cutting::UncutBody uncut_body(const physics::Model& model) {
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
         const double speed = cutting::own_step_length(x) / model.own_step(e);
         double& length = body.step_length[mesh.region(e)];
-        length = std::max(length, speed * model.stable_step());
+        length = std::max(length, speed * stable_step);
     }
     return body;
 }
