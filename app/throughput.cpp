@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "cutting/carver.h"
 #include "cutting/cut_plan.h"
@@ -335,10 +336,13 @@ std::string processor_name() {
     return "unknown";
 }
 
-MachineSpeed measure_machine(int num_cores) {
-    const physics::MachinePeak peak = physics::measure_peak();
-    return {processor_name(), physics::name_of(physics::processor()), num_cores, peak.gigaflops,
-            peak.gigabytes_per_second};
+MachineSpeed measure_machine(int num_cores, std::span<const int> threads) {
+    MachineSpeed machine{processor_name(), physics::name_of(physics::processor()), num_cores, {}};
+    for (const int n : threads) {
+        const physics::MachinePeak peak = physics::measure_peak(n);
+        machine.limits[n] = {peak.gigaflops, peak.gigabytes_per_second};
+    }
+    return machine;
 }
 
 }  // namespace
@@ -371,7 +375,7 @@ Throughput measure_throughput(const ThroughputPlan& plan,
     Throughput result;
     result.tissue = tissue_name;
     next(1.0, "the machine's limits");
-    result.machine = measure_machine(num_cores);
+    result.machine = measure_machine(num_cores, threads);
     const auto measure_bodies = [&](topology::CellKind kind, std::size_t n,
                                     std::string_view method) {
         const topology::Mesh mesh = make_cube(kind, n);
@@ -398,9 +402,9 @@ Throughput measure_throughput(const ThroughputPlan& plan,
         measure_edits(n, materials.back(), plan.seconds, result);
     }
     for (StepRate& rate : result.steps) {
-        rate.share_of_peak = rate.gigaflops / (rate.num_threads * result.machine.gigaflops);
-        rate.share_of_bandwidth =
-            rate.gigabytes_per_second / (rate.num_threads * result.machine.gigabytes_per_second);
+        const MachineSpeed::Limit& limit = result.machine.limits.at(rate.num_threads);
+        rate.share_of_peak = rate.gigaflops / limit.gigaflops;
+        rate.share_of_bandwidth = rate.gigabytes_per_second / limit.gigabytes_per_second;
     }
     return result;
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,13 +12,17 @@
 
 namespace incise::app {
 
-/// What the machine itself can do, on one core.
+/// What the machine itself can do.
 struct MachineSpeed {
     std::string processor;          ///< as the system names it
     std::string_view instructions;  ///< what the fast kernels use of it: plain, avx2, avx512
     int num_cores = 0;
-    double gigaflops = 0.0;             ///< additions and multiplications of doubles, fused
-    double gigabytes_per_second = 0.0;  ///< read from memory, far more than caches hold
+    /// Of so many threads together, by their number.
+    struct Limit {
+        double gigaflops = 0.0;             ///< additions and multiplications of doubles, fused
+        double gigabytes_per_second = 0.0;  ///< read from memory, far more than caches hold
+    };
+    std::map<int, Limit> limits;
 };
 
 /// One body and one number of threads. Times are the best of many, nanoseconds an element.
@@ -37,8 +42,7 @@ struct StepRate {
     double real_time_factor = 0.0;      ///< simulated over wall time at the automatic step
     double gigaflops = 0.0;             ///< of the forces
     double gigabytes_per_second = 0.0;  ///< that the elements' own data take, of the forces
-    /// These over the limits of one core times the number of threads: more than several cores
-    /// have, as they share the memory, and some of them their arithmetic.
+    /// These over the limits of as many threads.
     double share_of_peak = 0.0, share_of_bandwidth = 0.0;
 };
 

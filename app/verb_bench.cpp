@@ -22,8 +22,11 @@ ordered_json as_json(const Throughput& throughput) {
     json["machine"] = {{"processor", machine.processor},
                        {"instructions", machine.instructions},
                        {"cores", machine.num_cores},
-                       {"gflops", machine.gigaflops},
-                       {"gbytes_per_second", machine.gigabytes_per_second}};
+                       {"limits", ordered_json::array()}};
+    for (const auto& [threads, limit] : machine.limits)
+        json["machine"]["limits"].push_back({{"threads", threads},
+                                             {"gflops", limit.gigaflops},
+                                             {"gbytes_per_second", limit.gigabytes_per_second}});
     json["tissue"] = throughput.tissue;
     json["steps"] = ordered_json::array();
     for (const StepRate& rate : throughput.steps) {
@@ -80,8 +83,10 @@ void print_text(const Throughput& throughput) {
     const MachineSpeed& machine = throughput.machine;
     std::printf("processor   %s, %d cores, instructions: %s\n", machine.processor.c_str(),
                 machine.num_cores, std::string(machine.instructions).c_str());
-    std::printf("limits      %.1f GFLOP/s (doubles, fused), %.1f GB/s from memory, on one core\n",
-                machine.gigaflops, machine.gigabytes_per_second);
+    for (const auto& [threads, limit] : machine.limits)
+        std::printf(
+            "limits      %.1f GFLOP/s (doubles, fused), %.1f GB/s from memory, %d thread%s\n",
+            limit.gigaflops, limit.gigabytes_per_second, threads, threads > 1 ? "s" : "");
     std::printf("bodies      cubes of 10 cm with the stiffness of %s\n\n",
                 std::string(throughput.tissue).c_str());
     std::printf("%-22s %8s %7s | %9s %9s %11s %7s %10s | %9s %8s %9s | %7s %5s %6s %5s | %9s %9s\n",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <future>
 #include <limits>
 #include <vector>
 
@@ -39,25 +40,32 @@ double best_time(Work work) {
     return best;
 }
 
-/// Billions a second.
+/// Billions a second, of the amount that all threads work off at the same time: work(i) is the
+/// share of thread i.
 template <class Work>
-double best_rate(double amount, Work work) {
-    volatile double result = 0.0;  // so that the work is done
-    return amount / best_time([&] { result = result + work(); }) * 1e-9;
+double best_rate(double amount, int num_threads, Work work) {
+    return amount * 1e-9 / best_time([&] {
+               std::vector<std::future<double>> others;
+               for (int i = 1; i < num_threads; ++i)
+                   others.push_back(std::async(std::launch::async, work, i));
+               volatile double result = work(0);  // so that the work is done
+               for (auto& other : others) result = result + other.get();
+           });
 }
 
 }  // namespace
 
-MachinePeak measure_peak() {
+MachinePeak measure_peak(int num_threads) {
     const Loops loops = loops_for(processor());
     constexpr std::size_t num_operations = 64'000'000, num_numbers = std::size_t{1} << 25;
-    MachinePeak peak;
-    peak.gigaflops = best_rate(static_cast<double>(num_operations),
-                               [&] { return loops.arithmetic(num_operations); });
     const std::vector<double> numbers(num_numbers, 1.0);
-    peak.gigabytes_per_second = best_rate(static_cast<double>(num_numbers * sizeof(double)), [&] {
-        return loops.reading(numbers.data(), num_numbers);
-    });
+    const std::size_t part = num_numbers / static_cast<std::size_t>(num_threads);
+    MachinePeak peak;
+    peak.gigaflops = best_rate(static_cast<double>(num_operations) * num_threads, num_threads,
+                               [&](int) { return loops.arithmetic(num_operations); });
+    peak.gigabytes_per_second = best_rate(
+        static_cast<double>(part * sizeof(double)) * num_threads, num_threads,
+        [&](int i) { return loops.reading(&numbers[static_cast<std::size_t>(i) * part], part); });
     return peak;
 }
 

@@ -9,14 +9,15 @@
 
 namespace incise::physics {
 
-/// On one core.
+/// Of as many threads as were asked for, together.
 struct MachinePeak {
     double gigaflops = 0.0;  ///< additions and multiplications of doubles, fused, in lanes
     double gigabytes_per_second = 0.0;  ///< read from memory one after the other
 };
 
-/// Takes about half a second and 256 MiB.
-MachinePeak measure_peak();
+/// Takes about half a second and 256 MiB. Throws std::system_error if the system allows no more
+/// threads.
+MachinePeak measure_peak(int num_threads);
 
 /// Seconds that an element's forces take by themselves, without fetching positions or adding up:
 /// the arithmetic of some elements that the nearest cache holds, on one core. Of
