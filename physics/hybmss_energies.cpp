@@ -9,8 +9,9 @@ namespace {
 
 using Cells = std::span<const CellGroup<double>>;
 
-/// What springs pull with, k (l - l0), is k l less a pull at rest, rounded: nothing at rest.
-/// @param visit  called with a spring's ends, from corner i to j, its length, and that pull
+/// What a spring pulls with, k (l - l0), is k l, rounded, less the rounded pull at rest: nothing if
+/// it has its rest length to the bit. Its energy is the square of that over 2 k.
+/// @param visit  called with a spring's ends, corners i and j, the way there, its length, and pull
 /// Returns the springs' energies.
 template <class Visit>
 [[gnu::always_inline]] inline DoubleLanes visit_springs(const CellGroup<double>& group,
