@@ -155,6 +155,8 @@ class ElementStore {
     void note_change(std::size_t block);
     void compute_forces_of(std::size_t block, std::span<const Vec3> positions,
                            const ViscousHistory& history);
+    /// Has the processor fetch what gather_forces reads of a piece.
+    void fetch(const Piece& piece) const;
     /// Those of the elements of the first block from the given number on, if there is one.
     std::span<const std::byte> bytes_from(std::size_t block) const;
     /// The block, or a copy that takes its place if somebody shares it.
