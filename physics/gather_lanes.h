@@ -86,6 +86,22 @@ template <class Number, std::size_t num_corners, std::size_t size>
     return edges;
 }
 
+/// The corners of the elements themselves, in doubles: for differences of any two of them that are
+/// rounded once.
+template <std::size_t num_corners, std::size_t size>
+[[gnu::always_inline]] inline std::array<Lanes3<double>, num_corners> gather_corners(
+    const LocalVector* nodes, const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+    std::array<Lanes3<double>, num_corners> corners;
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < num_corners; ++k) {
+        Lanes<double> rows[4];
+        for (std::size_t p = 0; p < 4; ++p) rows[p] = load_quads(nodes, places[k] + first + p);
+        transpose(rows[0], rows[1], rows[2], rows[3]);
+        corners[k] = {rows[0], rows[1], rows[2]};
+    }
+    return corners;
+}
+
 /// Adds the elements' vectors, given for all corners but corner 0, to what `nodes` has at their
 /// places; corner 0 gets minus their sum in doubles, so that those of an element add up to nothing.
 /// Element by element in fours, corner by corner within: elements may share nodes, and sums must

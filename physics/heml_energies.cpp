@@ -16,14 +16,7 @@ using DoubleGroup = LinkGroup<double>;
 [[gnu::always_inline]] inline std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions,
                                                                        const DoubleGroup& group,
                                                                        std::size_t first) {
-    DoubleLanes3 corners[4];
-    for (std::size_t k = 0; k < 4; ++k) {
-        DoubleLanes rows[4];  // as in gather_edges
-        for (std::size_t p = 0; p < 4; ++p)
-            rows[p] = load_quads(positions, group.places[k] + first + p);
-        transpose(rows[0], rows[1], rows[2], rows[3]);
-        corners[k] = {rows[0], rows[1], rows[2]};
-    }
+    const auto corners = gather_corners(positions, group.places, first);
     constexpr std::size_t ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}};
     std::array<DoubleLanes3, 6> links;
 #pragma GCC unroll 6

@@ -1,6 +1,7 @@
 // Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/cell_lanes.h"
+#include "physics/gather_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 
@@ -15,10 +16,12 @@ template <class Number>
     using Scalar = Lanes<Number>;
     using Vector = Lanes3<Number>;
     const auto load = [first](const auto& row) { return Scalar::load(row + first); };
-    // The force on corner 0 follows from the others'.
-    const std::array<Vector, 8> x = gather_cells(positions, group, first);
-    std::array<Vector, 8> f;
-    f.fill({0.0, 0.0, 0.0});
+    // Corners as seen from corner 0, whose force follows from the others'.
+    std::array<Vector, 8> x, f;
+    x.fill({0.0, 0.0, 0.0});
+    f = x;
+    const auto edges = gather_edges<Number>(positions, group.places, first);
+    std::copy(edges.begin(), edges.end(), x.begin() + 1);
 #pragma GCC unroll 7
     for (std::size_t g = 0; g < 7; ++g) {
         const Scalar k = load(group.stiffnesses[g]), at_rest = load(group.rest_pulls[g]);
@@ -31,8 +34,10 @@ template <class Number>
             f[j] = f[j] - pull * v;
         }
     }
-    if (volume_modulus != 0.0)
-        BoxLanes<Number>(x).add_forces(volume_modulus, load(group.volume), f);
+    if (volume_modulus != 0.0) {
+        const BoxLanes<Number> box(x);
+        box.add_forces(volume_modulus, box.volume() / load(group.volume), f);
+    }
     std::array<Vector, 7> others;
     std::copy(f.begin() + 1, f.end(), others.begin());
     scatter_add<Number>(others, forces, group.places, first);

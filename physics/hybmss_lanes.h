@@ -46,8 +46,9 @@ class HybmssLanes {
     /// What add_forces reads of the cells.
     std::span<const std::byte> bytes() const;
 
-    /// In double precision only, as what follows; that of the reference within rounding, the same
-    /// bits on every processor.
+    /// In double precision only, as what follows; that of the reference within rounding, but volume
+    /// ratios to the bit, and without energy where that has none for springs of their rest lengths.
+    /// The same bits on every processor.
     /// @param positions m, by local number
     BlockState state(const HybmssKernel& kernel, const LocalVector* positions) const;
     /// Sets all of the cells' results, in the order of their numbers, but volumes at rest, which

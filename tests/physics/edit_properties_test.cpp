@@ -323,7 +323,9 @@ class FollowingBody {
 
         const auto changes = mesh_.carry_out(step);
         if (!changes) return;
-        model_.compute_states_and_forces();  // as a run does
+        // As a run does, which has not looked at the body as it is.
+        model_.set_history(model_.history().values());  // nothing is known any more
+        model_.compute_states_and_forces();
         model_.apply(*changes);
         acting_.follow(mesh_.mesh(), *changes);
         if (step.fate == Fate::undo) {
