@@ -20,7 +20,7 @@ struct MachineSpeed {
     /// Of so many threads together, by their number.
     struct Limit {
         double gigaflops = 0.0;             ///< additions and multiplications of doubles, fused
-        double gigabytes_per_second = 0.0;  ///< read from memory, far more than caches hold
+        double gigabytes_per_second = 0.0;  ///< read from memory, 256 MiB
     };
     std::map<int, Limit> limits;
 };

@@ -41,7 +41,7 @@ double best_time(Work work) {
 }
 
 /// Billions a second, of the amount that all threads work off at the same time: work(i) is the
-/// share of thread i.
+/// share of thread i. To be of some milliseconds, beside which starting the threads is nothing.
 template <class Work>
 double best_rate(double amount, int num_threads, Work work) {
     return amount * 1e-9 / best_time([&] {
@@ -57,15 +57,20 @@ double best_rate(double amount, int num_threads, Work work) {
 
 MachinePeak measure_peak(int num_threads) {
     const Loops loops = loops_for(processor());
-    constexpr std::size_t num_operations = 64'000'000, num_numbers = std::size_t{1} << 25;
+    constexpr std::size_t num_operations = 512'000'000, num_numbers = std::size_t{1} << 25;
+    constexpr int num_passes = 4;
     const std::vector<double> numbers(num_numbers, 1.0);
     const std::size_t part = num_numbers / static_cast<std::size_t>(num_threads);
     MachinePeak peak;
     peak.gigaflops = best_rate(static_cast<double>(num_operations) * num_threads, num_threads,
                                [&](int) { return loops.arithmetic(num_operations); });
-    peak.gigabytes_per_second = best_rate(
-        static_cast<double>(part * sizeof(double)) * num_threads, num_threads,
-        [&](int i) { return loops.reading(&numbers[static_cast<std::size_t>(i) * part], part); });
+    const double bytes_of_one = static_cast<double>(num_passes * part * sizeof(double));
+    peak.gigabytes_per_second = best_rate(bytes_of_one * num_threads, num_threads, [&](int i) {
+        const double* const own = &numbers[static_cast<std::size_t>(i) * part];
+        double sum = 0.0;
+        for (int pass = 0; pass < num_passes; ++pass) sum += loops.reading(own, part);
+        return sum;
+    });
     return peak;
 }
 

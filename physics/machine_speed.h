@@ -15,8 +15,8 @@ struct MachinePeak {
     double gigabytes_per_second = 0.0;  ///< read from memory one after the other
 };
 
-/// Takes about half a second and 256 MiB. Throws std::system_error if the system allows no more
-/// threads.
+/// Takes about a second and 256 MiB, of which each thread reads a part. Throws std::system_error if
+/// the system allows no more threads.
 MachinePeak measure_peak(int num_threads);
 
 /// Seconds that an element's forces take by themselves, without fetching positions or adding up:
