@@ -25,7 +25,7 @@ NodeSums Model::sums_of(NodeRange range) const {
         if (m == 0.0) continue;  // dead
         const Vec3 &x = positions_[n], &v = velocities_[n];
         const Vec3 p = m * v, l = x.cross(p);
-        using Pair = NodeSums::Pair;
+        using Pair = NodeSums::Pair;  // in the order of NodeSum
         sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * gravity_.dot(x), p[0]},
                                 Pair{p[1], p[2]},        Pair{l[0], l[1]},
                                 Pair{l[2], m * x[0]},    Pair{m * x[1], m * x[2]}};
@@ -37,18 +37,18 @@ Totals Model::totals() const {
     const NodeSums sums =
         node_sums_.value(masses_.size(), workers_, [&](NodeRange range) { return sums_of(range); });
     Totals t;
-    t.mass = sums[0].value();
+    t.mass = sums[NodeSum::mass].value();
     Sum rest_volume;
     elements_.add_up_blocks(
         workers_, [](const ElementBlock& block) { return block.rest_volume(); },
         [&](const Sum& of_block) { rest_volume += of_block; });
     t.rest_volume = rest_volume.value();
-    t.kinetic_energy = sums[1].value();
+    t.kinetic_energy = sums[NodeSum::kinetic_energy].value();
     t.elastic_energy = elastic_energy();
-    t.gravity_energy = sums[2].value();
-    t.momentum = vector_of(sums, 3);
-    t.angular_momentum = vector_of(sums, 6);
-    if (t.mass > 0.0) t.centre_of_mass = vector_of(sums, 9) / t.mass;
+    t.gravity_energy = sums[NodeSum::gravity_energy].value();
+    t.momentum = vector_of(sums, NodeSum::momentum);
+    t.angular_momentum = vector_of(sums, NodeSum::angular_momentum);
+    if (t.mass > 0.0) t.centre_of_mass = vector_of(sums, NodeSum::moment_of_mass) / t.mass;
     return t;
 }
 

@@ -8,13 +8,22 @@
 
 #include "physics/sum.h"
 #include "physics/workers.h"
-#include "topology/types.h"
 
 namespace incise::physics {
 
-/// Mass (kg), kinetic energy and that of gravity (J), and of three components each momentum
-/// (kg m/s), angular momentum about the origin (kg m2/s) and mass times position (kg m).
-using NodeSums = Sums<12>;
+/// Where what nodes add up to stands among their sums; of vectors the first of three components.
+struct NodeSum {
+    enum Index : std::size_t {
+        mass,                                   ///< kg
+        kinetic_energy,                         ///< J
+        gravity_energy,                         ///< J, zero at the origin
+        momentum,                               ///< kg m/s
+        angular_momentum = momentum + 3,        ///< kg m2/s, about the origin
+        moment_of_mass = angular_momentum + 3,  ///< mass times position, kg m
+        count = moment_of_mass + 3
+    };
+};
+using NodeSums = Sums<NodeSum::count>;
 
 /// By range of nodes, kept until one of the range changes: so another look beside an edit costs
 /// what that touched.
