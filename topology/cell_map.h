@@ -1,4 +1,4 @@
-// The combinatorial map behind a mesh: CGAL's linear cell complex, addressed by the mesh's ids.
+// The combinatorial map beside a mesh: CGAL's linear cell complex, addressed by the mesh's ids.
 // Its local operators work on darts directly and touch only the cells that they name.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -15,9 +15,12 @@ namespace incise::topology {
 
 class Mesh;
 
-/// Internal to topology. Every element has one volume, each of its faces one cycle of darts; the
-/// dart at position p of face f starts at the corner that cell_kind.h lists there. Vertices carry
-/// the rest point and the node id, volumes the element id; edges and faces carry nothing.
+/// Internal to topology: a second record, by which the mesh's arrays can be checked. It is written
+/// with them, and only validate() and tests read it.
+///
+/// Every element has one volume, each of its faces one cycle of darts; the dart at position p of
+/// face f starts at the corner that cell_kind.h lists there. Vertices carry the rest point and the
+/// node id, volumes the element id; edges and faces carry nothing.
 class CellMap {
   public:
     CellMap();

@@ -16,8 +16,11 @@ namespace incise::topology {
 
 struct BuiltMesh;
 
-/// Elements over nodes, held twice: as a combinatorial map, which is the truth about topology,
-/// and as flat arrays that mirror it row by row, which is what everyone reads.
+/// Elements over nodes, as flat arrays: the mesh that everyone reads and that edits decide by.
+///
+/// A combinatorial map of the same topology stands beside the arrays. Construction, edits and
+/// replays write both, row by row. Nothing is copied from the map to the arrays; validate()
+/// compares the two.
 ///
 /// Ids are dense array indices in an order that keeps neighbours close (a Hilbert curve). The
 /// number by which a user knows a node or element, its number in the source, is its label.
@@ -89,6 +92,7 @@ class Mesh {
     /// Points of the source.
     std::size_t num_source_points() const { return node_labels_.size(); }
 
+    /// The second record, for validate(). A run reads it only to check what a checkpoint led to.
     const CellMap& map() const { return map_; }
 
   private:
