@@ -79,37 +79,24 @@ Eigen::Matrix<double, n, n> without_negative_modes(const Eigen::Matrix<double, n
 
 }  // namespace
 
-// With the invariants p of strain: Vol (sum of w_pq grad p grad q^T + sum of w_p grad grad p).
+// With the invariants p of strain: Vol (sum of w_pq grad p grad q^T + sum of w_p grad grad p). By
+// gradients g_i of N_i, whose products do not cancel in thin elements as those of links do.
 ElementTangent<4> element_tangent(const HemlKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x) {
-    const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
-    const Vec6 dl = squared_links(x) - e.rest_links;
-    const Vec6 Mdl = e.Mtr * dl;
-    const LawResponse<Dual> r = response(kernel.law, with_derivatives(kernel.strain(e, dl, Mdl, x)),
-                                         kernel.inversion_threshold);
-
-    // Gradients of the squared links by corners 1 to 3.
-    Eigen::Matrix<double, 9, 6> L = Eigen::Matrix<double, 9, 6>::Zero();
-    const auto from_first = [&](int link, int i, const Vec3& v) {
-        L.block<3, 1>(3 * i, link) = 2.0 * v;
-    };
-    const auto between = [&](int link, int i, int j, const Vec3& v) {
-        L.block<3, 1>(3 * i, link) = -2.0 * v;
-        L.block<3, 1>(3 * j, link) = 2.0 * v;
-    };
-    from_first(0, 0, v1);
-    from_first(1, 1, v2);
-    from_first(2, 2, v3);
-    between(3, 0, 1, v2 - v1);
-    between(4, 1, 2, v3 - v2);
-    between(5, 2, 0, v1 - v3);
+    const Deformation d = deformation(e, x);
+    const LawResponse<Dual> r =
+        response(kernel.law, with_derivatives(d.strain), kernel.inversion_threshold);
+    const LawResponse<double> values{r.w.value, r.w_a.value, r.w_b.value, r.w_J.value, r.w_f.value};
+    const Mat3 g = e.inverse_edges.transpose(), Fg = d.F * g;  // of corner i in column i - 1
 
     Eigen::Matrix<double, 9, 4> gradients;  // of a, b, J and f
-    gradients.col(0) = L * e.vtr;
-    gradients.col(1) = 2.0 * (L * Mdl);
-    gradients.col(2) << v2.cross(v3), v3.cross(v1), v1.cross(v2);
-    gradients.col(2) /= 6.0 * e.volume;
-    gradients.col(3) = L * e.fibre_links;
+    const auto set_gradient = [&](int invariant, const Mat3& by_corner) {
+        gradients.col(invariant) = by_corner.reshaped();
+    };
+    set_gradient(0, 2.0 * Fg);
+    set_gradient(1, 4.0 * d.F * (d.twice_strain * g));
+    set_gradient(2, cofactors(d.F) * g);
+    set_gradient(3, 2.0 * (d.F * e.fibre) * (e.fibre.transpose() * g));
     Eigen::Matrix4d w;
     w.col(0) = r.w_a.gradient;
     w.col(1) = r.w_b.gradient;
@@ -118,48 +105,44 @@ ElementTangent<4> element_tangent(const HemlKernel& kernel, const LinkElement& e
     w = (0.5 * (w + w.transpose())).eval();
 
     Eigen::Matrix<double, 9, 9> inner = congruent(gradients, w);
-    inner += 2.0 * r.w_b.value * congruent(L, e.Mtr);
-    const Vec6 t =
-        2.0 * (r.w_a.value * e.vtr + 2.0 * r.w_b.value * Mdl + r.w_f.value * e.fibre_links);
-    Mat3 tension;
-    tension << t[0] + t[3] + t[5], -t[3], -t[5],  //
-        -t[3], t[1] + t[3] + t[4], -t[4],         //
-        -t[5], -t[4], t[2] + t[4] + t[5];
-    add_scalars(tension, inner);
+    const Mat3 G = g.transpose() * g, B = d.F * d.F.transpose();
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            inner.block<3, 3>(3 * i, 3 * j) +=
+                4.0 * values.w_b * (G(i, j) * B + Fg.col(j) * Fg.col(i).transpose());
+    add_scalars(g.transpose() * second_stress_without_volume(values, d.twice_strain, e.fibre) * g,
+                inner);
+    const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
     const auto couple = [&](int i, int j, const Mat3& K) {
         inner.block<3, 3>(3 * i, 3 * j) += K;
         inner.block<3, 3>(3 * j, 3 * i) += K.transpose();
     };
-    const double p = r.w_J.value / (6.0 * e.volume);
+    const double p = values.w_J / (6.0 * e.volume);
     couple(0, 1, -p * cross_matrix(v3));
     couple(0, 2, p * cross_matrix(v2));
     couple(1, 2, -p * cross_matrix(v1));
     return with_first_corner(e.volume * inner);
 }
 
-ElementTangent<4> tangent_of_stress(const Mat3& S, double volume, const Mat3& inverse_edges) {
+ElementTangent<4> tangent_of_stress(const Mat3& S, const LinkElement& e) {
     Eigen::Matrix<double, 9, 9> inner = Eigen::Matrix<double, 9, 9>::Zero();
-    add_scalars(volume * (inverse_edges * S * inverse_edges.transpose()), inner);
+    add_scalars(e.volume * (e.inverse_edges * S * e.inverse_edges.transpose()), inner);
     return with_first_corner(inner);
 }
 
-ElementTangent<4> element_tangent(const ViscousKernel& kernel, const ViscousKernel::Element& e,
+ElementTangent<4> element_tangent(const ViscousKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x,
                                   const ViscousKernel::EndOfStep& end) {
     const HemlKernel& elastic = kernel;
-    const LinkElement& element = e;
-    return end.share * element_tangent(elastic, element, x) +
-           tangent_of_stress(end.stress, e.volume, e.inverse_edges);
+    return end.share * element_tangent(elastic, e, x) + tangent_of_stress(end.stress, e);
 }
 
 // The constant stress of the nodal rule does not depend on the positions.
-ElementTangent<4> element_tangent(const NodalViscousKernel& kernel,
-                                  const NodalViscousKernel::Element& e,
+ElementTangent<4> element_tangent(const NodalViscousKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x,
                                   const NodalViscousKernel::EndOfStep& end) {
     const HemlKernel& elastic = kernel;
-    const LinkElement& element = e;
-    return end.share * element_tangent(elastic, element, x);
+    return end.share * element_tangent(elastic, e, x);
 }
 
 ElementTangent<4> element_tangent(const MassSpringKernel&, const MassSpringKernel::Element& e,

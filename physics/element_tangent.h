@@ -22,15 +22,14 @@ ElementTangent<4> element_tangent(const HemlKernel& kernel, const LinkElement& e
                                   const std::array<Vec3, 4>& x);
 
 /// Of a stress (Pa) that stays as it is in the frame of rest; see forces_of_stress.
-ElementTangent<4> tangent_of_stress(const Mat3& S, double volume, const Mat3& inverse_edges);
+ElementTangent<4> tangent_of_stress(const Mat3& S, const LinkElement& e);
 
 /// At the end of a step, as forces() of the same arguments.
-ElementTangent<4> element_tangent(const ViscousKernel& kernel, const ViscousKernel::Element& e,
+ElementTangent<4> element_tangent(const ViscousKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x,
                                   const ViscousKernel::EndOfStep& end);
 /// Likewise.
-ElementTangent<4> element_tangent(const NodalViscousKernel& kernel,
-                                  const NodalViscousKernel::Element& e,
+ElementTangent<4> element_tangent(const NodalViscousKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x,
                                   const NodalViscousKernel::EndOfStep& end);
 

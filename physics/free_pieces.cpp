@@ -2,7 +2,9 @@
 #include "physics/free_pieces.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -43,16 +45,36 @@ std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
 Vector6 row_of(const FreePiece& piece, const Vec3& x, int component) {
     Vector6 row;
     const Vec3 axis = Vec3::Unit(component);
-    row << axis, ((x - piece.centre) / piece.size).cross(axis);
+    row << axis, piece.turns.transpose() * (x - piece.centre).cross(axis);
     return row;
+}
+
+/// Sets where the piece's nodes have their middle, and its turns.
+void find_frame(FreePiece& piece, std::span<const Vec3> positions) {
+    const auto num_nodes = static_cast<double>(piece.nodes.size());
+    for (const NodeId n : piece.nodes) piece.centre += positions[n.index()];
+    piece.centre /= num_nodes;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const NodeId n : piece.nodes) {
+        const Vec3 arm = positions[n.index()] - piece.centre;
+        spread += arm * arm.transpose();
+    }
+    piece.turns = spectrum(spread).vectors;
+    Vec3 squared_ways = Vec3::Zero();
+    for (const NodeId n : piece.nodes)
+        for (int k = 0; k < 3; ++k)
+            squared_ways[k] +=
+                piece.turns.col(k).cross(positions[n.index()] - piece.centre).squaredNorm();
+    for (int k = 0; k < 3; ++k) piece.turns.col(k) /= std::sqrt(squared_ways[k] / num_nodes);
 }
 
 }  // namespace
 
 std::vector<FreePiece> find_free_pieces(const Mesh& mesh, std::span<const Vec3> positions,
                                         const Supports& supports) {
-    // Ways that supports hinder by less than this share of a full hold are free.
-    constexpr double hold = 1e-10;
+    // Ways that supports hinder by less than this share of a full hold are free: what rounding of
+    // positions in single precision leaves of none, by its square.
+    constexpr double hold = 1e-13;
     const std::vector<std::size_t> piece_of = pieces_of_nodes(mesh);
     std::vector<std::size_t> num_elements(mesh.node_capacity(), 0);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
@@ -67,10 +89,7 @@ std::vector<FreePiece> find_free_pieces(const Mesh& mesh, std::span<const Vec3> 
         FreePiece& piece = pieces[p];
         if (piece.nodes.empty()) continue;
         piece.num_elements = num_elements[p];
-        for (const NodeId n : piece.nodes) piece.centre += positions[n.index()];
-        piece.centre /= static_cast<double>(piece.nodes.size());
-        for (const NodeId n : piece.nodes)
-            piece.size = std::max(piece.size, (positions[n.index()] - piece.centre).norm());
+        find_frame(piece, positions);
         Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
         for (const NodeId n : piece.nodes)
             if (const auto* support_of = supports.of_node(n.index()))
@@ -117,9 +136,8 @@ void require_equilibrium(const Mesh& mesh, const FreePiece& piece, std::span<con
     double all = 0.0;
     for (const NodeId n : piece.nodes) {
         const Vec3& f = forces[n.index()];
-        const Vec3 arm = (positions[n.index()] - piece.centre) / piece.size;
         total.head<3>() += f;
-        total.tail<3>() += arm.cross(f);
+        total.tail<3>() += piece.turns.transpose() * (positions[n.index()] - piece.centre).cross(f);
         all += f.norm();
     }
     const Vector6 moving = piece.modes * (piece.modes.transpose() * total);
@@ -131,10 +149,11 @@ void require_equilibrium(const Mesh& mesh, const FreePiece& piece, std::span<con
          << (piece.num_elements == 1 ? " element" : " elements") << " (one of them is element "
          << mesh.label(e) << ", its middle is now at " << piece.centre.transpose()
          << ") is not held, and loads ";
-    if (is_turned)
-        text << "turn it with " << moving.tail<3>().norm() * piece.size << " N m about the axis "
-             << moving.tail<3>().normalized().transpose();
-    else
+    if (is_turned) {
+        const Vec3 moment = piece.turns.transpose().inverse() * moving.tail<3>();
+        text << "turn it with " << moment.norm() << " N m about the axis "
+             << moment.normalized().transpose();
+    } else
         text << "push it with " << moving.head<3>().norm() << " N along "
              << moving.head<3>().normalized().transpose();
     text << "; hold it by a constraint, take the loads and gravity from it, or use mode = "

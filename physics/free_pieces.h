@@ -17,9 +17,11 @@ struct FreePiece {
     std::vector<topology::NodeId> nodes;
     std::size_t num_elements = 0;
     Vec3 centre = Vec3::Zero();  ///< of its nodes, m
-    double size = 0.0;           ///< farthest node from the centre, m
-    /// Ways it can move, orthonormal in the columns: velocity at the centre, then turning about it
-    /// times `size`.
+    /// Turns about the centre: a unit in column k turns the piece about its principal axis k, by so
+    /// much that the root mean square of its nodes' ways is 1 m. In this measure a needle that
+    /// turns about its length moves as much as one that turns over. 1/m
+    Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
+    /// Ways it can move, orthonormal in the columns: velocity at the centre, then that of `turns`.
     Eigen::Matrix<double, 6, Eigen::Dynamic> modes;
     /// As few components as take these ways from it (statically determinate): held there, it
     /// stays where it is, and the reactions are zero as long as its loads are in equilibrium.

@@ -20,53 +20,49 @@ Mat3 edge_matrix(const std::array<Vec3, 4>& x) {
     return v;
 }
 
-LinkElement link_element(const std::array<Vec3, 4>& X) {
-    LinkElement element;
-    element.volume = topology::tetrahedron_volume(X[0], X[1], X[2], X[3]);
-    element.rest_links = squared_links(X);
+// With full pivoting, as needles have edges that are nearly parallel: cofactors would lose the
+// square of what that costs.
+LinkElement link_element(const std::array<Vec3, 4>& X, const Vec3& fibre) {
     const Mat3 V = edge_matrix(X);
-    const Mat3 G = (V.transpose() * V).inverse();
-    // D = V^T C V is linear in the links, D = sum of l_k D_k, and C_k = V^-T D_k V^-1: hence
-    // tr C_k = tr(D_k G) and tr(C_k C_l) = tr(D_k G D_l G).
-    std::array<Mat3, 6> DG;
-    const auto link = [&](std::size_t k, int i, int j) {
-        Mat3 D = Mat3::Zero();
-        if (i == j) {  // from corner 0: row and column i
-            D.row(i).setConstant(0.5);
-            D.col(i).setConstant(0.5);
-            D(i, i) = 1.0;
-        } else {
-            D(i, j) = D(j, i) = -0.5;
-        }
-        DG[k] = D * G;
-    };
-    // The off-diagonal entries are (l_i + l_j - l_ij)/2.
-    link(0, 0, 0);
-    link(1, 1, 1);
-    link(2, 2, 2);
-    link(3, 0, 1);
-    link(4, 1, 2);
-    link(5, 2, 0);
-    for (int k = 0; k < 6; ++k) {
-        const Mat3& A = DG[static_cast<std::size_t>(k)];
-        element.vtr[k] = A.trace();
-        for (int m = 0; m <= k; ++m)
-            element.Mtr(k, m) = element.Mtr(m, k) =
-                A.cwiseProduct(DG[static_cast<std::size_t>(m)].transpose()).sum();
-    }
-    return element;
+    return {topology::tetrahedron_volume(X[0], X[1], X[2], X[3]), squared_links(X), V,
+            V.fullPivLu().inverse(), fibre};
+}
+
+Mat3 displacement_gradient(const LinkElement& e, const std::array<Vec3, 4>& x) {
+    return (edge_matrix(x) - e.edges) * e.inverse_edges;
+}
+
+Deformation deformation(const LinkElement& e, const std::array<Vec3, 4>& x) {
+    const Mat3 H = displacement_gradient(e, x);
+    Deformation d;
+    d.F = Mat3::Identity() + H;
+    d.twice_strain = H + H.transpose() + H.transpose() * H;
+    d.strain = {d.twice_strain.trace(), d.twice_strain.squaredNorm(), d.F.determinant(),
+                e.fibre.dot(d.twice_strain * e.fibre)};
+    return d;
+}
+
+std::array<Vec3, 4> forces_of_first_stress(const LinkElement& e, const Mat3& P) {
+    const Mat3 f = -e.volume * (P * e.inverse_edges.transpose());
+    return {-f.rowwise().sum(), f.col(0), f.col(1), f.col(2)};
+}
+
+Mat3 second_stress_without_volume(const LawResponse<double>& r, const Mat3& twice_strain,
+                                  const Vec3& fibre) {
+    Mat3 S = 4.0 * r.w_b * twice_strain;
+    S.diagonal().array() += 2.0 * r.w_a;
+    if (r.w_f != 0.0) S += 2.0 * r.w_f * fibre * fibre.transpose();
+    return S;
+}
+
+Mat3 cofactors(const Mat3& F) {
+    Mat3 result;
+    result << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+    return result;
 }
 
 LinkElement HemlKernel::precompute(const Corners& X, const Vec3& fibre) const {
-    LinkElement element = link_element(X);
-    if (has_fibres(law)) {
-        element.fibre = fibre;
-        // With u = V^-1 a0, a0 . C_k a0 = u . D_k u.
-        const Vec3 u = edge_matrix(X).inverse() * fibre;
-        element.fibre_components = u;
-        element.fibre_links << u.sum() * u, -u[0] * u[1], -u[1] * u[2], -u[2] * u[0];
-    }
-    return element;
+    return link_element(X, has_fibres(law) ? fibre : Vec3::Zero());
 }
 
 double HemlKernel::volume_ratio(const Element& e, const Corners& x) const {
@@ -80,22 +76,17 @@ double HemlKernel::stiffness_energy(const Element& e) const {
 }
 
 double HemlKernel::energy(const Element& e, const Corners& x) const {
-    const Vec6 dl = squared_links(x) - e.rest_links;
-    return e.volume * response(law, strain(e, dl, e.Mtr * dl, x), inversion_threshold).w;
+    return e.volume * response(law, deformation(e, x).strain, inversion_threshold).w;
+}
+
+Mat3 HemlKernel::first_piola_kirchhoff(const Element& e, const Corners& x) const {
+    const Deformation d = deformation(e, x);
+    const LawResponse<double> r = response(law, d.strain, inversion_threshold);
+    return d.F * second_stress_without_volume(r, d.twice_strain, e.fibre) + r.w_J * cofactors(d.F);
 }
 
 std::array<Vec3, 4> HemlKernel::forces(const Element& e, const Corners& x) const {
-    const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
-    const Vec6 dl = squared_links(x) - e.rest_links;
-    const Vec6 Mdl = e.Mtr * dl;
-    const LawResponse r = response(law, strain(e, dl, Mdl, x), inversion_threshold);
-    // Tension of the links, Vol dw/dl, doubled as the DLM_i have it.
-    const Vec6 t = 2.0 * e.volume * (r.w_a * e.vtr + 2.0 * r.w_b * Mdl + r.w_f * e.fibre_links);
-    const double p = r.w_J / 6.0;  // w_J dvol/dx_i, eq. (C.4)
-    const Vec3 f1 = -((t[0] + t[3] + t[5]) * v1 - t[3] * v2 - t[5] * v3 + p * v2.cross(v3));
-    const Vec3 f2 = -((t[1] + t[3] + t[4]) * v2 - t[3] * v1 - t[4] * v3 + p * v3.cross(v1));
-    const Vec3 f3 = -((t[2] + t[4] + t[5]) * v3 - t[4] * v2 - t[5] * v1 + p * v1.cross(v2));
-    return {-(f1 + f2 + f3), f1, f2, f3};
+    return forces_of_first_stress(e, first_piola_kirchhoff(e, x));
 }
 
 std::array<double, 4> HemlKernel::stiffness_bounds(const Element& e, const Corners& X) const {
@@ -118,11 +109,6 @@ std::array<double, 4> HemlKernel::stiffness_bounds(const Element& e, const Corne
         s[i] = modulus * inverse_altitude[i] * sum +
                fibres.modulus * e.volume * fibre_part[i] * fibre_sum;
     return s;
-}
-
-LinkStrain<double> HemlKernel::strain(const Element& e, const Vec6& dl, const Vec6& Mdl,
-                                      const Corners& x) const {
-    return {e.vtr.dot(dl), dl.dot(Mdl), volume_ratio(e, x), e.fibre_links.dot(dl)};
 }
 
 }  // namespace incise::physics

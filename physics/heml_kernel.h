@@ -1,7 +1,8 @@
-// Hyper-elastic mass links: the forces of one tetrahedron from its six squared edge lengths.
-// Readable double-precision reference.
-// Source: HEML 2015, section 3 and appendices A-C; corrections in docs/theory.md.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// Hyper-elastic mass links: strain, energy and forces of one tetrahedron. Readable double-precision
+// reference. It takes the strain of the six links from the deformation gradient, which loses less
+// to rounding in thin elements than their squared lengths do: docs/theory.md, Accuracy. Source:
+// HEML 2015, section 3 and appendices A-C; corrections in docs/theory.md. SPDX-License-Identifier:
+// LGPL-3.0-or-later
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,6 @@
 namespace incise::physics {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat3 = Eigen::Matrix3d;
 
 /// Squared edge lengths in the order of the paper: 01, 02, 03, 12, 23, 31.
@@ -24,21 +24,40 @@ Vec6 squared_links(const std::array<Vec3, 4>& x);
 /// The edges 01, 02, 03 as columns.
 Mat3 edge_matrix(const std::array<Vec3, 4>& x);
 
-/// What a tetrahedron keeps of its rest shape.
+/// What a tetrahedron keeps of its rest shape. V is edge_matrix at rest.
 struct LinkElement {
-    double volume;    ///< m3
-    Vec6 rest_links;  ///< m2
-    Vec6 vtr;         ///< traces of the C_k, where C = sum of l_k C_k: 1/m2
-    Mat6 Mtr;         ///< traces of C_k C_l: 1/m4
-
-    // Of a law with fibres; else zero.
-    Vec3 fibre = Vec3::Zero();             ///< a0: their direction at rest, of unit length
-    Vec3 fibre_components = Vec3::Zero();  ///< V^-1 a0, V the rest edges as columns: 1/m
-    Vec6 fibre_links = Vec6::Zero();  ///< a0 . C_k a0, so that I4 = sum of l_k a0 . C_k a0: 1/m2
+    double volume;       ///< m3
+    Vec6 rest_links;     ///< m2
+    Mat3 edges;          ///< V, m
+    Mat3 inverse_edges;  ///< V^-1: its rows are the gradients of N_1 to N_3, 1/m
+    /// a0 of a law with fibres, their direction at rest, of unit length; else zero.
+    Vec3 fibre = Vec3::Zero();
 };
 
-/// Eqs. (A.1) to (A.6) and (C.1). Pure in the four rest positions.
-LinkElement link_element(const std::array<Vec3, 4>& X);
+/// Pure in the four rest positions.
+LinkElement link_element(const std::array<Vec3, 4>& X, const Vec3& fibre = Vec3::Zero());
+
+/// F - 1 of an element with its corners at x. Exactly zero at rest.
+Mat3 displacement_gradient(const LinkElement& e, const std::array<Vec3, 4>& x);
+
+/// How an element is deformed.
+struct Deformation {
+    Mat3 F;                     ///< deformation gradient, x by X
+    Mat3 twice_strain;          ///< C - 1 = 2E, E the Green-Lagrange strain
+    LinkStrain<double> strain;  ///< its invariants
+};
+Deformation deformation(const LinkElement& e, const std::array<Vec3, 4>& x);
+
+/// Nodal forces of a first Piola-Kirchhoff stress P (Pa), f_i = -Vol P grad N_i, newtons.
+std::array<Vec3, 4> forces_of_first_stress(const LinkElement& e, const Mat3& P);
+
+/// The part of the second Piola-Kirchhoff stress (Pa) that comes from the invariants but J:
+/// 2 w_a 1 + 4 w_b (C - 1) + 2 w_f a0 a0^T.
+Mat3 second_stress_without_volume(const LawResponse<double>& r, const Mat3& twice_strain,
+                                  const Vec3& fibre);
+
+/// dJ/dF: the cofactors of F.
+Mat3 cofactors(const Mat3& F);
 
 /// HEML with a given law, for blocks of tetrahedra (element_block.h).
 struct HemlKernel {
@@ -63,8 +82,10 @@ struct HemlKernel {
     /// Elastic energy, joules.
     double energy(const Element& e, const Corners& x) const;
 
-    /// Nodal forces: minus the gradient of energy(), eq. (11):
-    /// f_i = -[ Vol (w_l^T DLM_i) v^T + w_J dvol/dx_i ].
+    /// First Piola-Kirchhoff stress dw/dF, Pa.
+    Mat3 first_piola_kirchhoff(const Element& e, const Corners& x) const;
+
+    /// Nodal forces: minus the gradient of energy(), eq. (11).
     Corners forces(const Element& e, const Corners& x) const;
 
     /// Each corner's part s_i = (lambda + 2 mu) V (1/h_i) sum_j 1/h_j of the nodal bound on the
@@ -72,10 +93,6 @@ struct HemlKernel {
     /// c V |H g_i| sum_j |H g_j|, for c and H see HasFibres, g_i the gradient of corner i's shape
     /// function, of length 1/h_i.
     std::array<double, 4> stiffness_bounds(const Element& e, const Corners& X) const;
-
-    /// @param Mdl  Mtr times dl, the changes of the squared links
-    LinkStrain<double> strain(const Element& e, const Vec6& dl, const Vec6& Mdl,
-                              const Corners& x) const;
 };
 
 }  // namespace incise::physics

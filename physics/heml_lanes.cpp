@@ -60,17 +60,17 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
     LinkGroup<Number>& group = groups.links[g];
     for (int k = 0; k < 6; ++k)
         group.rest_links[k][lane] = static_cast<Number>(element.rest_links[k]);
-    // vtr holds G: of links between corners i and j, neither of them 0, -G_ij; of link 0i the sum
-    // of G's row i.
-    const Vec6& t = element.vtr;
-    const double G[] = {
-        t[0] + t[3] + t[5], t[1] + t[3] + t[4], t[2] + t[4] + t[5], -t[3], -t[4], -t[5]};
+    // (V^T V)^-1 from V^-1: to invert the product would square what needles lose to rounding.
+    const Mat3& W = element.inverse_edges;
+    const auto product = [&](int a, int b) { return W.row(a).dot(W.row(b)); };
+    const double G[] = {product(0, 0), product(1, 1), product(2, 2),
+                        product(0, 1), product(1, 2), product(2, 0)};
     for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
     group.volume[lane] = static_cast<Number>(element.volume);
     group.per_six_volumes[lane] = static_cast<Number>(1.0 / (6.0 * element.volume));
     if (groups.fibres.empty()) return;
-    for (int k = 0; k < 3; ++k)
-        groups.fibres[g].u[k][lane] = static_cast<Number>(element.fibre_components[k]);
+    const Vec3 u = W * element.fibre;
+    for (int k = 0; k < 3; ++k) groups.fibres[g].u[k][lane] = static_cast<Number>(u[k]);
 }
 
 }  // namespace

@@ -21,9 +21,9 @@ namespace incise::physics {
 struct HemlKernel;
 struct LinkElement;
 
-/// Eight elements, or sixteen in floats, as the force loop reads them. Where vtr and Mtr have 27
-/// numbers these have the six of G = (V^T V)^-1, V the rest edges, from which all of those follow:
-/// docs/theory.md, Lanes.
+/// Eight elements, or sixteen in floats, as the force loop reads them. Where the vtr and Mtr of the
+/// paper have 27 numbers these have the six of G = (V^T V)^-1, V the rest edges, from which all of
+/// those follow: docs/theory.md, Lanes.
 template <class Number>
 struct alignas(64) LinkGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);

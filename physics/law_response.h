@@ -17,7 +17,7 @@ namespace incise::physics {
 /// lengths, E the Green-Lagrange strain and C = I + 2E:
 template <class T>
 struct LinkStrain {
-    T a;  ///< vtr . dl = tr(2E) = I1 - 3
+    T a;  ///< vtr . dl = tr(2E) = I1 - 3, with the vtr and Mtr of the paper
     T b;  ///< dl . Mtr dl = tr((2E)^2)
     T J;  ///< current over rest volume; negative when inverted
     /// I4 - 1, I4 = a0 . C a0 being the squared stretch along the fibres; 0 without fibres.

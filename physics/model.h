@@ -151,6 +151,11 @@ class Model {
     /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
     double stable_step() const { return stable_step_.value(); }
 
+    /// What bounds the stiffness of a living node at rest, by which the stable step is found, N/m.
+    double stiffness_bound(std::size_t node) const {
+        return stable_step_.quotient(node) * masses_[node];
+    }
+
     /// The same bound for the element alone, were its nodes no other's, seconds.
     double own_step(ElementId e) const;
 

@@ -13,8 +13,9 @@ namespace {
 
 constexpr int max_iterations = 60;
 constexpr double tolerance = 1e-11;  // of all forces
-// Rounding leaves this much, of the force that a strain of the order of one would take.
-constexpr double rounding = 1e-14;
+// Rounding of positions moves forces by a node's stiffness times this share of where it is; that of
+// what laws make of strain moves energies by this share of what a strain of the order of one takes.
+constexpr double rounding_of_forces = 1e-15, rounding_of_energy = 1e-14;
 // Where rounding is what is left, the imbalance falls no more; so far above the tolerance it may
 // be.
 constexpr double stagnation = 1e3;
@@ -37,9 +38,9 @@ void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec
 
 }  // namespace
 
-/// At a state: how much is out of balance, and how large it all is.
+/// At a state: how much is out of balance, how large it all is, and how much rounding leaves.
 struct NewtonSolver::Forces {
-    double imbalance = 0.0, scale = 0.0;
+    double imbalance = 0.0, scale = 0.0, rounding = 0.0;
 };
 
 void NewtonSolver::follow(const Model& model) {
@@ -90,7 +91,7 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
     model.elements().add_forces({x, model.history(), problem.dt}, elastic_);
     model.outer_forces_at(x, problem.time, outer_);
     net_.setZero(static_cast<Eigen::Index>(tangent_.num_unknowns()));
-    double elastic = 0.0, outer = 0.0, inertial = 0.0;
+    double elastic = 0.0, outer = 0.0, inertial = 0.0, rounding = 0.0;
     for (std::size_t n = 0; n < x.size(); ++n) {
         const double mass = model.masses()[n];
         if (mass == 0.0) continue;  // dead
@@ -103,10 +104,13 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
             net -= force;
         }
         if (!problem.holding.empty()) net += problem.holding[n];
+        const double stiffness = model.stiffness_bound(n) + problem.inertia * mass;
+        rounding += stiffness * stiffness * x[n].squaredNorm();
         for (int c = 0; c < 3; ++c)
             if (const auto row = tangent_.row_of(n, c); row >= 0) net_[row] = net[c];
     }
-    return {net_.norm(), std::sqrt(elastic) + std::sqrt(outer) + std::sqrt(inertial)};
+    return {net_.norm(), std::sqrt(elastic) + std::sqrt(outer) + std::sqrt(inertial),
+            rounding_of_forces * std::sqrt(rounding)};
 }
 
 void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
@@ -187,7 +191,7 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
 
 NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
                                  std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
-    const double floor = rounding * model.stiffness_energy() / model.size();
+    const double stiffness_energy = model.stiffness_energy();
     // The first iteration takes the rest of the body along.
     bool supports_move = find_increments(model, problem.time, x);
 
@@ -197,7 +201,7 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
     for (;; ++report.iterations) {
         report.imbalance = forces.imbalance;
         report.scale = forces.scale;
-        const double goal = tolerance * forces.scale + floor;
+        const double goal = tolerance * forces.scale + forces.rounding;
         const bool falls = forces.imbalance < 0.5 * last_imbalance;
         report.has_converged =
             !supports_move && std::isfinite(goal) &&
@@ -236,7 +240,8 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
             go(share);
             const double end = potential(model, problem, trial_);
             const double work = work_of_loads(model, problem, x, trial_);
-            const double noise = 1e-14 * (std::abs(start) + std::abs(end) + std::abs(work));
+            const double noise = rounding_of_energy * (std::abs(start) + std::abs(end) +
+                                                       std::abs(work) + stiffness_energy);
             if (end - start - work <= enough * share * slope + noise) break;
         }
         if (share <= shortest) break;

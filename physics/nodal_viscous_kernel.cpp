@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/nodal_viscous_kernel.h"
 
-#include <Eigen/LU>
 #include <utility>
 
 namespace incise::physics {
@@ -33,21 +32,13 @@ NodalViscousKernel::NodalViscousKernel(const HemlKernel& elastic, std::vector<Pr
     for (const PronyTerm& term : terms) long_time_share -= term.alpha;
 }
 
-NodalViscousKernel::Element NodalViscousKernel::precompute(const Corners& X,
-                                                           const Vec3& fibre) const {
-    const Mat3 V = edge_matrix(X);
-    return {HemlKernel::precompute(X, fibre), V, V.inverse()};
-}
-
 double NodalViscousKernel::energy(const Element& e, const Corners& x) const {
     return long_time_share * HemlKernel::energy(e, x);
 }
 
 std::array<Vec3, 4> NodalViscousKernel::forces_of_memory(const Element& e, const Corners&,
                                                          std::span<const double> memory) const {
-    const Mat3 relaxed =
-        e.volume * (sum_of_relaxing(memory, terms.size()) * e.inverse_edges.transpose());
-    return {-relaxed.rowwise().sum(), relaxed.col(0), relaxed.col(1), relaxed.col(2)};
+    return forces_of_first_stress(e, -sum_of_relaxing(memory, terms.size()));
 }
 
 std::array<Vec3, 4> NodalViscousKernel::forces(const Element& e, const Corners& x,
@@ -72,20 +63,12 @@ NodalViscousKernel::EndOfStep NodalViscousKernel::end_of_step(std::span<const do
 double NodalViscousKernel::potential(const Element& e, const Corners& x,
                                      const EndOfStep& end) const {
     return end.share * HemlKernel::energy(e, x) +
-           e.volume * end.stress.cwiseProduct(edge_matrix(x) * e.inverse_edges).sum();
+           e.volume * end.stress.cwiseProduct(displacement_gradient(e, x)).sum();
 }
 
 std::array<Vec3, 4> NodalViscousKernel::forces(const Element& e, const Corners& x,
                                                const EndOfStep& end) const {
-    const Mat3 held = e.volume * (end.stress * e.inverse_edges.transpose());
-    Corners f = HemlKernel::forces(e, x);
-    for (Vec3& force : f) force *= end.share;
-    for (std::size_t k = 1; k < 4; ++k) {
-        const Vec3 part = held.col(static_cast<int>(k) - 1);
-        f[k] -= part;
-        f[0] += part;
-    }
-    return f;
+    return forces_of_first_stress(e, end.share * first_piola_kirchhoff(e, x) + end.stress);
 }
 
 void NodalViscousKernel::begin_step(double dt) {
@@ -99,11 +82,7 @@ double NodalViscousKernel::advance(const Element& e, const Corners& before, cons
                sum_of_relaxing(memory, terms.size());
     };
     Mat3 twice_mean = relaxing_stress();
-    // P = -sum of f_k X_k^T / Vol: as f_k = -Vol P grad N_k and sum of grad N_k X_k^T = 1.
-    const Corners f = HemlKernel::forces(e, x);
-    Mat3 forces;
-    forces << f[1], f[2], f[3];
-    const Mat3 P = -1.0 / e.volume * (forces * e.edges.transpose());
+    const Mat3 P = first_piola_kirchhoff(e, x);
     for (std::size_t i = 0; i < terms.size(); ++i) {
         auto gamma = first_stress(memory, i + 1);
         gamma = steps[i].decay * gamma + steps[i].gain * P;

@@ -35,10 +35,6 @@ NodalPronyStep nodal_prony_step(const PronyTerm& term, double dt);
 /// not turn with the body; an element that relaxed and then turns has a moment, and forces of
 /// another size. So angular momentum is not kept, and turning may give energy instead of taking it.
 struct NodalViscousKernel : HemlKernel {
-    struct Element : LinkElement {
-        Mat3 edges, inverse_edges;  ///< rest edges 01, 02, 03 as columns, m; 1/m
-    };
-
     std::vector<PronyTerm> terms;
     std::vector<NodalPronyStep> steps;  ///< of the terms, for the dt last given to begin_step
     double long_time_share = 1.0;       ///< 1 - sum of alpha_i
@@ -47,8 +43,6 @@ struct NodalViscousKernel : HemlKernel {
 
     /// Numbers that an element remembers: P after the last step, then P of each gamma_i.
     static constexpr std::size_t history_size(std::size_t num_terms) { return 9 * (num_terms + 1); }
-
-    Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero()) const;
 
     /// Of the long-time moduli, joules.
     double energy(const Element& e, const Corners& x) const;

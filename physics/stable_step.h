@@ -22,6 +22,9 @@ class StableStep {
     /// last call. The maximum is exact, so no history shows in it.
     double value() const;
 
+    /// That of a node that has been set, 1/s2.
+    double quotient(std::size_t node) const { return quotients_[node]; }
+
     /// The node that sets it; 0 without a node.
     std::size_t limiting_node() const;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "physics/viscous_kernel.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -47,41 +46,17 @@ double work_against(const std::array<Vec3, 4>& f, const std::array<Vec3, 4>& g,
 
 }  // namespace
 
-Mat3 change_of_right_cauchy_green(const Vec6& dl, const Mat3& inverse_edges) {
-    Mat3 D;
-    D(0, 0) = dl[0];
-    D(1, 1) = dl[1];
-    D(2, 2) = dl[2];
-    D(0, 1) = D(1, 0) = 0.5 * (dl[0] + dl[1] - dl[3]);
-    D(1, 2) = D(2, 1) = 0.5 * (dl[1] + dl[2] - dl[4]);
-    D(2, 0) = D(0, 2) = 0.5 * (dl[2] + dl[0] - dl[5]);
-    return inverse_edges.transpose() * D * inverse_edges;
-}
-
-Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& C_minus_1, double J,
-                            double J0) {
-    Mat3 S = 4.0 * r.w_b * C_minus_1;
-    S.diagonal().array() += 2.0 * r.w_a;
+Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& twice_strain, double J,
+                            double J0, const Vec3& fibre) {
+    const Mat3 S = second_stress_without_volume(r, twice_strain, fibre);
     if (r.w_J == 0.0) return S;
-    const Mat3 C = Mat3::Identity() + C_minus_1;
-    const double factor = r.w_J * J / std::max(J * J, J0 * J0);
-    Mat3 cofactor;
-    for (int k = 0; k < 3; ++k) {
-        const int m = (k + 1) % 3, n = (k + 2) % 3;
-        cofactor(k, k) = C(m, m) * C(n, n) - C(m, n) * C(m, n);
-        cofactor(m, n) = cofactor(n, m) = C(k, m) * C(k, n) - C(k, k) * C(m, n);
-    }
-    return S + factor * cofactor;
+    const Mat3 C = Mat3::Identity() + twice_strain;
+    return S + r.w_J * J / std::max(J * J, J0 * J0) * cofactors(C);
 }
 
-std::array<Vec3, 4> forces_of_stress(const Mat3& S, double volume, const Mat3& inverse_edges,
+std::array<Vec3, 4> forces_of_stress(const Mat3& S, const LinkElement& e,
                                      const std::array<Vec3, 4>& x) {
-    const Mat3 t = volume * (inverse_edges * S * inverse_edges.transpose());
-    const Vec3 v1 = x[1] - x[0], v2 = x[2] - x[0], v3 = x[3] - x[0];
-    const Vec3 f1 = -(t(0, 0) * v1 + t(1, 0) * v2 + t(2, 0) * v3);
-    const Vec3 f2 = -(t(0, 1) * v1 + t(1, 1) * v2 + t(2, 1) * v3);
-    const Vec3 f3 = -(t(0, 2) * v1 + t(1, 2) * v2 + t(2, 2) * v3);
-    return {-(f1 + f2 + f3), f1, f2, f3};
+    return forces_of_first_stress(e, (Mat3::Identity() + displacement_gradient(e, x)) * S);
 }
 
 PronyStep prony_step(const PronyTerm& term, double dt) {
@@ -94,10 +69,6 @@ ViscousKernel::ViscousKernel(const HemlKernel& elastic, std::vector<PronyTerm> p
     for (const PronyTerm& term : terms) long_time_share -= term.alpha;
 }
 
-ViscousKernel::Element ViscousKernel::precompute(const Corners& X, const Vec3& fibre) const {
-    return {HemlKernel::precompute(X, fibre), edge_matrix(X).inverse()};
-}
-
 double ViscousKernel::energy(const Element& e, const Corners& x) const {
     return long_time_share * HemlKernel::energy(e, x);
 }
@@ -106,7 +77,7 @@ std::array<Vec3, 4> ViscousKernel::forces_of_memory(const Element& e, const Corn
                                                     std::span<const double> memory) const {
     const SymmetricTensor relaxed =
         sum_of_terms(memory, terms.size()) - (1.0 - long_time_share) * tensor(memory, 0);
-    return forces_of_stress(matrix_of(relaxed), e.volume, e.inverse_edges, x);
+    return forces_of_stress(matrix_of(relaxed), e, x);
 }
 
 std::array<Vec3, 4> ViscousKernel::forces(const Element& e, const Corners& x,
@@ -118,14 +89,9 @@ std::array<Vec3, 4> ViscousKernel::forces(const Element& e, const Corners& x,
 }
 
 Mat3 ViscousKernel::stress(const Element& e, const Corners& x) const {
-    // The invariants come from C itself, which is needed anyway: this spares reading Mtr.
-    const Mat3 C_minus_1 =
-        change_of_right_cauchy_green(squared_links(x) - e.rest_links, e.inverse_edges);
-    const LinkStrain<double> strain{C_minus_1.trace(), C_minus_1.squaredNorm(), volume_ratio(e, x),
-                                    e.fibre.dot(C_minus_1 * e.fibre)};
-    const LawResponse<double> r = response(law, strain, inversion_threshold);
-    return second_piola_kirchhoff(r, C_minus_1, strain.J, inversion_threshold) +
-           2.0 * r.w_f * e.fibre * e.fibre.transpose();
+    const Deformation d = deformation(e, x);
+    const LawResponse<double> r = response(law, d.strain, inversion_threshold);
+    return second_piola_kirchhoff(r, d.twice_strain, d.strain.J, inversion_threshold, e.fibre);
 }
 
 ViscousKernel::EndOfStep ViscousKernel::end_of_step(std::span<const double> memory,
@@ -141,16 +107,14 @@ ViscousKernel::EndOfStep ViscousKernel::end_of_step(std::span<const double> memo
 }
 
 double ViscousKernel::potential(const Element& e, const Corners& x, const EndOfStep& end) const {
-    const Mat3 twice_E =
-        change_of_right_cauchy_green(squared_links(x) - e.rest_links, e.inverse_edges);
     return end.share * HemlKernel::energy(e, x) +
-           0.5 * e.volume * end.stress.cwiseProduct(twice_E).sum();
+           0.5 * e.volume * end.stress.cwiseProduct(deformation(e, x).twice_strain).sum();
 }
 
 std::array<Vec3, 4> ViscousKernel::forces(const Element& e, const Corners& x,
                                           const EndOfStep& end) const {
     const Corners elastic = HemlKernel::forces(e, x);
-    Corners f = forces_of_stress(end.stress, e.volume, e.inverse_edges, x);
+    Corners f = forces_of_stress(end.stress, e, x);
     for (std::size_t k = 0; k < 4; ++k) f[k] += end.share * elastic[k];
     return f;
 }
@@ -179,8 +143,9 @@ double ViscousKernel::advance(const Element& e, const Corners& before, const Cor
     SymmetricTensor twice_mean = sum_of_terms(memory, terms.size());
     follow();
     twice_mean += sum_of_terms(memory, terms.size());
-    const Mat3 twice_dE =
-        change_of_right_cauchy_green(squared_links(x) - squared_links(before), e.inverse_edges);
+    const Mat3 F = Mat3::Identity() + displacement_gradient(e, before),
+               dF = (edge_matrix(x) - edge_matrix(before)) * e.inverse_edges;
+    const Mat3 twice_dE = dF.transpose() * F + F.transpose() * dF + dF.transpose() * dF;
     return 0.25 * e.volume * matrix_of(twice_mean).cwiseProduct(twice_dE).sum();
 }
 

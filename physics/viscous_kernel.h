@@ -15,29 +15,19 @@
 
 namespace incise::physics {
 
-/// Change of C for changes `dl` (m2) of the six squared links: V^-T D V^-1, (A.3) to (A.5). C - 1
-/// itself for their changes since rest, and exactly zero there.
-/// @param inverse_edges V^-1, V with the rest edges 01, 02, 03 as columns
-Mat3 change_of_right_cauchy_green(const Vec6& dl, const Mat3& inverse_edges);
-
-/// S = dw/dE = 2 w_a 1 + 4 w_b (C - 1) + w_J J C^-1, pascals, frame of rest. The last term has no
-/// limit for J -> 0: it is w_J cof(C) / J. For |J| below J0, where the laws with ln J are extended
-/// anyway, it is taken as w_J cof(C) J / J0^2, which is finite for flat elements.
-Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& C_minus_1, double J,
-                            double J0);
+/// S = dw/dE = second_stress_without_volume + w_J J C^-1, pascals, frame of rest. The last term has
+/// no limit for J -> 0: it is w_J cof(C) / J. For |J| below J0, where the laws with ln J are
+/// extended anyway, it is taken as w_J cof(C) J / J0^2, which is finite for flat elements.
+Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& twice_strain, double J,
+                            double J0, const Vec3& fibre = Vec3::Zero());
 
 /// Nodal forces of a stress S (Pa) in the frame of rest, f_i = -Vol F S grad N_i, newtons.
-/// @param inverse_edges as above; its rows are the gradients of N_1 to N_3
-std::array<Vec3, 4> forces_of_stress(const Mat3& S, double volume, const Mat3& inverse_edges,
+std::array<Vec3, 4> forces_of_stress(const Mat3& S, const LinkElement& e,
                                      const std::array<Vec3, 4>& x);
 
 /// The exact rule for a stress that is linear in time during the step; for dt = 0 its limit, an
 /// instantaneous change.
 PronyStep prony_step(const PronyTerm& term, double dt);
-
-struct ViscousElement : LinkElement {
-    Mat3 inverse_edges;  ///< V^-1, 1/m
-};
 
 /// HEML with a given law and a Prony series, for blocks of tetrahedra (element_block.h). With the
 /// memory (viscous_history.h) as the last step left it, the stress at positions x is
@@ -45,7 +35,6 @@ struct ViscousElement : LinkElement {
 /// which is (1 - sum of alpha_i) S + sum of H_i where S(x) is the one remembered, and answers any
 /// change since then with the instantaneous moduli.
 struct ViscousKernel : HemlKernel {
-    using Element = ViscousElement;
     using MemoryLanes = ViscousLanes;
 
     std::vector<PronyTerm> terms;
@@ -57,8 +46,6 @@ struct ViscousKernel : HemlKernel {
     /// Numbers that an element remembers: S after the last step, then the H_i, in the frame of
     /// rest.
     static constexpr std::size_t history_size(std::size_t num_terms) { return 6 * (num_terms + 1); }
-
-    Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero()) const;
 
     /// Of the long-time moduli, joules: what is left when the terms have relaxed.
     double energy(const Element& e, const Corners& x) const;

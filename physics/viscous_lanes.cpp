@@ -51,7 +51,7 @@ void ViscousLanes::assign(std::size_t num_elements, const ViscousKernel& kernel)
     groups_.fibres.assign(has_fibres(kernel.law) ? groups_.elements.size() : 0, FibreDirections{});
 }
 
-void ViscousLanes::set(std::size_t i, ElementId id, const ViscousElement& element) {
+void ViscousLanes::set(std::size_t i, ElementId id, const LinkElement& element) {
     const std::size_t g = i % groups_.elements.size(), lane = i / groups_.elements.size();
     ViscousGroup& group = groups_.elements[g];
     for (int k = 0; k < 6; ++k) group.rest_links[k][lane] = element.rest_links[k];

@@ -17,7 +17,7 @@
 
 namespace incise::physics {
 
-struct ViscousElement;
+struct LinkElement;
 struct ViscousKernel;
 
 /// What a term of a Prony series does in one step: H' = decay H + gain (S' - S).
@@ -68,7 +68,7 @@ class ViscousLanes {
     void assign(std::size_t num_elements, const ViscousKernel& kernel);
     /// Sets what the element of the given number, from 0, has but its nodes; the first time in
     /// ascending order.
-    void set(std::size_t i, ElementId id, const ViscousElement& element);
+    void set(std::size_t i, ElementId id, const LinkElement& element);
     /// See set_places_of_lanes.
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 

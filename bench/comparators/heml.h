@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "bench/comparators/element_loop.h"
+#include "bench/comparators/link_traces.h"
 #include "physics/heml_kernel.h"
 
 namespace incise::bench {
@@ -44,8 +45,9 @@ struct PrintedHeml {
 
     Element precompute(const Corners<double>& X) const {
         const physics::LinkElement rest = physics::link_element(X);
-        const physics::Mat6 MW =
-            lambda / 8.0 * rest.vtr * rest.vtr.transpose() + mu / 4.0 * rest.Mtr;
+        const LinkTraces traces = link_traces(rest);
+        const Eigen::Matrix<double, 6, 6> MW =
+            lambda / 8.0 * traces.vtr * traces.vtr.transpose() + mu / 4.0 * traces.Mtr;
         Element e;
         e.rest_links = rest.rest_links.cast<Scalar>();
         for (std::size_t i = 0; i < 3; ++i)
@@ -107,8 +109,9 @@ struct LinkHeml {
 
     Element precompute(const Corners<double>& X) const {
         const physics::LinkElement rest = physics::link_element(X);
-        return {rest.volume, rest.rest_links.cast<Scalar>(), rest.vtr.cast<Scalar>(),
-                rest.Mtr.cast<Scalar>()};
+        const LinkTraces traces = link_traces(rest);
+        return {rest.volume, rest.rest_links.cast<Scalar>(), traces.vtr.cast<Scalar>(),
+                traces.Mtr.cast<Scalar>()};
     }
 
     Corners<Scalar> forces(const Element& e, const Corners<Scalar>& x) const {

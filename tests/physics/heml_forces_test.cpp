@@ -1,9 +1,6 @@
-// What every kernel of one element has to keep, HEML with each law and springs alike; and the
-// quantities that HEML precomputes.
+// What every kernel of one element has to keep, HEML with each law and springs alike.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
-
-#include <Eigen/LU>
 
 #include "physics/test_materials.h"
 
@@ -174,57 +171,6 @@ TEST(ElementForces, OpenAFlatElement) {
             }
         }
     });
-}
-
-// The C_k solve: C is linear in the squared lengths l_k = e_k . C e_k of the rest edges e_k, so
-// that C_k has length 1 along e_k and 0 along the others. With the gradients g of the corners'
-// weights that is -(g_i g_j^T + g_j g_i^T) / 2 of the edge from i to j.
-TEST(LinkElement, HoldsTheTracesOfTheLinkTensors) {
-    constexpr std::array<std::array<std::size_t, 2>, 6> ends{
-        {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}}};
-    test::Random random(9);
-    for (int i = 0; i < 100; ++i) {
-        const Tetrahedron X = random_tetrahedron(random);
-        const LinkElement element = link_element(X);
-        std::array<Vec3, 4> g;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Vec3 &a = X[(k + 1) % 4], &b = X[(k + 2) % 4], &c = X[(k + 3) % 4];
-            const Vec3 normal = (b - a).cross(c - a);
-            g[k] = normal / normal.dot(X[k] - a);
-        }
-        std::array<Mat3, 6> C;
-        for (std::size_t k = 0; k < 6; ++k) {
-            const Mat3 product = g[ends[k][0]] * g[ends[k][1]].transpose();
-            C[k] = -0.5 * (product + product.transpose());
-            for (std::size_t m = 0; m < 6; ++m) {
-                const Vec3 edge = X[ends[m][1]] - X[ends[m][0]];
-                EXPECT_NEAR(edge.dot(C[k] * edge), k == m ? 1.0 : 0.0,
-                            1e-12 * C[k].norm() * edge.squaredNorm());
-            }
-        }
-        for (int k = 0; k < 6; ++k) {
-            const Mat3& Ck = C[static_cast<std::size_t>(k)];
-            EXPECT_NEAR(element.vtr[k], Ck.trace(), 1e-11 * element.vtr.norm());
-            for (int m = 0; m < 6; ++m)
-                EXPECT_NEAR(element.Mtr(k, m), (Ck * C[static_cast<std::size_t>(m)]).trace(),
-                            1e-11 * element.Mtr.norm());
-        }
-        EXPECT_EQ(element.Mtr, element.Mtr.transpose());
-    }
-}
-
-TEST(LinkElement, MeasuresTheInvariantsOfStrain) {
-    test::Random random(10);
-    for (int i = 0; i < 100; ++i) {
-        const Tetrahedron X = random_tetrahedron(random);
-        const Mat3 F = random_deformation(random, random.vector(2.0));
-        const LinkElement element = link_element(X);
-        const Vec6 dl = squared_links(deformed(X, F)) - element.rest_links;
-        const Mat3 twice_E = F.transpose() * F - Mat3::Identity();
-        const double scale = 1e-12 * (1.0 + twice_E.squaredNorm());
-        EXPECT_NEAR(element.vtr.dot(dl), twice_E.trace(), 10.0 * scale);
-        EXPECT_NEAR(dl.dot(element.Mtr * dl), (twice_E * twice_E).trace(), 10.0 * scale);
-    }
 }
 
 }  // namespace

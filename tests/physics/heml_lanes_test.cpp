@@ -311,8 +311,7 @@ TEST(HemlLanes, HaveNoStressAtRest) {
         const Elements<double> elements(kernel, rest, rest);
         const auto results = results_of(kernel, elements);
         for (std::size_t i = 0; i < rest.size(); ++i) {
-            const auto& f = elements.expected[i];
-            if (std::ranges::all_of(f, [](const Vec3& v) { return v.isZero(0.0); })) {
+            if (name.starts_with("Saint Venant")) {  // with nothing that only cancels at rest
                 EXPECT_TRUE(results[i].cauchy_stress.isZero(0.0));
                 ++num_without;
             }

@@ -42,7 +42,7 @@ double stiffness(const Law& law) { return rest_lambda(law) + 2.0 * std::abs(rest
 /// Tetrahedra that share no node, with a past; ids are not those of their order.
 struct ViscousElements {
     ViscousKernel kernel;
-    std::vector<ViscousElement> elements;
+    std::vector<LinkElement> elements;
     std::vector<Tetrahedron> before, now;
     std::vector<std::size_t> ids;
     std::size_t length;  // of what an element remembers: more than it needs
