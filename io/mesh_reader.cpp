@@ -10,6 +10,7 @@
 #include "io/input_file.h"
 #include "io/legacy_vtk_reader.h"
 #include "io/medit_reader.h"
+#include "io/mesh_text.h"
 #include "io/scanner.h"
 #include "io/tetgen_reader.h"
 #include "io/vtu_reader.h"
@@ -57,6 +58,14 @@ const ReadFormat* read_format_of(const InputFile& file) {
     return nullptr;
 }
 
+/// What every format has in common.
+void finish(const InputFile& file, MeshFile& result) {
+    constexpr std::size_t longest_head = 500;  // a mark is in one of the first lines
+    if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
+        std::string_view::npos)
+        result.mesh.points_may_coincide = true;
+}
+
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
@@ -76,6 +85,7 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
             throw InputError(file.name() + ": has no cell array " + in_quotes(name) +
                              ": none is read from meshes of the format " + format->name +
                              "; use VTU or legacy VTK");
+    finish(file, result);
     return result;
 }
 

@@ -76,9 +76,8 @@ class VtuReader {
             read_piece(arrays, piece, place);
         }
         if (num_pieces > 1)
-            result_.warnings.push_back(
-                std::to_string(num_pieces) +
-                " pieces were put one behind the other: points on their borders are not merged");
+            result_.warnings.push_back(std::to_string(num_pieces) +
+                                       " pieces were put one behind the other");
         collector_.finish(result_.mesh, result_.warnings);
         return std::move(result_);
     }
@@ -136,6 +135,8 @@ class VtuReader {
         const auto num_points = arrays.count_attribute(node, "NumberOfPoints");
         const auto num_cells = arrays.count_attribute(node, "NumberOfCells");
         VtkPiece piece;
+        const auto point_data = node.child("PointData");
+        piece.is_frame = named(point_data, "rest_position") && named(point_data, "node_id");
         if (num_points > 0)
             piece.coordinates = arrays.reals(points_of(arrays, node), 3 * num_points);
         piece.offsets.assign(1, 0);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "io/mesh_writer.h"
+#include "io/vtu_writer.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/temporary_folder.h"
 #include "topology/box_mesh.h"
@@ -23,6 +24,8 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using topology::CellKind;
+
+constexpr const char* written_suffixes[] = {".vtu", ".vtk", ".msh", ".mesh", ".inp"};
 
 TEST(MeshReader, ReadsTheSameMeshFromEveryEncoding) {
     for (const auto& sample : all_samples()) {
@@ -85,7 +88,7 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
             for (auto& x : point) x += shift(random);
         for (std::size_t c = 0; c < mesh.num_cells(); ++c)
             mesh.regions[c] = static_cast<int>(c % 3);
-        for (const char* suffix : {".vtu", ".vtk", ".msh", ".mesh", ".inp"}) {
+        for (const char* suffix : written_suffixes) {
             SCOPED_TRACE(suffix);
             const auto path = folder / (std::string("mesh") + suffix);
             write_mesh(path, mesh);
@@ -94,6 +97,34 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
             expect_same_mesh(file.mesh, mesh);
         }
     }
+}
+
+TEST(MeshReader, KnowsAgainWhosePointsMayCoincide) {
+    const TemporaryFolder folder;
+    auto mesh = topology::box_mesh(CellKind::hexahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {2, 2, 2});
+    for (const char* suffix : written_suffixes)
+        for (const bool may_coincide : {false, true}) {
+            SCOPED_TRACE(suffix);
+            mesh.points_may_coincide = may_coincide;
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, mesh);
+            const auto file = read_mesh(path);
+            EXPECT_EQ(file.mesh.points_may_coincide, may_coincide);
+            EXPECT_THAT(file.warnings, ElementsAre());
+            expect_same_mesh(file.mesh, mesh);
+        }
+}
+
+TEST(MeshReader, LetsThePointsOfAFrameCoincide) {
+    const TemporaryFolder folder;
+    Frame frame;
+    frame.mesh = topology::box_mesh(CellKind::hexahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {1, 1, 1});
+    frame.point_fields.push_back({"rest_position", 3, std::vector<double>(24, 0.0)});
+    write_vtu(folder / "frame.vtu", frame);
+    EXPECT_FALSE(read_mesh(folder / "frame.vtu").mesh.points_may_coincide);
+    frame.point_fields.push_back({"node_id", 1, std::vector<std::int64_t>(8, 0)});
+    write_vtu(folder / "frame.vtu", frame);
+    EXPECT_TRUE(read_mesh(folder / "frame.vtu").mesh.points_may_coincide);
 }
 
 TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
