@@ -15,6 +15,7 @@
 #include "io/tetgen_reader.h"
 #include "io/vtu_reader.h"
 #include "topology/error.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::io {
 
@@ -64,6 +65,14 @@ void finish(const InputFile& file, MeshFile& result) {
     if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
         std::string_view::npos)
         result.mesh.points_may_coincide = true;
+    if (topology::turn_inverted_cells(result.mesh)) {
+        const auto num_cells = result.mesh.num_cells();
+        result.warnings.push_back(
+            (num_cells == 1 ? "the only cell has"
+                            : "all " + std::to_string(num_cells) + " cells have") +
+            std::string(" negative volume by VTK's order of corners: the order was reversed; make "
+                        "sure that the body is not the mirror image of what is meant"));
+    }
 }
 
 }  // namespace

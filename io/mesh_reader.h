@@ -49,7 +49,7 @@ struct MeshFile {
 /// of a VTK file takes the place of its points. Regions are the cell array of the options, Gmsh's
 /// physical groups, MEDIT's references, TetGen's first attribute, sets of elements in Abaqus.
 ///
-/// Points may coincide
+/// Cells that all have negative volume are turned, with a warning. Points may coincide
 /// (MeshData::points_may_coincide) in frames of runs and in what `incise cut` writes.
 ///
 /// The contents are trusted in nothing: every count, offset and index is checked before it is

@@ -1,4 +1,5 @@
-// What the verbs make of meshes that are not as they should be: unjoined points.
+// What the verbs make of meshes that are not as they should be: unjoined points, cells that are
+// wound the wrong way round.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -116,6 +117,18 @@ TEST_F(FaultyMesh, IsNoneThatIsCutByIncise) {
         EXPECT_EQ(run("convert --weld cut" + suffix + " healed.vtu").status, 0);
         EXPECT_EQ(parsed(run("info --json healed.vtu").out)["components"], 1);
     }
+}
+
+TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
+    write("two.msh", soup({"0 0 0  0 1 0  1 0 0  0 0 1", "0 1 0  1 0 0  0 0 1  1 1 1"}));
+    const auto outcome = run("info two.msh");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("two.msh: all 2 cells have negative volume"), std::string::npos);
+    EXPECT_NE(outcome.out.find("volume           0.5\n"), std::string::npos) << outcome.out;
+    EXPECT_EQ(run("convert --weld two.msh one.vtu").status, 0);
+    EXPECT_EQ(run("info one.vtu").err, "");
+    write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
+    EXPECT_EQ(run("info some.msh").status, 2);
 }
 
 }  // namespace

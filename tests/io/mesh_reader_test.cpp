@@ -127,6 +127,50 @@ TEST(MeshReader, LetsThePointsOfAFrameCoincide) {
     EXPECT_TRUE(read_mesh(folder / "frame.vtu").mesh.points_may_coincide);
 }
 
+/// The cell of the sample of that number, alone.
+topology::MeshData sample_cell(std::size_t c, bool is_mirrored) {
+    const auto sample = sample_mesh();
+    topology::MeshData mesh;
+    mesh.points = sample.points;
+    const auto& mirrored = topology::traits(sample.kinds[c]).mirrored;
+    std::vector<std::int64_t> corners;
+    for (std::size_t k = 0; k < sample.cell(c).size(); ++k)
+        corners.push_back(sample.cell(c)[is_mirrored ? static_cast<std::size_t>(mirrored[k]) : k]);
+    mesh.add_cell(sample.kinds[c], corners, sample.regions[c]);
+    return mesh;
+}
+
+TEST(MeshReader, TurnsCellsThatAreAllInverted) {
+    const TemporaryFolder folder;
+    for (const char* suffix : written_suffixes)
+        for (std::size_t c = 0; c < sample_mesh().num_cells(); ++c) {
+            SCOPED_TRACE(std::string(suffix) + ", cell " + std::to_string(c));
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, sample_cell(c, true));
+            const auto file = read_mesh(path);
+            EXPECT_THAT(file.warnings,
+                        ElementsAre("the only cell has negative volume by VTK's order of corners: "
+                                    "the order was reversed; make sure that the body is not the "
+                                    "mirror image of what is meant"));
+            expect_same_mesh(file.mesh, sample_cell(c, false));
+        }
+}
+
+TEST(MeshReader, LeavesSomeInvertedCellsAsTheyAre) {
+    const TemporaryFolder folder;
+    auto mesh = topology::box_mesh(CellKind::tetrahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {2, 2, 2});
+    for (std::size_t c = 1; c < mesh.num_cells(); ++c)
+        std::swap(mesh.corners[4 * c], mesh.corners[4 * c + 1]);
+    for (const char* suffix : written_suffixes) {
+        SCOPED_TRACE(suffix);
+        const auto path = folder / (std::string("mesh") + suffix);
+        write_mesh(path, mesh);
+        const auto file = read_mesh(path);
+        EXPECT_THAT(file.warnings, ElementsAre());
+        expect_same_mesh(file.mesh, mesh);
+    }
+}
+
 TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
     for (const auto& sample : gmsh_samples()) {
         SCOPED_TRACE(sample.name);
