@@ -73,7 +73,10 @@ class GmshReader {
             const auto line = scanner_.rest_of_line();
             if (line.starts_with('$')) read_section(line.substr(1));
         }
-        if (!has_format_) throw InputError(file_.name() + ": has no $MeshFormat section");
+        if (!has_format_)
+            throw InputError(file_.name() +
+                             ": has no $MeshFormat section, so it is no mesh of Gmsh; save it as "
+                             "Gmsh version 4.1 or 2.2");
         if (!has_nodes_) throw InputError(file_.name() + ": has no $Nodes section");
         if (!has_elements_) throw InputError(file_.name() + ": has no $Elements section");
         auto& warnings = result_.warnings;

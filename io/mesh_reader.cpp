@@ -40,14 +40,61 @@ constexpr ReadFormat read_formats[] = {
 };
 // clang-format on
 
-constexpr std::size_t longest_magic = 64;
+/// Meshes of other programs that are known by how their text begins, in lower case, with one blank
+/// where there are several.
+struct ForeignFormat {
+    const char* name;
+    std::string_view magic;
+};
+constexpr ForeignFormat foreign_formats[] = {
+    {"a mesh of ANSYS Fluent", "("},
+    {"an archive of ANSYS Mechanical", "/com"},
+    {"an archive of ANSYS Mechanical", "/prep7"},
+    {"a mesh of LS-DYNA", "*keyword"},
+    {"a mesh of Netgen", "mesh3d"},
+    {"a mesh of GiD", "mesh dimension"},
+    {"a mesh of GiD", "mesh \""},
+    {"a neutral file of GAMBIT", "control info"},
+    {"a neutral file of FEMAP", "-1 100 "},
+    {"a universal file (UNV) of I-DEAS", "-1 "},
+    {"a mesh of SU2", "ndime="},
+    {"an HDF5 file, as of Fluent (.msh.h5), CGNS and MED", "\x89hdf"},
+    {"a NetCDF file, as of Exodus", "cdf"},
+};
 
+constexpr std::size_t head_size = 128;  // longer than any magic
+
+/// How the text begins, in lower case, with one blank where there are several.
+std::string head_of(std::string_view text) {
+    std::string head;
+    for (const char c : text.substr(0, head_size))
+        if (!is_blank(c))
+            head += c;
+        else if (!head.ends_with(' '))
+            head += ' ';
+    return lower_case(head);
+}
+
+std::string known_formats() {
+    std::string known;
+    for (const auto& row : read_formats)
+        known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+    return known;
+}
+
+/// Null if it is not known. Throws InputError for a mesh of another program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
         const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
         text = {begin, text.end()};
-        const auto head = lower_case(text.substr(0, longest_magic));
+        const auto head = head_of(text);
+        for (const auto& format : foreign_formats)
+            if (head.starts_with(format.magic))
+                throw InputError(file.name() + ": is " + format.name +
+                                 ", which cannot be read; convert it, with Gmsh or meshio for "
+                                 "instance, to one of: " +
+                                 known_formats());
         for (const auto& format : read_formats)
             if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
@@ -80,14 +127,10 @@ void finish(const InputFile& file, MeshFile& result) {
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const auto file = load_input_file(path);
     const auto* format = read_format_of(file);
-    if (format == nullptr) {
-        std::string known;
-        for (const auto& row : read_formats)
-            known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+    if (format == nullptr)
         throw UnknownFormat(
             file.name() +
-            ": begins like no mesh format known here; convert it to one of: " + known);
-    }
+            ": begins like no mesh format known here; convert it to one of: " + known_formats());
     MeshFile result = format->read(file, options);
     for (const auto& name : options.vector_arrays)
         if (!result.cell_vectors.contains(name))

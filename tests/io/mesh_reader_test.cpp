@@ -23,6 +23,7 @@ using support::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 using topology::CellKind;
 
 constexpr const char* written_suffixes[] = {".vtu", ".vtk", ".msh", ".mesh", ".inp"};
@@ -205,6 +206,29 @@ TEST(MeshReader, RefusesWhatIsNoMeshFile) {
                 AllOf(HasSubstr("no mesh format known"), HasSubstr("VTU (.vtu)")));
     EXPECT_THAT(refusal("liver.vtu", "  \n\n"), HasSubstr("no mesh format known"));
     EXPECT_THAT(refusal("liver.vtu", ""), HasSubstr("the file is empty"));
+}
+
+TEST(MeshReader, NamesMeshesOfOtherPrograms) {
+    for (const auto& [text, name] : std::initializer_list<std::pair<std::string, const char*>>{
+             {"(0 \"GAMBIT to Fluent File\")\n(2 3)\n", "a mesh of ANSYS Fluent"},
+             {"/COM,ANSYS RELEASE 19.2\n/PREP7\n", "an archive of ANSYS Mechanical"},
+             {"*KEYWORD\n*NODE\n", "a mesh of LS-DYNA"},
+             {"mesh3d\ndimension\n3\n", "a mesh of Netgen"},
+             {"MESH dimension 3 ElemType Tetrahedra Nnode 4\n", "a mesh of GiD"},
+             {"        CONTROL INFO 2.3.16\n** GAMBIT NEUTRAL FILE\n", "a neutral file of GAMBIT"},
+             {"   -1\r\n   100\r\n<NULL>\r\n", "a neutral file of FEMAP"},
+             {"    -1\n  2411\n", "a universal file (UNV) of I-DEAS"},
+             {"NDIME= 3\n", "a mesh of SU2"},
+             {"\x89HDF\r\n\x1a\n", "an HDF5 file, as of Fluent (.msh.h5), CGNS and MED"},
+             {std::string("CDF\x01\0\0", 6), "a NetCDF file, as of Exodus"},
+         }) {
+        SCOPED_TRACE(name);
+        EXPECT_THAT(refusal("liver.msh", text),
+                    AllOf(StartsWith(std::string("liver.msh: is ") + name +
+                                     ", which cannot be read; convert it, with Gmsh or meshio for "
+                                     "instance, to one of: VTU (.vtu), "),
+                          HasSubstr("Gmsh (.msh)")));
+    }
 }
 
 /// The message about a path that names no file to read.
