@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/abaqus_reader.h"
+#include "io/frame_index.h"
 #include "io/gmsh_reader.h"
 #include "io/input_file.h"
 #include "io/legacy_vtk_reader.h"
@@ -82,7 +83,8 @@ std::string known_formats() {
     return known;
 }
 
-/// Null if it is not known. Throws InputError for a mesh of another program.
+/// Null if it is not known. Throws InputError for an index of other files or a mesh of another
+/// program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
@@ -100,6 +102,7 @@ const ReadFormat* read_format_of(const InputFile& file) {
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
+    if (const auto files = files_of_series(file); !files.empty()) refuse_index(file, files);
     const auto suffix = lower_case(file.path.extension().string());
     for (const auto& format : read_formats)
         if (format.magic.empty() && suffix == format.suffix) return &format;

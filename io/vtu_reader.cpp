@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/frame_index.h"
 #include "io/number_text.h"
 #include "io/vtk_cells.h"
 #include "io/vtk_xml_array.h"
@@ -63,9 +64,14 @@ class VtuReader {
         const auto root = document_.child("VTKFile");
         if (!root) throw InputError(file_.name() + ": is XML, but has no VTKFile element");
         const std::string_view type = root.attribute("type").value();
-        if (type != "UnstructuredGrid")
+        if (type != "UnstructuredGrid") {
+            std::vector<std::string> files;
+            for (const auto& found : root.select_nodes(".//@file | .//@Source"))
+                files.emplace_back(found.attribute().value());
+            if (!files.empty()) refuse_index(file_, files, type == "PUnstructuredGrid");
             throw InputError(file_.name() + ": holds a VTK dataset of type " + in_quotes(type) +
                              "; only UnstructuredGrid holds volume cells");
+        }
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
         const auto pieces = root.child("UnstructuredGrid").children("Piece");
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());

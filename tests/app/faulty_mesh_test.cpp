@@ -1,5 +1,5 @@
 // What the verbs make of meshes that are not as they should be: unjoined points, cells that are
-// wound the wrong way round.
+// wound the wrong way round, files that only name others.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -129,6 +129,34 @@ TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
     EXPECT_EQ(run("info one.vtu").err, "");
     write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
     EXPECT_EQ(run("info some.msh").status, 2);
+}
+
+TEST_F(FaultyMesh, IsNoIndexOfFrames) {
+    write("beam.pvd",
+          "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" "
+          "file=\"frames/beam_0.vtu\"/><DataSet timestep=\"1\" file=\"frames/beam_1.vtu\"/>"
+          "</Collection></VTKFile>");
+    write("beam.vtu.series",
+          "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"frames/beam_0.vtu\", "
+          "\"time\": 0}, {\"name\": \"frames/beam_1.vtu\", \"time\": 1}]}");
+    for (const std::string index : {"beam.pvd", "beam.vtu.series"}) {
+        write("beam.toml", "[mesh]\nfile = \"" + index + "\"\n" + rest_of_scenario);
+        const std::vector<std::string> uses = {"info " + index,
+                                               "check " + index,
+                                               "check beam.toml",
+                                               "run beam.toml",
+                                               "convert " + index + " out.vtu",
+                                               "cut " + index + " --out o.vtu --plane 0,0,0,1,0,0"};
+        for (const auto& arguments : uses) {
+            const auto outcome = run(arguments);
+            EXPECT_EQ(outcome.status, 2) << arguments;
+            EXPECT_NE(outcome.err.find(index + ": holds no mesh itself but names 2 files, from "
+                                               "frames/beam_0.vtu to frames/beam_1.vtu; give one "
+                                               "of them\n"),
+                      std::string::npos)
+                << outcome.err;
+        }
+    }
 }
 
 }  // namespace

@@ -231,6 +231,38 @@ TEST(MeshReader, NamesMeshesOfOtherPrograms) {
     }
 }
 
+/// A .pvd, .vtu.series or .pvtu, which names these files.
+std::string index_text(const std::string& suffix, const std::vector<std::string>& files) {
+    std::string rows;
+    for (const auto& file : files)
+        rows += suffix == ".series" ? (rows.empty() ? "" : ", ") + ("{\"name\": \"" + file + "\"}")
+                : suffix == ".pvd"  ? "<DataSet timestep=\"0\" file=\"" + file + "\"/>"
+                                    : "<Piece Source=\"" + file + "\"/>";
+    if (suffix == ".series") return "{\"file-series-version\": \"1.0\", \"files\": [" + rows + "]}";
+    const std::string type = suffix == ".pvd" ? "Collection" : "PUnstructuredGrid";
+    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\">\n<" + type + ">" + rows +
+           "</" + type + "></VTKFile>\n";
+}
+
+TEST(MeshReader, NamesTheFilesOfAnIndex) {
+    for (const std::string suffix : {".series", ".pvd", ".pvtu"}) {
+        SCOPED_TRACE(suffix);
+        const auto refusal_of = [&](const std::vector<std::string>& files) {
+            return refusal("liver" + suffix, index_text(suffix, files));
+        };
+        const auto several = refusal_of({"frames/a_0.vtu", "frames/a_1.vtu", "/b/a_2.vtu"});
+        EXPECT_THAT(several, StartsWith("liver" + suffix +
+                                        ": holds no mesh itself but names 3 files, from "));
+        EXPECT_THAT(several, HasSubstr("/frames/a_0.vtu to /b/a_2.vtu"));
+        EXPECT_THAT(several, HasSubstr(suffix == ".pvtu" ? "which are parts of one mesh; save them "
+                                                           "as one .vtu"
+                                                         : "; give one of them"));
+        EXPECT_THAT(refusal_of({"a.vtu"}), testing::EndsWith("/a.vtu; give that one"));
+        EXPECT_THAT(refusal_of({}), HasSubstr(suffix == ".series" ? "begins like no mesh format"
+                                                                  : "holds a VTK dataset of type"));
+    }
+}
+
 /// The message about a path that names no file to read.
 std::string refusal_of_path(const std::filesystem::path& path) {
     try {
