@@ -196,6 +196,8 @@ void declare_convert(CLI::App& app, Action& action) {
     verb->add_option("--region-array", options->region_array,
                      "Cell array of VTK files that holds the regions")
         ->capture_default_str();
+    verb->add_flag("--weld", options->weld,
+                   "Join points at the same position, and check the mesh that this makes");
     verb->footer("Formats to write: " + written_formats() +
                  "\nExample: incise convert liver.msh liver.vtu");
     verb->callback([options, &action] { action = [options] { return convert(*options); }; });

@@ -6,16 +6,38 @@
 #include "app/verbs.h"
 #include "io/mesh_reader.h"
 #include "io/mesh_writer.h"
+#include "topology/error.h"
+#include "topology/mesh_check.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::app {
 
+namespace {
+
+/// Throws InputError with what is wrong with the mesh after that. Returns what was done.
+std::string weld(topology::MeshData& mesh, const std::string& prefix) {
+    const auto report = topology::weld_report(topology::weld(mesh));
+    const auto errors = topology::check(mesh).errors;
+    if (!errors.empty()) throw InputError(prefixed(prefix, joined(errors)));
+    topology::drop_welded_points(mesh);
+    return report;
+}
+
+}  // namespace
+
 int convert(const ConvertOptions& options) {
     io::check_writable(options.out);
-    const auto file = io::read_mesh(options.in, {options.region_array});
-    for (const auto& warning : file.warnings) print_warning(options.in.string() + ": " + warning);
+    auto file = io::read_mesh(options.in, {options.region_array});
+    const std::string prefix = options.in.string() + ": ";
+    for (const auto& warning : file.warnings) print_warning(prefix + warning);
+    std::string report;
+    if (options.weld)
+        report = "; " + weld(file.mesh, prefix);
+    else if (const auto warning = topology::coincidence_warning(file.mesh))
+        print_warning(prefix + *warning);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "
-              << file.mesh.num_cells() << " cells\n";
+              << file.mesh.num_cells() << " cells" << report << '\n';
     return done;
 }
 

@@ -114,8 +114,10 @@ Result carry_out(const CutOptions& options) {
         auto report = sim::geometric_cut(built.mesh, job.tools, {mode, job.snap});
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})
             for (const auto& warning : *warnings) job.warnings.push_back(prefixed(prefix, warning));
-        return {topology::to_mesh_data(built.mesh, built.mesh.rest_positions()), mode, job.snap,
-                std::move(report), std::move(job.warnings)};
+        auto cut = topology::to_mesh_data(built.mesh, built.mesh.rest_positions());
+        cut.points_may_coincide =
+            file.mesh.points_may_coincide || report.total.nodes_duplicated > 0;
+        return {std::move(cut), mode, job.snap, std::move(report), std::move(job.warnings)};
     } catch (const InputError& error) {
         throw InputError(prefixed(prefix, as_option(error.what())));
     }

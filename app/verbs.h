@@ -54,6 +54,7 @@ int info(const InfoOptions& options);
 struct ConvertOptions {
     std::filesystem::path in, out;
     std::string region_array = "region";
+    bool weld = false;
 };
 int convert(const ConvertOptions& options);
 

@@ -29,7 +29,9 @@ const char* abaqus_element_type(topology::CellKind kind) {
 }  // namespace
 
 std::string abaqus_text(const topology::MeshData& mesh) {
-    std::string text = "*NODE, NSET=ALL_NODES\n";
+    std::string text;
+    if (mesh.points_may_coincide) text.append("** ").append(coincidence_mark).append("\n");
+    text += "*NODE, NSET=ALL_NODES\n";
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         append_number(text, i + 1);
         text += ',';

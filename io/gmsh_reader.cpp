@@ -73,7 +73,10 @@ class GmshReader {
             const auto line = scanner_.rest_of_line();
             if (line.starts_with('$')) read_section(line.substr(1));
         }
-        if (!has_format_) throw InputError(file_.name() + ": has no $MeshFormat section");
+        if (!has_format_)
+            throw InputError(file_.name() +
+                             ": has no $MeshFormat section, so it is no mesh of Gmsh; save it as "
+                             "Gmsh version 4.1 or 2.2");
         if (!has_nodes_) throw InputError(file_.name() + ": has no $Nodes section");
         if (!has_elements_) throw InputError(file_.name() + ": has no $Elements section");
         auto& warnings = result_.warnings;
@@ -92,10 +95,12 @@ class GmshReader {
             scanner_.fail("is a Gmsh file of version 1; save it as version 4.1 or 2.2");
         if (name == "MeshFormat") {
             read_format();
+        } else if (is_version_2_ && name == "ParametricNodes") {
+            read_nodes_2(true);
         } else if (name == "Nodes" || name == "Elements" || name == "Entities" ||
                    name == "PartitionedEntities") {
             if (!has_format_) scanner_.fail("$" + std::string(name) + " comes before $MeshFormat");
-            if (name == "Nodes") is_version_2_ ? read_nodes_2() : read_nodes_4();
+            if (name == "Nodes") is_version_2_ ? read_nodes_2(false) : read_nodes_4();
             if (name == "Elements") is_version_2_ ? read_elements_2() : read_elements_4();
             if (name == "Entities") read_entities(false);
             if (name == "PartitionedEntities") read_entities(true);
@@ -175,6 +180,14 @@ class GmshReader {
         return count;
     }
 
+    int entity_dimension() {
+        const int dimension = int_value("the dimension of an entity");
+        if (dimension < 0 || dimension > 3)
+            scanner_.fail("the dimension of an entity is " + std::to_string(dimension) +
+                          "; it must be 0 to 3");
+        return dimension;
+    }
+
     void add_point() {
         const double x = scanner_.coordinate("an x coordinate");
         const double y = scanner_.coordinate("a y coordinate");
@@ -226,14 +239,20 @@ class GmshReader {
         collector_.keep(form, tag, nodes, region, result_.mesh);
     }
 
-    // --- version 2: n, then n times: tag x y z
-    void read_nodes_2() {
+    // --- version 2: n, then n times: tag x y z; of parametric nodes also the dimension and the tag
+    // of the entity that they are on, and one parameter on a curve, two on a surface
+    void read_nodes_2(bool are_parametric) {
         begin_nodes();
-        const auto num_nodes = text_count("the number of nodes", 4, 4);
+        const auto num_nodes = text_count("the number of nodes", are_parametric ? 6 : 4, 4);
         result_.mesh.points.reserve(num_nodes);
         for (std::size_t i = 0; i < num_nodes; ++i) {
             node_tags_.add(int_value("a node tag"));
             add_point();
+            if (!are_parametric) continue;
+            const int dimension = entity_dimension();
+            int_value("the tag of an entity");
+            if (dimension == 1 || dimension == 2)
+                skip_reals(static_cast<std::size_t>(dimension), "a parameter of a node");
         }
         finish_nodes();
     }
@@ -335,10 +354,7 @@ class GmshReader {
         size_value("the highest node tag");
         result_.mesh.points.reserve(num_nodes);
         for (std::size_t b = 0; b < num_blocks; ++b) {
-            const int dimension = int_value("the dimension of an entity");
-            if (dimension < 0 || dimension > 3)
-                scanner_.fail("the dimension of an entity is " + std::to_string(dimension) +
-                              "; it must be 0 to 3");
+            const int dimension = entity_dimension();
             int_value("the tag of an entity");
             const bool is_parametric = int_value("whether nodes are parametric") != 0;
             const auto num_in_block = count_value("the number of nodes in a block", 4, 4);

@@ -25,7 +25,10 @@ int gmsh_element_type(topology::CellKind kind) {
 }  // namespace
 
 std::string gmsh_text(const topology::MeshData& mesh) {
-    std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n";
+    std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    if (mesh.points_may_coincide)
+        text.append("$Comments\n").append(coincidence_mark).append("\n$EndComments\n");
+    text += "$Nodes\n";
     append_number(text, mesh.points.size());
     text += '\n';
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {

@@ -100,6 +100,7 @@ class LegacyVtkReader {
         for (const auto& name : options_.vector_arrays)
             if (!piece_.vectors.contains(name) && !piece_.types.empty())
                 refuse_missing_vectors(file_.name(), name, other_vector_arrays_);
+        piece_.is_frame = has_rest_positions_ && has_node_ids_;
         MeshFile result;
         auto collector = make_vtk_collector(file_.name());
         append_piece(piece_, file_.name(), result, collector);
@@ -294,6 +295,10 @@ class LegacyVtkReader {
     void read_array(const std::string& name, ValueType type, std::size_t num_components,
                     std::size_t num_tuples) {
         const auto count = product(num_components, num_tuples);
+        if (association_ == Association::points) {
+            has_rest_positions_ = has_rest_positions_ || name == "rest_position";
+            has_node_ids_ = has_node_ids_ || name == "node_id";
+        }
         if (association_ == Association::cells && name == options_.region_array) {
             if (num_components != 1)
                 scanner_.fail("array " + in_quotes(name) +
@@ -426,6 +431,8 @@ class LegacyVtkReader {
     bool has_cells_ = false;
     bool has_types_ = false;
     bool has_regions_ = false;
+    bool has_rest_positions_ = false;
+    bool has_node_ids_ = false;
     bool is_at_data_ = false;  ///< the line before the data is already read
 };
 

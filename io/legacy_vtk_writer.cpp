@@ -26,7 +26,9 @@ const char* legacy_cell_type(topology::CellKind kind) {
 
 std::string legacy_vtk_text(const topology::MeshData& mesh) {
     const auto num_cells = std::to_string(mesh.num_cells());
-    std::string text = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+    std::string text = "# vtk DataFile Version 3.0\n";
+    text.append(mesh.points_may_coincide ? coincidence_mark : "mesh");
+    text += "\nASCII\nDATASET UNSTRUCTURED_GRID\n";
     text += "POINTS " + std::to_string(mesh.points.size()) + " double\n";
     for (const auto& point : mesh.points) {
         append_point(text, point);

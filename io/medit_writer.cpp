@@ -24,7 +24,9 @@ constexpr std::array<Section, topology::num_cell_kinds> sections = {{
 }  // namespace
 
 std::string medit_text(const topology::MeshData& mesh) {
-    std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n";
+    std::string text = "MeshVersionFormatted 2\nDimension 3\n";
+    if (mesh.points_may_coincide) text.append("# ").append(coincidence_mark).append("\n");
+    text += "Vertices\n";
     append_number(text, mesh.points.size());
     text += '\n';
     for (const auto& point : mesh.points) {

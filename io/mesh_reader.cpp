@@ -6,14 +6,17 @@
 #include <string_view>
 
 #include "io/abaqus_reader.h"
+#include "io/frame_index.h"
 #include "io/gmsh_reader.h"
 #include "io/input_file.h"
 #include "io/legacy_vtk_reader.h"
 #include "io/medit_reader.h"
+#include "io/mesh_text.h"
 #include "io/scanner.h"
 #include "io/tetgen_reader.h"
 #include "io/vtu_reader.h"
 #include "topology/error.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::io {
 
@@ -38,23 +41,88 @@ constexpr ReadFormat read_formats[] = {
 };
 // clang-format on
 
-constexpr std::size_t longest_magic = 64;
+/// Meshes of other programs that are known by how their text begins, in lower case, with one blank
+/// where there are several.
+struct ForeignFormat {
+    const char* name;
+    std::string_view magic;
+};
+constexpr ForeignFormat foreign_formats[] = {
+    {"a mesh of ANSYS Fluent", "("},
+    {"an archive of ANSYS Mechanical", "/com"},
+    {"an archive of ANSYS Mechanical", "/prep7"},
+    {"a mesh of LS-DYNA", "*keyword"},
+    {"a mesh of Netgen", "mesh3d"},
+    {"a mesh of GiD", "mesh dimension"},
+    {"a mesh of GiD", "mesh \""},
+    {"a neutral file of GAMBIT", "control info"},
+    {"a neutral file of FEMAP", "-1 100 "},
+    {"a universal file (UNV) of I-DEAS", "-1 "},
+    {"a mesh of SU2", "ndime="},
+    {"an HDF5 file, as of Fluent (.msh.h5), CGNS and MED", "\x89hdf"},
+    {"a NetCDF file, as of Exodus", "cdf"},
+};
 
+constexpr std::size_t head_size = 128;  // longer than any magic
+
+/// How the text begins, in lower case, with one blank where there are several.
+std::string head_of(std::string_view text) {
+    std::string head;
+    for (const char c : text.substr(0, head_size))
+        if (!is_blank(c))
+            head += c;
+        else if (!head.ends_with(' '))
+            head += ' ';
+    return lower_case(head);
+}
+
+std::string known_formats() {
+    std::string known;
+    for (const auto& row : read_formats)
+        known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+    return known;
+}
+
+/// Null if it is not known. Throws InputError for an index of other files or a mesh of another
+/// program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
         const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
         text = {begin, text.end()};
-        const auto head = lower_case(text.substr(0, longest_magic));
+        const auto head = head_of(text);
+        for (const auto& format : foreign_formats)
+            if (head.starts_with(format.magic))
+                throw InputError(file.name() + ": is " + format.name +
+                                 ", which cannot be read; convert it, with Gmsh or meshio for "
+                                 "instance, to one of: " +
+                                 known_formats());
         for (const auto& format : read_formats)
             if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
+    if (const auto files = files_of_series(file); !files.empty()) refuse_index(file, files);
     const auto suffix = lower_case(file.path.extension().string());
     for (const auto& format : read_formats)
         if (format.magic.empty() && suffix == format.suffix) return &format;
     return nullptr;
+}
+
+/// What every format has in common.
+void finish(const InputFile& file, MeshFile& result) {
+    constexpr std::size_t longest_head = 500;  // a mark is in one of the first lines
+    if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
+        std::string_view::npos)
+        result.mesh.points_may_coincide = true;
+    if (topology::turn_inverted_cells(result.mesh)) {
+        const auto num_cells = result.mesh.num_cells();
+        result.warnings.push_back(
+            (num_cells == 1 ? "the only cell has"
+                            : "all " + std::to_string(num_cells) + " cells have") +
+            std::string(" negative volume by VTK's order of corners: the order was reversed; make "
+                        "sure that the body is not the mirror image of what is meant"));
+    }
 }
 
 }  // namespace
@@ -62,20 +130,17 @@ const ReadFormat* read_format_of(const InputFile& file) {
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const auto file = load_input_file(path);
     const auto* format = read_format_of(file);
-    if (format == nullptr) {
-        std::string known;
-        for (const auto& row : read_formats)
-            known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+    if (format == nullptr)
         throw UnknownFormat(
             file.name() +
-            ": begins like no mesh format known here; convert it to one of: " + known);
-    }
+            ": begins like no mesh format known here; convert it to one of: " + known_formats());
     MeshFile result = format->read(file, options);
     for (const auto& name : options.vector_arrays)
         if (!result.cell_vectors.contains(name))
             throw InputError(file.name() + ": has no cell array " + in_quotes(name) +
                              ": none is read from meshes of the format " + format->name +
                              "; use VTU or legacy VTK");
+    finish(file, result);
     return result;
 }
 

@@ -49,10 +49,13 @@ struct MeshFile {
 /// of a VTK file takes the place of its points. Regions are the cell array of the options, Gmsh's
 /// physical groups, MEDIT's references, TetGen's first attribute, sets of elements in Abaqus.
 ///
+/// Cells that all have negative volume are turned, with a warning. Points may coincide
+/// (MeshData::points_may_coincide) in frames of runs and in what `incise cut` writes.
+///
 /// The contents are trusted in nothing: every count, offset and index is checked before it is
 /// used, and memory stays proportional to the size of the file (compressed files: to what
 /// their blocks unpack to). Coordinates of cells are finite. Left to Mesh::build: the shape of the
-/// cells.
+/// cells, and points that are not joined.
 /// Throws InputError that names the file, the line, byte or cell, what was found and what to do.
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

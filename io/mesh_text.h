@@ -6,10 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "topology/mesh_data.h"
 
 namespace incise::io {
+
+/// What meshes whose points may coincide say of themselves, in a comment near the start of the
+/// file.
+inline constexpr std::string_view coincidence_mark =
+    "Incise: points at one position are on the two faces of a cut";
 
 std::string legacy_vtk_text(const topology::MeshData& mesh);
 std::string gmsh_text(const topology::MeshData& mesh);

@@ -23,7 +23,10 @@ struct WrittenFormat {
 std::string plain_vtu_text(const topology::MeshData& mesh) {
     Frame frame;
     frame.mesh = mesh;
-    return vtu_text(frame);
+    std::string text = vtu_text(frame);
+    if (mesh.points_may_coincide)  // behind the XML declaration
+        text.insert(text.find('\n') + 1, "<!-- " + std::string(coincidence_mark) + " -->\n");
+    return text;
 }
 
 constexpr std::array<WrittenFormat, 5> written_formats = {{
@@ -54,11 +57,10 @@ const WrittenFormat& written_format_of(const std::filesystem::path& path) {
 ReorderedCell with_wedges_facing_inwards(const topology::MeshData& mesh, std::size_t cell) {
     const auto corners = mesh.cell(cell);
     ReorderedCell out{{}, corners.size()};
-    std::copy(corners.begin(), corners.end(), out.corners.begin());
-    if (mesh.kinds[cell] == topology::CellKind::wedge) {
-        std::swap(out.corners[1], out.corners[2]);
-        std::swap(out.corners[4], out.corners[5]);
-    }
+    const bool is_wedge = mesh.kinds[cell] == topology::CellKind::wedge;
+    const auto& mirrored = topology::traits(mesh.kinds[cell]).mirrored;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        out.corners[k] = corners[is_wedge ? static_cast<std::size_t>(mirrored[k]) : k];
     return out;
 }
 

@@ -15,6 +15,7 @@ namespace incise::io {
 /// .vtu: VTK XML; .vtk: legacy VTK; .msh: Gmsh 2.2, regions as physical groups; .mesh: MEDIT,
 /// regions as references, cells grouped by kind; .inp: Abaqus and CalculiX, regions as element
 /// sets, cells grouped by region and kind (CalculiX itself has no pyramids).
+/// Where points may coincide, a comment says so, which read_mesh() knows again.
 /// Throws InputError if the format is not known; OutputError if the file
 /// cannot be written, which is then left as it was.
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);

@@ -23,6 +23,8 @@ struct VtkPiece {
     std::vector<std::int64_t> connectivity;              ///< points of the cells
     std::vector<double> regions;                         ///< one a cell, or empty: all 0
     std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
+    /// A frame of a run, which may have been cut: points have a rest_position and a node_id.
+    bool is_frame = false;
 };
 
 /// Throws InputError unless offsets ascend from 0: then all are in range if the last is.

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/frame_index.h"
 #include "io/number_text.h"
 #include "io/vtk_cells.h"
 #include "io/vtk_xml_array.h"
@@ -63,9 +64,14 @@ class VtuReader {
         const auto root = document_.child("VTKFile");
         if (!root) throw InputError(file_.name() + ": is XML, but has no VTKFile element");
         const std::string_view type = root.attribute("type").value();
-        if (type != "UnstructuredGrid")
+        if (type != "UnstructuredGrid") {
+            std::vector<std::string> files;
+            for (const auto& found : root.select_nodes(".//@file | .//@Source"))
+                files.emplace_back(found.attribute().value());
+            if (!files.empty()) refuse_index(file_, files, type == "PUnstructuredGrid");
             throw InputError(file_.name() + ": holds a VTK dataset of type " + in_quotes(type) +
                              "; only UnstructuredGrid holds volume cells");
+        }
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
         const auto pieces = root.child("UnstructuredGrid").children("Piece");
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());
@@ -76,9 +82,8 @@ class VtuReader {
             read_piece(arrays, piece, place);
         }
         if (num_pieces > 1)
-            result_.warnings.push_back(
-                std::to_string(num_pieces) +
-                " pieces were put one behind the other: points on their borders are not merged");
+            result_.warnings.push_back(std::to_string(num_pieces) +
+                                       " pieces were put one behind the other");
         collector_.finish(result_.mesh, result_.warnings);
         return std::move(result_);
     }
@@ -136,6 +141,8 @@ class VtuReader {
         const auto num_points = arrays.count_attribute(node, "NumberOfPoints");
         const auto num_cells = arrays.count_attribute(node, "NumberOfCells");
         VtkPiece piece;
+        const auto point_data = node.child("PointData");
+        piece.is_frame = named(point_data, "rest_position") && named(point_data, "node_id");
         if (num_points > 0)
             piece.coordinates = arrays.reals(points_of(arrays, node), 3 * num_points);
         piece.offsets.assign(1, 0);

@@ -18,6 +18,7 @@
 #include "topology/box_mesh.h"
 #include "topology/error.h"
 #include "topology/mesh_check.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::sim {
 
@@ -47,12 +48,15 @@ void require_memory_for(const BoxMeshSpec& box, const std::string& place) {
                                             *lack + "; use fewer cells"));
 }
 
-/// The points and cells that the scenario names, scaled.
+/// The points and cells that the scenario names, welded if it says so, and scaled.
 io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials,
                        double scale) {
     if (const auto* path = std::get_if<std::filesystem::path>(&spec.source)) {
         io::MeshFile file = io::read_mesh(
             *path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
+        if (spec.weld == true)
+            file.warnings.push_back(topology::weld_report(topology::weld(file.mesh)));
+        file.mesh.points_may_coincide = file.mesh.points_may_coincide || spec.weld == false;
         for (Vec3& x : file.mesh.points) x *= scale;
         return file;
     }

@@ -36,6 +36,9 @@ struct MeshSpec {
     std::variant<std::filesystem::path, BoxMeshSpec> source;
     double scale = 1.0;  ///< all coordinates of the source are multiplied by it
     std::string region_array = "region";
+    /// Of a file: whether its points at one position are joined. False says besides that they are
+    /// meant to be apart; without, they are told of.
+    std::optional<bool> weld = std::nullopt;
     /// For messages: those of the source and of the others.
     std::string place = {}, scale_place = {}, region_array_place = {};
 };

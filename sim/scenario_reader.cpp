@@ -20,7 +20,7 @@ using Keys = std::string_view;
 
 constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "constraint",
                               "load",  "tool", "output",   "expect"};
-constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array"};
+constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array", "weld"};
 constexpr Keys mesh_box_keys[] = {"size", "cells", "element", "origin"};
 constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
@@ -205,6 +205,9 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     spec.region_array_place = mesh->place_text("region_array");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
+    if (mesh->has("weld")) spec.weld = mesh->flag("weld", false);
+    if (mesh->has("weld") && mesh->has("box"))
+        mesh->warning("weld", "'mesh.weld' has no effect on a box, whose elements are joined");
     return spec;
 }
 

@@ -27,6 +27,9 @@ struct CellTraits {
     std::array<std::array<int, 2>, 12> edges;
     std::array<int, max_faces> face_sizes;
     std::array<std::array<int, max_face_corners>, max_faces> faces;
+    /// Corner i of the same cell wound the other way round is corner mirrored[i]. Faces keep their
+    /// corners, but may change places.
+    std::array<int, max_corners> mirrored;
 
     constexpr std::span<const int> face(int f) const {
         const auto i = static_cast<std::size_t>(f);
@@ -47,7 +50,8 @@ inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
      4,
      {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}}},
      {3, 3, 3, 3},
-     {{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}}},
+     {{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}},
+     {0, 2, 1, 3}},
     {"hexahedron",
      "hexahedra",
      8,
@@ -66,7 +70,8 @@ inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
        {2, 6},
        {3, 7}}},
      {4, 4, 4, 4, 4, 4},
-     {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}}},
+     {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}},
+     {0, 3, 2, 1, 4, 7, 6, 5}},
     {"wedge",
      "wedges",
      6,
@@ -74,7 +79,8 @@ inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
      5,
      {{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
      {3, 3, 4, 4, 4},
-     {{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}}},
+     {{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}},
+     {0, 2, 1, 3, 5, 4}},
     {"pyramid",
      "pyramids",
      5,
@@ -82,7 +88,8 @@ inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
      5,
      {{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}},
      {4, 3, 3, 3, 3},
-     {{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}}},
+     {{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}},
+     {0, 3, 2, 1, 4}},
 }};
 
 constexpr const CellTraits& traits(CellKind kind) {

@@ -105,8 +105,9 @@ std::vector<NodeId> Mesh::nodes_with_label(std::int64_t label) const {
         return nodes;
     }
     nodes.push_back(label_nodes_[static_cast<std::size_t>(label)]);
+    const std::int64_t own_label = node_labels_[nodes.front().index()];  // lower, if it was welded
     for (const auto& [of, node] : pinched_)
-        if (of == label) nodes.push_back(node);
+        if (of == own_label) nodes.push_back(node);
     return nodes;
 }
 

@@ -87,7 +87,8 @@ class Mesh {
     std::int64_t label(NodeId n) const;
     std::int64_t label(ElementId e) const;
     /// The nodes that came from point `label` of the source: none if it was not used or is gone
-    /// for good, several if it was pinched. The caller checks is_alive.
+    /// for good, several if it was pinched. The label of a point that was welded to another gives
+    /// the nodes of that one. The caller checks is_alive.
     std::vector<NodeId> nodes_with_label(std::int64_t label) const;
     /// Points of the source.
     std::size_t num_source_points() const { return node_labels_.size(); }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "topology/geometry.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::topology {
 
@@ -40,28 +41,22 @@ class Complaints {
     std::map<std::string, std::size_t> counts_;
 };
 
-std::string cell_name(const MeshData& data, std::size_t c) {
-    std::string name = "cell " + std::to_string(c) + " (" + traits(data.kinds[c]).name;
-    if (c < data.source_cells.size())
-        name += ", number " + std::to_string(data.source_cells[c]) + " in the file";
-    return name + ")";
-}
-
 bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complaints) {
     const auto corners = data.cell(c);
     const auto num_points = static_cast<std::int64_t>(data.points.size());
     for (std::size_t k = 0; k < corners.size(); ++k) {
         if (corners[k] < 0 || corners[k] >= num_points) {
-            complaints.add("cells with a node index out of range", cell_name(data, c),
+            complaints.add("cells with a node index out of range", data.cell_name(c),
                            ": node index ", corners[k], " is out of range (", num_points,
                            " points)");
             return false;
         }
         for (std::size_t j = 0; j < k; ++j)
             if (corners[j] == corners[k]) {
-                complaints.add("cells with a repeated corner", cell_name(data, c), ": ",
+                complaints.add("cells with a repeated corner", data.cell_name(c), ": ",
                                data.point_name(static_cast<std::size_t>(corners[k])),
-                               " stands at two of its corners; remove the cell");
+                               " stands at two of its corners",
+                               data.welded_to.empty() ? "" : " after welding", "; remove the cell");
                 return false;
             }
     }
@@ -78,12 +73,12 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     const CellKind kind = data.kinds[c];
     const double volume = signed_volume(kind, {x.data(), corners.size()});
     if (!std::isfinite(volume)) {
-        complaints.add("cells of no finite volume", cell_name(data, c),
+        complaints.add("cells of no finite volume", data.cell_name(c),
                        " has no finite volume; its coordinates are too large: scale the mesh");
         return;
     }
     if (!(volume > 0.0)) {
-        complaints.add("cells without positive volume", cell_name(data, c), " has ",
+        complaints.add("cells without positive volume", data.cell_name(c), " has ",
                        volume == 0.0 ? "zero volume" : "negative volume ",
                        volume == 0.0 ? std::string() : [&] {
                            std::ostringstream text;
@@ -120,7 +115,7 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
         const double corner_volume = edge(previous[0]).cross(edge(next[0])).dot(edge(third));
         if (!(corner_volume > 0.0)) {
             complaints.add(
-                "cells with a corner turned inside out", cell_name(data, c),
+                "cells with a corner turned inside out", data.cell_name(c),
                 " is turned inside out or flat at its corner ", k, ", ",
                 data.point_name(static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])),
                 "; remesh it");
@@ -203,8 +198,8 @@ void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& res
                 Complaints& complaints) {
     if (same_points(data, a.cell, b.cell)) {
         if (a.face == 0)  // once a pair of cells, not once a face
-            complaints.add("duplicate cells", cell_name(data, a.cell), " and ",
-                           cell_name(data, b.cell), " have the same nodes; remove one of them");
+            complaints.add("duplicate cells", data.cell_name(a.cell), " and ",
+                           data.cell_name(b.cell), " have the same nodes; remove one of them");
         return;
     }
     const std::size_t size = traits(data.kinds[a.cell]).face(a.face).size();
@@ -219,13 +214,13 @@ void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& res
     if (opposite)
         result.shared_faces.push_back({a, b, static_cast<int>(shift)});
     else if (parallel)
-        complaints.add("overlapping neighbours", cell_name(data, a.cell), " and ",
-                       cell_name(data, b.cell),
+        complaints.add("overlapping neighbours", data.cell_name(a.cell), " and ",
+                       data.cell_name(b.cell),
                        " lie on the same side of the face that they share, so they overlap; "
                        "remove one of them");
     else
-        complaints.add("twisted neighbours", cell_name(data, a.cell), " and ",
-                       cell_name(data, b.cell),
+        complaints.add("twisted neighbours", data.cell_name(a.cell), " and ",
+                       data.cell_name(b.cell),
                        " share four nodes but join them in different orders; remesh");
 }
 
@@ -253,7 +248,7 @@ MeshCheck check(const MeshData& data) {
         if (used[p] && !data.points[p].allFinite())
             errors.add("points that are not finite", data.point_name(p), " is not finite: (",
                        data.points[p].x(), ", ", data.points[p].y(), ", ", data.points[p].z(), ")");
-        if (!used[p])
+        if (!used[p] && !data.is_welded(p))
             warnings.add("points that no cell uses", data.point_name(p),
                          " belongs to no cell and is left out");
     }
@@ -274,6 +269,9 @@ MeshCheck check(const MeshData& data) {
               [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
     errors.finish();
     warnings.finish();
+    if (result.errors.empty())
+        if (auto warning = coincidence_warning(data))
+            result.warnings.push_back(std::move(*warning));
     return result;
 }
 

@@ -24,6 +24,11 @@ struct MeshData {
     /// For messages: what the source calls its cells and points, one each. Empty where that is
     /// their number here.
     std::vector<std::int64_t> source_cells, source_points;
+    /// Of each point the one that stands for it since weld(): itself, or a lower one. Empty where
+    /// no point was welded to another.
+    std::vector<std::int64_t> welded_to;
+    /// Points at one position are meant to be apart, as those on the two faces of a cut are.
+    bool points_may_coincide = false;
 
     std::size_t num_cells() const { return kinds.size(); }
 
@@ -36,6 +41,18 @@ struct MeshData {
         corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
         offsets.push_back(corners.size());
         regions.push_back(region);
+    }
+
+    bool is_welded(std::size_t p) const {
+        return !welded_to.empty() && welded_to[p] != static_cast<std::int64_t>(p);
+    }
+
+    /// "cell 3 (tetrahedron)", with what the source calls it.
+    std::string cell_name(std::size_t c) const {
+        std::string name = "cell " + std::to_string(c) + " (" + traits(kinds[c]).name;
+        if (c < source_cells.size())
+            name += ", number " + std::to_string(source_cells[c]) + " in the file";
+        return name + ")";
     }
 
     /// "point 3", with what the source calls it.

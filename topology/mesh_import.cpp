@@ -92,6 +92,9 @@ class MeshImport {
         mesh_.num_nodes_ = mesh_.node_labels_.size();
         for (std::size_t p = 0; p < data_.points.size(); ++p)
             if (!mesh_.label_nodes_[p].is_valid()) number(p);
+        for (std::size_t p = 0; p < data_.welded_to.size(); ++p)
+            mesh_.label_nodes_[p] =
+                mesh_.label_nodes_[static_cast<std::size_t>(data_.welded_to[p])];
     }
 
     void add_rows() {

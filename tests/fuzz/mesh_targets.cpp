@@ -13,14 +13,13 @@
 #include "tests/fuzz/targets.h"
 #include "tests/support/mesh_consistency.h"
 #include "topology/mesh.h"
+#include "topology/mesh_repair.h"
 
 namespace incise::fuzz {
 
 namespace {
 
-/// What each verb does next with what was read.
 void build(const topology::MeshData& mesh) {
-    require_none(support::inconsistency_of(mesh));
     try {
         topology::Mesh::build(mesh);
     } catch (const InputError&) {
@@ -28,11 +27,20 @@ void build(const topology::MeshData& mesh) {
     }
 }
 
+/// What verbs do next with what was read.
+void use(topology::MeshData mesh) {
+    require_none(support::inconsistency_of(mesh));
+    build(mesh);
+    topology::turn_inverted_cells(mesh);
+    topology::weld(mesh);
+    build(mesh);
+}
+
 using Reader = io::MeshFile (*)(const io::InputFile&, const io::ReadOptions&);
 
 void read_mesh(Reader reader, const char* name, std::string_view bytes) {
     const io::InputFile file{name, std::string(bytes)};
-    read_or_refuse(name, [&] { build(reader(file, {}).mesh); });
+    read_or_refuse(name, [&] { use(reader(file, {}).mesh); });
 }
 
 }  // namespace
@@ -49,7 +57,7 @@ void tetgen(std::string_view bytes) {
     const auto rest = bytes.substr(std::min(end + divider.size(), bytes.size()));
     const io::InputFile nodes{"fuzz.node", std::string(bytes.substr(0, end))};
     const io::InputFile elements{"fuzz.ele", std::string(rest)};
-    read_or_refuse("fuzz.", [&] { build(io::read_tetgen_pair(nodes, elements).mesh); });
+    read_or_refuse("fuzz.", [&] { use(io::read_tetgen_pair(nodes, elements).mesh); });
 }
 
 }  // namespace incise::fuzz

@@ -109,6 +109,15 @@ TEST(LegacyVtkReader, StartsFromTheRestPositionsOfAFrame) {
                                               "VECTORS rest_position double\n"
                                               "0 0 0 2 0 0 0 2 0 0 0 2 2 2 2\n");
     EXPECT_EQ(file.mesh.points[4], Vec3(2, 2, 2));
+    EXPECT_FALSE(file.mesh.points_may_coincide);
+}
+
+TEST(LegacyVtkReader, LetsThePointsOfAFrameCoincide) {
+    const auto file = read_bytes("a.vtk", old_layout +
+                                              "VECTORS rest_position double\n"
+                                              "0 0 0 2 0 0 0 2 0 0 0 2 2 2 2\n"
+                                              "SCALARS node_id int\n0 1 2 3 4\n");
+    EXPECT_TRUE(file.mesh.points_may_coincide);
 }
 
 TEST(LegacyVtkReader, RefusesIndexOutOfRange) {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "io/mesh_writer.h"
+#include "io/vtu_writer.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/temporary_folder.h"
 #include "topology/box_mesh.h"
@@ -22,7 +23,10 @@ using support::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 using topology::CellKind;
+
+constexpr const char* written_suffixes[] = {".vtu", ".vtk", ".msh", ".mesh", ".inp"};
 
 TEST(MeshReader, ReadsTheSameMeshFromEveryEncoding) {
     for (const auto& sample : all_samples()) {
@@ -85,7 +89,7 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
             for (auto& x : point) x += shift(random);
         for (std::size_t c = 0; c < mesh.num_cells(); ++c)
             mesh.regions[c] = static_cast<int>(c % 3);
-        for (const char* suffix : {".vtu", ".vtk", ".msh", ".mesh", ".inp"}) {
+        for (const char* suffix : written_suffixes) {
             SCOPED_TRACE(suffix);
             const auto path = folder / (std::string("mesh") + suffix);
             write_mesh(path, mesh);
@@ -93,6 +97,78 @@ TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
             EXPECT_THAT(file.warnings, ElementsAre());
             expect_same_mesh(file.mesh, mesh);
         }
+    }
+}
+
+TEST(MeshReader, KnowsAgainWhosePointsMayCoincide) {
+    const TemporaryFolder folder;
+    auto mesh = topology::box_mesh(CellKind::hexahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {2, 2, 2});
+    for (const char* suffix : written_suffixes)
+        for (const bool may_coincide : {false, true}) {
+            SCOPED_TRACE(suffix);
+            mesh.points_may_coincide = may_coincide;
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, mesh);
+            const auto file = read_mesh(path);
+            EXPECT_EQ(file.mesh.points_may_coincide, may_coincide);
+            EXPECT_THAT(file.warnings, ElementsAre());
+            expect_same_mesh(file.mesh, mesh);
+        }
+}
+
+TEST(MeshReader, LetsThePointsOfAFrameCoincide) {
+    const TemporaryFolder folder;
+    Frame frame;
+    frame.mesh = topology::box_mesh(CellKind::hexahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {1, 1, 1});
+    frame.point_fields.push_back({"rest_position", 3, std::vector<double>(24, 0.0)});
+    write_vtu(folder / "frame.vtu", frame);
+    EXPECT_FALSE(read_mesh(folder / "frame.vtu").mesh.points_may_coincide);
+    frame.point_fields.push_back({"node_id", 1, std::vector<std::int64_t>(8, 0)});
+    write_vtu(folder / "frame.vtu", frame);
+    EXPECT_TRUE(read_mesh(folder / "frame.vtu").mesh.points_may_coincide);
+}
+
+/// The cell of the sample of that number, alone.
+topology::MeshData sample_cell(std::size_t c, bool is_mirrored) {
+    const auto sample = sample_mesh();
+    topology::MeshData mesh;
+    mesh.points = sample.points;
+    const auto& mirrored = topology::traits(sample.kinds[c]).mirrored;
+    std::vector<std::int64_t> corners;
+    for (std::size_t k = 0; k < sample.cell(c).size(); ++k)
+        corners.push_back(sample.cell(c)[is_mirrored ? static_cast<std::size_t>(mirrored[k]) : k]);
+    mesh.add_cell(sample.kinds[c], corners, sample.regions[c]);
+    return mesh;
+}
+
+TEST(MeshReader, TurnsCellsThatAreAllInverted) {
+    const TemporaryFolder folder;
+    for (const char* suffix : written_suffixes)
+        for (std::size_t c = 0; c < sample_mesh().num_cells(); ++c) {
+            SCOPED_TRACE(std::string(suffix) + ", cell " + std::to_string(c));
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, sample_cell(c, true));
+            const auto file = read_mesh(path);
+            EXPECT_THAT(file.warnings,
+                        ElementsAre("the only cell has negative volume by VTK's order of corners: "
+                                    "the order was reversed; make sure that the body is not the "
+                                    "mirror image of what is meant"));
+            expect_same_mesh(file.mesh, sample_cell(c, false));
+        }
+}
+
+TEST(MeshReader, LeavesSomeInvertedCellsAsTheyAre) {
+    const TemporaryFolder folder;
+    auto mesh = topology::box_mesh(CellKind::tetrahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {2, 2, 2});
+    for (std::size_t c = 1; c < mesh.num_cells(); ++c)
+        std::swap(mesh.corners[4 * c], mesh.corners[4 * c + 1]);
+    for (const char* suffix : written_suffixes) {
+        SCOPED_TRACE(suffix);
+        const auto path = folder / (std::string("mesh") + suffix);
+        write_mesh(path, mesh);
+        const auto file = read_mesh(path);
+        EXPECT_THAT(file.warnings, ElementsAre());
+        expect_same_mesh(file.mesh, mesh);
     }
 }
 
@@ -130,6 +206,61 @@ TEST(MeshReader, RefusesWhatIsNoMeshFile) {
                 AllOf(HasSubstr("no mesh format known"), HasSubstr("VTU (.vtu)")));
     EXPECT_THAT(refusal("liver.vtu", "  \n\n"), HasSubstr("no mesh format known"));
     EXPECT_THAT(refusal("liver.vtu", ""), HasSubstr("the file is empty"));
+}
+
+TEST(MeshReader, NamesMeshesOfOtherPrograms) {
+    for (const auto& [text, name] : std::initializer_list<std::pair<std::string, const char*>>{
+             {"(0 \"GAMBIT to Fluent File\")\n(2 3)\n", "a mesh of ANSYS Fluent"},
+             {"/COM,ANSYS RELEASE 19.2\n/PREP7\n", "an archive of ANSYS Mechanical"},
+             {"*KEYWORD\n*NODE\n", "a mesh of LS-DYNA"},
+             {"mesh3d\ndimension\n3\n", "a mesh of Netgen"},
+             {"MESH dimension 3 ElemType Tetrahedra Nnode 4\n", "a mesh of GiD"},
+             {"        CONTROL INFO 2.3.16\n** GAMBIT NEUTRAL FILE\n", "a neutral file of GAMBIT"},
+             {"   -1\r\n   100\r\n<NULL>\r\n", "a neutral file of FEMAP"},
+             {"    -1\n  2411\n", "a universal file (UNV) of I-DEAS"},
+             {"NDIME= 3\n", "a mesh of SU2"},
+             {"\x89HDF\r\n\x1a\n", "an HDF5 file, as of Fluent (.msh.h5), CGNS and MED"},
+             {std::string("CDF\x01\0\0", 6), "a NetCDF file, as of Exodus"},
+         }) {
+        SCOPED_TRACE(name);
+        EXPECT_THAT(refusal("liver.msh", text),
+                    AllOf(StartsWith(std::string("liver.msh: is ") + name +
+                                     ", which cannot be read; convert it, with Gmsh or meshio for "
+                                     "instance, to one of: VTU (.vtu), "),
+                          HasSubstr("Gmsh (.msh)")));
+    }
+}
+
+/// A .pvd, .vtu.series or .pvtu, which names these files.
+std::string index_text(const std::string& suffix, const std::vector<std::string>& files) {
+    std::string rows;
+    for (const auto& file : files)
+        rows += suffix == ".series" ? (rows.empty() ? "" : ", ") + ("{\"name\": \"" + file + "\"}")
+                : suffix == ".pvd"  ? "<DataSet timestep=\"0\" file=\"" + file + "\"/>"
+                                    : "<Piece Source=\"" + file + "\"/>";
+    if (suffix == ".series") return "{\"file-series-version\": \"1.0\", \"files\": [" + rows + "]}";
+    const std::string type = suffix == ".pvd" ? "Collection" : "PUnstructuredGrid";
+    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\">\n<" + type + ">" + rows +
+           "</" + type + "></VTKFile>\n";
+}
+
+TEST(MeshReader, NamesTheFilesOfAnIndex) {
+    for (const std::string suffix : {".series", ".pvd", ".pvtu"}) {
+        SCOPED_TRACE(suffix);
+        const auto refusal_of = [&](const std::vector<std::string>& files) {
+            return refusal("liver" + suffix, index_text(suffix, files));
+        };
+        const auto several = refusal_of({"frames/a_0.vtu", "frames/a_1.vtu", "/b/a_2.vtu"});
+        EXPECT_THAT(several, StartsWith("liver" + suffix +
+                                        ": holds no mesh itself but names 3 files, from "));
+        EXPECT_THAT(several, HasSubstr("/frames/a_0.vtu to /b/a_2.vtu"));
+        EXPECT_THAT(several, HasSubstr(suffix == ".pvtu" ? "which are parts of one mesh; save them "
+                                                           "as one .vtu"
+                                                         : "; give one of them"));
+        EXPECT_THAT(refusal_of({"a.vtu"}), testing::EndsWith("/a.vtu; give that one"));
+        EXPECT_THAT(refusal_of({}), HasSubstr(suffix == ".series" ? "begins like no mesh format"
+                                                                  : "holds a VTK dataset of type"));
+    }
 }
 
 /// The message about a path that names no file to read.

@@ -265,19 +265,27 @@ std::vector<std::int64_t> gmsh_nodes(const MeshData& mesh, std::size_t c) {
     return nodes;
 }
 
-std::string gmsh_2(GmshText::Mode mode) {
+/// Nodes are on points, curves, surfaces and in volumes by turns, with parameters if asked for.
+std::string gmsh_2(GmshText::Mode mode, bool is_parametric) {
     const auto mesh = sample_mesh();
     GmshText out(mode);
     out.text("$Comments\nmade by hand; $Nodes are below\n$EndComments\n");
     out.format("2.2");
     out.text("$PhysicalNames\n1\n3 4 \"liver\"\n$EndPhysicalNames\n");
-    out.text("$Nodes\n" + std::to_string(mesh.points.size()) + "\n");
+    const std::string section = is_parametric ? "ParametricNodes" : "Nodes";
+    out.text("$" + section + "\n" + std::to_string(mesh.points.size()) + "\n");
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
         out.integer(tag_of(static_cast<std::int64_t>(i)));
         for (const double x : mesh.points[i]) out.real(x);
+        if (is_parametric) {
+            const int dimension = static_cast<int>(i) % 4;
+            out.integer(dimension);
+            out.integer(10);
+            for (int k = 0; dimension < 3 && k < dimension; ++k) out.real(0.125);
+        }
         out.end_line();
     }
-    out.mark("EndNodes");
+    out.mark("End" + section);
     int tag = 1;
     // In ascii the type precedes the tags of each element; in binary it heads a block.
     const auto block = [&](int type, std::size_t count) {
@@ -415,7 +423,8 @@ std::vector<Sample> gmsh_samples() {
     std::vector<Sample> samples;
     for (const auto& [mode, name] :
          {std::pair{ascii, "ascii"}, std::pair{binary, "binary"}, std::pair{swapped, "swapped"}}) {
-        samples.push_back({std::string(name) + "-2.msh", gmsh_2(mode)});
+        samples.push_back({std::string(name) + "-2.msh", gmsh_2(mode, false)});
+        samples.push_back({std::string(name) + "-2-parametric.msh", gmsh_2(mode, true)});
         samples.push_back({std::string(name) + "-4.msh", gmsh_4(mode, false)});
         samples.push_back({std::string(name) + "-4-partitioned.msh", gmsh_4(mode, true)});
     }

@@ -124,6 +124,16 @@ MeshData jittered_cube(int n, double jitter, std::uint64_t seed) {
     return data;
 }
 
+MeshData soup_of(const MeshData& data) {
+    MeshData soup = data;
+    soup.points.clear();
+    for (std::int64_t& corner : soup.corners) {
+        soup.points.push_back(data.points[static_cast<std::size_t>(corner)]);
+        corner = std::ssize(soup.points) - 1;
+    }
+    return soup;
+}
+
 /// Cubes whose centres are in a ball that has a hollow; some meet at edges and corners only.
 MeshData voxels() {
     constexpr int n = 6;

@@ -23,6 +23,9 @@ struct MeshFamily {
 /// tetrahedra glued together.
 const std::vector<MeshFamily>& mesh_families();
 
+/// The same cells, each with points of its own: points are numbered in the order of the corners.
+topology::MeshData soup_of(const topology::MeshData& data);
+
 /// Those of one kind of cell only; under sanitizers, of a few hundred cells only.
 std::vector<const MeshFamily*> families_of(topology::CellKind kind);
 std::vector<const MeshFamily*> tetrahedral_families();

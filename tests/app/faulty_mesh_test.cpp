@@ -1,0 +1,163 @@
+// What the verbs make of meshes that are not as they should be: unjoined points, cells that are
+// wound the wrong way round, files that only name others.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "in_folder.h"
+
+namespace incise {
+namespace {
+
+using FaultyMesh = test::InFolder;
+
+/// Tetrahedra of four nodes each: those of the base, then the apexes.
+std::string soup(const std::vector<std::string>& cells) {
+    std::string nodes, elements;
+    std::size_t num_nodes = 0, num_elements = 0;
+    for (const auto& cell : cells) {
+        std::istringstream points(cell);
+        std::string corners;
+        for (std::string x, y, z; points >> x >> y >> z;) {
+            nodes += std::to_string(++num_nodes) + " " + x + " " + y + " " + z + "\n";
+            corners += " " + std::to_string(num_nodes);
+        }
+        elements += std::to_string(++num_elements) + " 4 2 1 1" + corners + "\n";
+    }
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(num_nodes) + "\n" +
+           nodes + "$EndNodes\n$Elements\n" + std::to_string(num_elements) + "\n" + elements +
+           "$EndElements\n";
+}
+
+const std::string first = "0 0 0  1 0 0  0 1 0  0 0 1";
+const std::string second = "1 0 0  0 1 0  0 0 1  1 1 1";
+
+const std::string rest_of_scenario = R"(
+[[material]]
+density = 1060
+young = 1600
+poisson = 0.45
+[dynamics]
+end_time = 1
+)";
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+nlohmann::json parsed(const std::string& text) { return nlohmann::json::parse(text); }
+
+TEST_F(FaultyMesh, WarnsOnceOfPointsNotJoined) {
+    write("soup.msh", soup({first, second}));
+    write("soup.toml", "[mesh]\nfile = \"soup.msh\"\n" + rest_of_scenario);
+    for (const auto* arguments :
+         {"info soup.msh", "check soup.msh", "check soup.toml", "run soup.toml --dry-run",
+          "convert soup.msh soup.vtu", "cut soup.msh --out cut.vtu --plane 0,0,0.2,0,0,1"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << arguments;
+        EXPECT_EQ(count_of(outcome.err,
+                           "incise: warning: soup.msh: 3 points are not joined to others at the "
+                           "same position, so the cells do not hang together there: point 1 "),
+                  1u)
+            << arguments << ": " << outcome.err;
+    }
+    const auto figures = parsed(run("info soup.msh --json").out);
+    EXPECT_EQ(figures["components"], 2);
+    EXPECT_EQ(figures["warnings"].size(), 1u);
+}
+
+TEST_F(FaultyMesh, IsWeldedOnConversion) {
+    write("soup.msh", soup({first, second}));
+    for (const std::string suffix : {".vtu", ".vtk", ".msh", ".mesh", ".inp"}) {
+        const auto outcome = run("convert --weld soup.msh one" + suffix);
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_EQ(outcome.err, "");
+        EXPECT_EQ(outcome.out, "one" + suffix +
+                                   ": 5 points, 2 cells; 3 points were joined to others at the "
+                                   "same position\n");
+        const auto figures = parsed(run("info --json one" + suffix).out);
+        EXPECT_EQ(figures["components"], 1);
+        EXPECT_EQ(figures["warnings"].size(), 0u);
+    }
+    EXPECT_EQ(run("convert --weld one.vtu again.vtu").out,
+              "again.vtu: 5 points, 2 cells; no two points are at the same position: none was "
+              "joined\n");
+}
+
+TEST_F(FaultyMesh, IsNotWeldedToAnUnsoundOne) {
+    write("three.msh", soup({first, second, "1 0 0  0 1 0  0 0 1  2 2 2"}));
+    write("three.toml", "[mesh]\nfile = \"three.msh\"\nweld = true\n" + rest_of_scenario);
+    for (const auto* arguments :
+         {"convert --weld three.msh out.vtu", "check three.toml", "run three.toml --dry-run"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_NE(outcome.err.find("three.msh: cells 0, 1 and 2 (in the file 1, 2 and 3) all share "
+                                   "one face"),
+                  std::string::npos)
+            << outcome.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtu"));
+}
+
+TEST_F(FaultyMesh, IsNoneThatIsCutByIncise) {
+    write("two.msh", soup({first}));
+    for (const std::string suffix : {".vtu", ".vtk", ".msh", ".mesh", ".inp"}) {
+        const auto cut = "cut two.msh --snap 0 --plane 0,0,0.4,0,0,1 --out cut" + suffix;
+        ASSERT_EQ(run(cut).status, 0);
+        const auto info = run("info --json cut" + suffix);
+        const auto figures = parsed(info.out);
+        EXPECT_EQ(figures["components"], 2);
+        EXPECT_EQ(figures["warnings"].size(), 0u) << figures["warnings"];
+        EXPECT_EQ(run("convert cut" + suffix + " copy.msh").err, "");
+        EXPECT_EQ(run("info copy.msh").err, "");
+        EXPECT_EQ(run("convert --weld cut" + suffix + " healed.vtu").status, 0);
+        EXPECT_EQ(parsed(run("info --json healed.vtu").out)["components"], 1);
+    }
+}
+
+TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
+    write("two.msh", soup({"0 0 0  0 1 0  1 0 0  0 0 1", "0 1 0  1 0 0  0 0 1  1 1 1"}));
+    const auto outcome = run("info two.msh");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("two.msh: all 2 cells have negative volume"), std::string::npos);
+    EXPECT_NE(outcome.out.find("volume           0.5\n"), std::string::npos) << outcome.out;
+    EXPECT_EQ(run("convert --weld two.msh one.vtu").status, 0);
+    EXPECT_EQ(run("info one.vtu").err, "");
+    write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
+    EXPECT_EQ(run("info some.msh").status, 2);
+}
+
+TEST_F(FaultyMesh, IsNoIndexOfFrames) {
+    write("beam.pvd",
+          "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" "
+          "file=\"frames/beam_0.vtu\"/><DataSet timestep=\"1\" file=\"frames/beam_1.vtu\"/>"
+          "</Collection></VTKFile>");
+    write("beam.vtu.series",
+          "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"frames/beam_0.vtu\", "
+          "\"time\": 0}, {\"name\": \"frames/beam_1.vtu\", \"time\": 1}]}");
+    for (const std::string index : {"beam.pvd", "beam.vtu.series"}) {
+        write("beam.toml", "[mesh]\nfile = \"" + index + "\"\n" + rest_of_scenario);
+        const std::vector<std::string> uses = {"info " + index,
+                                               "check " + index,
+                                               "check beam.toml",
+                                               "run beam.toml",
+                                               "convert " + index + " out.vtu",
+                                               "cut " + index + " --out o.vtu --plane 0,0,0,1,0,0"};
+        for (const auto& arguments : uses) {
+            const auto outcome = run(arguments);
+            EXPECT_EQ(outcome.status, 2) << arguments;
+            EXPECT_NE(outcome.err.find(index + ": holds no mesh itself but names 2 files, from "
+                                               "frames/beam_0.vtu to frames/beam_1.vtu; give one "
+                                               "of them\n"),
+                      std::string::npos)
+                << outcome.err;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,250 @@
+// Points that are not joined and cells that are wound the wrong way round, over all families.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh_repair.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "support/mesh_families.h"
+#include "topology/box_mesh.h"
+#include "topology/geometry.h"
+#include "topology/mesh.h"
+#include "topology/mesh_check.h"
+
+namespace incise::topology {
+namespace {
+
+/// Two tetrahedra that share a face, as soup: points 0 to 3 and 4 to 7.
+MeshData two_apart() { return test::soup_of(test::mesh_families()[1].data); }
+
+std::size_t num_points_used(const MeshData& data) {
+    return std::set(data.corners.begin(), data.corners.end()).size();
+}
+
+MeshData mirrored(MeshData data) {
+    for (Vec3& x : data.points) x.x() = -x.x();
+    return data;
+}
+
+double volume_of(const MeshData& data, std::size_t c) {
+    std::vector<Vec3> x;
+    for (const std::int64_t p : data.cell(c)) x.push_back(data.points[static_cast<std::size_t>(p)]);
+    return signed_volume(data.kinds[c], x);
+}
+
+TEST(Coincidence, WarnsOnceOfEverySoup) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        EXPECT_EQ(coincidence_warning(family.data), std::nullopt);
+        const MeshData soup = test::soup_of(family.data);
+        const auto num_doubles = soup.points.size() - num_points_used(family.data);
+        if (num_doubles == 0) continue;
+        const auto warnings = check(soup).warnings;
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_EQ(warnings[0].substr(0, warnings[0].find(" point")), std::to_string(num_doubles));
+    }
+}
+
+TEST(Coincidence, NamesPointsPositionCellsAndRemedies) {
+    MeshData soup = two_apart();
+    soup.source_cells = {7, 9};
+    EXPECT_EQ(coincidence_warning(soup),
+              "3 points are not joined to others at the same position, so the cells do not hang "
+              "together there: point 3 of cell 0 (tetrahedron, number 7 in the file) and point 4 "
+              "of cell 1 (tetrahedron, number 9 in the file) are both at (0, 0, 1); join them with "
+              "'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a scenario; if "
+              "they are meant to be apart, as the faces of a cut are, say 'weld = false' there");
+}
+
+TEST(Coincidence, IsNoMatterWhereItIsMeant) {
+    MeshData soup = two_apart();
+    soup.points_may_coincide = true;
+    EXPECT_EQ(check(soup).warnings, std::vector<std::string>{});
+}
+
+TEST(Coincidence, IsNoMatterOfPointsWithoutCells) {
+    MeshData data = test::mesh_families()[1].data;
+    data.points.push_back(data.points[0]);
+    EXPECT_EQ(coincidence_warning(data), std::nullopt);
+}
+
+TEST(Weld, MakesEverySoupTheMeshItWas) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        const auto whole = Mesh::build(family.data);
+        MeshData soup = test::soup_of(family.data);
+        const auto num_points = num_points_used(family.data);
+        EXPECT_EQ(weld(soup), soup.points.size() - num_points);
+        const auto welded = Mesh::build(soup);
+        EXPECT_EQ(welded.mesh.num_nodes(), whole.mesh.num_nodes());
+        EXPECT_EQ(components(welded.mesh).count, components(whole.mesh).count);
+        EXPECT_EQ(boundary_faces(welded.mesh), boundary_faces(whole.mesh));
+
+        drop_welded_points(soup);
+        EXPECT_EQ(soup.points.size(), num_points);
+        const auto compact = Mesh::build(soup).mesh;
+        EXPECT_EQ(boundary_faces(compact), boundary_faces(whole.mesh));
+        EXPECT_EQ(weld(soup), 0u);
+    }
+}
+
+TEST(Weld, LetsEveryLabelFindItsNode) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        MeshData soup = test::soup_of(family.data);
+        weld(soup);
+        const Mesh mesh = Mesh::build(soup).mesh;
+        ASSERT_EQ(mesh.num_source_points(), soup.points.size());
+        for (std::size_t p = 0; p < soup.points.size(); ++p) {
+            const auto nodes = mesh.nodes_with_label(static_cast<std::int64_t>(p));
+            ASSERT_FALSE(nodes.empty());
+            for (const NodeId n : nodes) {
+                EXPECT_TRUE(mesh.is_alive(n));
+                EXPECT_EQ(mesh.rest_position(n), soup.points[p]);
+            }
+            const auto lowest =
+                soup.welded_to.empty() ? static_cast<std::int64_t>(p) : soup.welded_to[p];
+            EXPECT_EQ(mesh.label(nodes.front()), lowest);
+            EXPECT_EQ(nodes, mesh.nodes_with_label(lowest));
+        }
+    }
+}
+
+TEST(Weld, JoinsWhatRoundingAloneHasParted) {
+    for (const double shift : {1e-8, 0.2 * weld_tolerance, 3.0 * weld_tolerance}) {
+        SCOPED_TRACE(shift);
+        const MeshData cube = box_mesh(CellKind::hexahedron, {5, 6, 7}, {3, 3, 3}, {3, 3, 3});
+        MeshData soup = test::soup_of(cube);
+        std::mt19937 random(3);
+        for (Vec3& x : soup.points)
+            for (double& coordinate : x) coordinate += random() % 2 == 0 ? shift : 0.0;
+        weld(soup);
+        const auto num_left = num_points_used(soup);
+        if (shift < weld_tolerance)
+            EXPECT_EQ(num_left, cube.points.size());
+        else
+            EXPECT_GT(num_left, cube.points.size());
+    }
+}
+
+TEST(Weld, TakesBothZerosForOnePosition) {
+    MeshData soup = two_apart();
+    for (std::size_t p = 4; p < soup.points.size(); ++p)
+        for (double& x : soup.points[p])
+            if (x == 0.0) x = -0.0;
+    EXPECT_EQ(weld(soup), 3u);
+}
+
+TEST(Weld, KeepsToEqualPositionsBeyondTheRangeOfSquares) {
+    for (const double scale : {1e-200, 1e200}) {
+        SCOPED_TRACE(scale);
+        MeshData soup = two_apart();
+        for (Vec3& x : soup.points) x *= scale;
+        EXPECT_EQ(weld(soup), 3u);
+    }
+}
+
+TEST(Weld, TakesLittleTimeForPointsAllAlike) {
+    MeshData data;
+    data.points.assign(400'000, Vec3::Zero());
+    for (std::int64_t p = 0; p < std::ssize(data.points); p += 4)
+        data.add_cell(CellKind::tetrahedron, std::vector<std::int64_t>{p, p + 1, p + 2, p + 3});
+    EXPECT_EQ(weld(data), 399'999u);
+}
+
+TEST(Weld, LeavesCellsThatItFlattensToTheCheck) {
+    MeshData soup = two_apart();
+    soup.points[6] = soup.points[5];
+    weld(soup);
+    const auto errors = check(soup).errors;
+    ASSERT_FALSE(errors.empty());
+    EXPECT_EQ(errors[0],
+              "cell 1 (tetrahedron): point 1 stands at two of its corners after welding; remove "
+              "the cell");
+}
+
+TEST(Weld, LeavesFacesOfThreeCellsToTheCheck) {
+    MeshData data = test::mesh_families()[1].data;
+    data.points.emplace_back(2, 2, 2);
+    data.add_cell(CellKind::tetrahedron, std::vector<std::int64_t>{3, 1, 2, 5});
+    MeshData soup = test::soup_of(data);
+    weld(soup);
+    const auto errors = check(soup).errors;
+    ASSERT_FALSE(errors.empty());
+    EXPECT_EQ(errors[0],
+              "cells 0, 1 and 2 all share one face; a face joins two cells at the most: remove the "
+              "others");
+}
+
+TEST(Weld, IsReportedInWords) {
+    EXPECT_EQ(weld_report(0), "no two points are at the same position: none was joined");
+    EXPECT_EQ(weld_report(1), "1 point was joined to another at the same position");
+    EXPECT_EQ(weld_report(2), "2 points were joined to others at the same position");
+}
+
+TEST(CellTraits, MirroredCellsKeepTheirFacesTurned) {
+    for (const CellTraits& cell : cell_traits) {
+        SCOPED_TRACE(cell.name);
+        // A face as it runs from its lowest corner on, backwards if wanted.
+        const auto run_of = [](std::vector<int> corners, bool is_backwards) {
+            if (is_backwards) std::ranges::reverse(corners);
+            std::ranges::rotate(corners, std::ranges::min_element(corners));
+            return corners;
+        };
+        std::multiset<std::vector<int>> faces, backwards;
+        for (int f = 0; f < cell.num_faces; ++f) {
+            const auto face = cell.face(f);
+            faces.insert(run_of({face.begin(), face.end()}, false));
+            std::vector<int> turned;
+            for (const int corner : face)
+                turned.push_back(cell.mirrored[static_cast<std::size_t>(corner)]);
+            backwards.insert(run_of(turned, true));
+        }
+        EXPECT_EQ(backwards, faces);
+    }
+}
+
+TEST(TurnedCells, MakeEveryMirrorImageSound) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        MeshData data = family.data;
+        EXPECT_FALSE(turn_inverted_cells(data));
+        data = mirrored(data);
+        ASSERT_FALSE(check(data).errors.empty());
+        EXPECT_TRUE(turn_inverted_cells(data));
+        EXPECT_TRUE(check(data).errors.empty());
+        EXPECT_EQ(check(data).shared_faces.size(), check(family.data).shared_faces.size());
+        EXPECT_EQ(data.regions, family.data.regions);
+        for (std::size_t c = 0; c < data.num_cells(); ++c) {
+            EXPECT_DOUBLE_EQ(volume_of(data, c), volume_of(family.data, c));
+            std::vector<std::int64_t> now(data.cell(c).begin(), data.cell(c).end()),
+                before(family.data.cell(c).begin(), family.data.cell(c).end());
+            EXPECT_TRUE(std::ranges::is_permutation(now, before));
+        }
+        EXPECT_FALSE(turn_inverted_cells(data));
+    }
+}
+
+TEST(TurnedCells, AreNoneWhereSomeAreSound) {
+    for (const auto& family : test::mesh_families()) {
+        if (family.data.num_cells() < 2) continue;
+        SCOPED_TRACE(family.name);
+        MeshData data = mirrored(family.data);
+        // One cell is wound the right way round.
+        const auto& order = traits(data.kinds.back()).mirrored;
+        const std::vector<std::int64_t> old(data.cell(data.num_cells() - 1).begin(),
+                                            data.cell(data.num_cells() - 1).end());
+        for (std::size_t k = 0; k < old.size(); ++k)
+            data.corners[data.offsets[data.num_cells() - 1] + k] =
+                old[static_cast<std::size_t>(order[k])];
+        const auto corners = data.corners;
+        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(data.corners, corners);
+    }
+}
+
+}  // namespace
+}  // namespace incise::topology

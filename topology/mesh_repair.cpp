@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "topology/geometry.h"
+
+namespace incise::topology {
+
+namespace {
+
+const Vec3& position_of(const MeshData& data, std::int64_t point) {
+    return data.points[static_cast<std::size_t>(point)];
+}
+
+/// Zero where squares of lengths leave the range of numbers: then only equal positions are one.
+double shortest_edge(const MeshData& data) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        const CellTraits& cell = traits(data.kinds[c]);
+        const auto corners = data.cell(c);
+        for (std::size_t e = 0; e < static_cast<std::size_t>(cell.num_edges); ++e) {
+            const auto [a, b] = cell.edges[e];
+            const Vec3 edge = position_of(data, corners[static_cast<std::size_t>(b)]) -
+                              position_of(data, corners[static_cast<std::size_t>(a)]);
+            shortest = std::min(shortest, edge.squaredNorm());
+        }
+    }
+    return std::isfinite(shortest) ? std::sqrt(shortest) : 0.0;
+}
+
+std::vector<std::int64_t> used_points(const MeshData& data) {
+    std::vector<bool> is_used(data.points.size(), false);
+    for (const std::int64_t corner : data.corners) is_used[static_cast<std::size_t>(corner)] = true;
+    std::vector<std::int64_t> used;
+    for (std::size_t p = 0; p < is_used.size(); ++p)
+        if (is_used[p]) used.push_back(static_cast<std::int64_t>(p));
+    return used;
+}
+
+/// Of each point the lowest one at its position. Points that no cell uses stand for themselves.
+/// A sweep along one direction compares few points with each other: the direction is that of no
+/// plane in which meshes have many of their points.
+std::vector<std::int64_t> lowest_at_position(const MeshData& data) {
+    struct Leader {
+        double at;
+        std::int64_t point;
+    };
+    static const Vec3 direction = Vec3(1.0, std::sqrt(2.0), std::sqrt(3.0)) / std::sqrt(6.0);
+    const double tolerance = weld_tolerance * shortest_edge(data);
+
+    std::vector<Leader> order;
+    for (const std::int64_t p : used_points(data))
+        order.push_back({direction.dot(position_of(data, p)), p});
+    std::sort(order.begin(), order.end(), [](const Leader& a, const Leader& b) {
+        return std::pair(a.at, a.point) < std::pair(b.at, b.point);
+    });
+
+    std::vector<std::int64_t> leader_of(data.points.size());
+    std::iota(leader_of.begin(), leader_of.end(), 0);
+    std::vector<Leader> leaders;
+    std::size_t begin = 0;  // of the leaders that later points may be near to
+    for (const auto& [at, point] : order) {
+        while (begin < leaders.size() && leaders[begin].at < at - 2.0 * tolerance) ++begin;
+        const Vec3& here = position_of(data, point);
+        const auto found = std::find_if(
+            leaders.begin() + static_cast<std::ptrdiff_t>(begin), leaders.end(),
+            [&](const Leader& leader) {
+                return (position_of(data, leader.point) - here).stableNorm() <= tolerance;
+            });
+        if (found == leaders.end())
+            leaders.push_back({at, point});
+        else
+            leader_of[static_cast<std::size_t>(point)] = found->point;
+    }
+
+    std::vector<std::int64_t> lowest(data.points.size(), -1);
+    for (std::size_t p = 0; p < leader_of.size(); ++p) {
+        std::int64_t& first = lowest[static_cast<std::size_t>(leader_of[p])];
+        if (first < 0) first = static_cast<std::int64_t>(p);
+        leader_of[p] = first;
+    }
+    return leader_of;
+}
+
+/// Points that have another one to stand for them.
+std::vector<std::size_t> doubles(const std::vector<std::int64_t>& lowest) {
+    std::vector<std::size_t> found;
+    for (std::size_t p = 0; p < lowest.size(); ++p)
+        if (lowest[p] != static_cast<std::int64_t>(p)) found.push_back(p);
+    return found;
+}
+
+/// "point 3 of cell 5 (tetrahedron)", the first that has it.
+std::string corner_name(const MeshData& data, std::size_t point) {
+    std::size_t c = 0;
+    while (std::ranges::find(data.cell(c), static_cast<std::int64_t>(point)) == data.cell(c).end())
+        ++c;
+    return data.point_name(point) + " of " + data.cell_name(c);
+}
+
+}  // namespace
+
+std::optional<std::string> coincidence_warning(const MeshData& data) {
+    if (data.points_may_coincide) return std::nullopt;
+    const auto lowest = lowest_at_position(data);
+    const auto found = doubles(lowest);
+    if (found.empty()) return std::nullopt;
+    const std::size_t example = found.front();
+    const Vec3& x = data.points[example];
+    std::ostringstream text;
+    text
+        << found.size()
+        << (found.size() == 1 ? " point is not joined to another"
+                              : " points are not joined to others")
+        << " at the same position, so the cells do not hang together there: "
+        << corner_name(data, static_cast<std::size_t>(lowest[example])) << " and "
+        << corner_name(data, example) << " are both at (" << x.x() << ", " << x.y() << ", " << x.z()
+        << "); join them with 'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a "
+           "scenario; if they are meant to be apart, as the faces of a cut are, say 'weld = false' "
+           "there";
+    return text.str();
+}
+
+std::size_t weld(MeshData& data) {
+    auto lowest = lowest_at_position(data);
+    const std::size_t num_joined = doubles(lowest).size();
+    if (num_joined == 0) return 0;
+    for (std::int64_t& corner : data.corners) corner = lowest[static_cast<std::size_t>(corner)];
+    data.welded_to = std::move(lowest);
+    data.points_may_coincide = false;
+    return num_joined;
+}
+
+std::string weld_report(std::size_t num_joined) {
+    if (num_joined == 0) return "no two points are at the same position: none was joined";
+    return std::to_string(num_joined) +
+           (num_joined == 1 ? " point was joined to another" : " points were joined to others") +
+           " at the same position";
+}
+
+void drop_welded_points(MeshData& data) {
+    std::vector<std::int64_t> new_number(data.points.size());
+    std::size_t num_kept = 0;
+    for (std::size_t p = 0; p < data.points.size(); ++p) {
+        if (data.is_welded(p)) continue;
+        new_number[p] = static_cast<std::int64_t>(num_kept);
+        data.points[num_kept] = data.points[p];
+        if (!data.source_points.empty()) data.source_points[num_kept] = data.source_points[p];
+        ++num_kept;
+    }
+    data.points.resize(num_kept);
+    if (!data.source_points.empty()) data.source_points.resize(num_kept);
+    for (std::int64_t& corner : data.corners) corner = new_number[static_cast<std::size_t>(corner)];
+    data.welded_to.clear();
+}
+
+bool turn_inverted_cells(MeshData& data) {
+    std::array<Vec3, max_corners> x;
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        const auto corners = data.cell(c);
+        for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
+        if (!(signed_volume(data.kinds[c], {x.data(), corners.size()}) < 0.0)) return false;
+    }
+    std::array<std::int64_t, max_corners> old{};
+    for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        std::ranges::copy(data.cell(c), old.begin());
+        const auto& mirrored = traits(data.kinds[c]).mirrored;
+        for (std::size_t k = 0; k < data.cell(c).size(); ++k)
+            data.corners[data.offsets[c] + k] = old[static_cast<std::size_t>(mirrored[k])];
+    }
+    return data.num_cells() > 0;
+}
+
+}  // namespace incise::topology
