@@ -333,7 +333,7 @@ class FollowingBody {
             before_.pop_back();
         } else {
             before_.push_back(snapshot);
-            Carried gone{0.0, 0.0, 0.0, Vec3::Zero()};
+            Carried gone{0.0, 0.0, 0.0, Vec3::Zero(), 1.0};
             for (const auto& record : changes->elements_removed) {
                 const Carried& of_element = carried[record.id.index()];
                 gone.mass += of_element.mass;
