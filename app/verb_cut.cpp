@@ -9,6 +9,7 @@
 #include "app/cut_tools.h"
 #include "app/messages.h"
 #include "app/verbs.h"
+#include "cutting/undividable.h"
 #include "io/atomic_file.h"
 #include "io/mesh_reader.h"
 #include "io/mesh_writer.h"
@@ -96,14 +97,6 @@ struct Result {
     std::vector<std::string> warnings;
 };
 
-/// The option in place of what the key of a scenario would be.
-std::string as_option(std::string text) {
-    constexpr std::string_view key = "mode = \"separate\"";
-    if (const auto at = text.find(key); at != text.npos)
-        text.replace(at, key.size(), "--mode separate");
-    return text;
-}
-
 Result carry_out(const CutOptions& options) {
     Job job = parse(options);
     const std::string prefix = options.mesh.string() + ": ";
@@ -118,8 +111,10 @@ Result carry_out(const CutOptions& options) {
         cut.points_may_coincide =
             file.mesh.points_may_coincide || report.total.nodes_duplicated > 0;
         return {std::move(cut), mode, job.snap, std::move(report), std::move(job.warnings)};
+    } catch (const cutting::UndividableElement& error) {
+        throw InputError(prefixed(prefix, error.what()) + "; use --mode separate");
     } catch (const InputError& error) {
-        throw InputError(prefixed(prefix, as_option(error.what())));
+        throw InputError(prefixed(prefix, error.what()));
     }
 }
 

@@ -22,7 +22,7 @@
 #include "cutting/parting.h"
 #include "cutting/passages.h"
 #include "cutting/recognition.h"
-#include "topology/error.h"
+#include "cutting/undividable.h"
 #include "topology/mesh_edit.h"
 
 namespace incise::cutting {
@@ -273,9 +273,7 @@ void Splitter::find_crossed_edges() {
                 report_ = {};
                 return;
             }
-            throw InputError("element " + std::to_string(mesh_.label(e)) + " is a " +
-                             traits(mesh_.kind(e)).name +
-                             ", and only tetrahedra can be split; use mode = \"separate\"");
+            refuse_to_divide(mesh_, e);
         }
 
     lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);

@@ -406,10 +406,16 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
     std::vector<Tool> tools;
     std::vector<std::string> idle;
     for (ToolSpec spec : scenario.tools) {
-        if (mesh) problems.try_to(spec.place, [&] { spec = with_mode(spec, *mesh); });
+        bool suits_mesh = false;
+        if (mesh)
+            problems.try_to(spec.place, [&] {
+                spec = with_mode(spec, *mesh);
+                suits_mesh = true;
+            });
         const auto* cut = std::get_if<Cut>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
             tools.emplace_back(spec, warnings);
+            if (suits_mesh) tools.back().require_divisible(*mesh);
             if (mesh && !spec.path.empty() && !tools.back().may_meet(body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });

@@ -17,6 +17,7 @@
 #include "cutting/step_length.h"
 #include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
+#include "cutting/undividable.h"
 #include "topology/error.h"
 #include "topology/geometry.h"
 #include "topology/mesh_metrics.h"
@@ -474,6 +475,8 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                 report.warnings.push_back(tool.name + ": " + *complaint);
             add(counts, report.total);
             report.tools.push_back({tool.name, counts, topology::components(mesh).count});
+        } catch (const cutting::UndividableElement& error) {
+            throw cutting::UndividableElement(tool.name + ": " + error.what());
         } catch (const InputError& error) {
             throw InputError(tool.name + ": " + error.what());
         }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "cutting/step_length.h"
+#include "cutting/undividable.h"
 #include "io/checked_file.h"
 #include "io/input_file.h"
 #include "io/number_format.h"
@@ -99,17 +100,30 @@ void Simulation::step() {
     const bool any_tool =
         std::any_of(tools_.begin(), tools_.end(),
                     [from = from, to = to](const Tool& tool) { return tool.is_present(from, to); });
-    if (any_tool) previous_positions_.assign(model_.positions().begin(), model_.positions().end());
+    const auto keep_positions = [&] {
+        if (any_tool)
+            previous_positions_.assign(model_.positions().begin(), model_.positions().end());
+    };
+    keep_positions();
+    const std::size_t num_edits = ledger_.edits().size();
 
     integrator_->step(model_, from, to - from);
+    has_moved_ = true;
 
     time_ = to;
     last_step_ = to - from;
     ++num_steps_;
     boxes_.move(mesh_, model_.positions(), model_.largest_move());
     for (Tool& tool : tools_) cut(tool, from, to);
-    if (integrator_->settle(model_, time_))
+    // What the way to a new equilibrium takes across a tool, which now rests, is cut as well.
+    for (std::size_t num_followed = num_edits; num_followed < ledger_.edits().size();) {
+        num_followed = ledger_.edits().size();
+        keep_positions();
+        if (!integrator_->settle(model_, time_)) break;
+        has_moved_ = true;
         boxes_.move(mesh_, model_.positions(), model_.largest_move());
+        for (Tool& tool : tools_) cut(tool, to, to);
+    }
 
     model_.compute_forces(time_);
     for (Observer* observer : observers_) observer->on_step(*this);
@@ -205,6 +219,8 @@ void Simulation::cut(Tool& tool, double from, double to) {
         } catch (const InputError& error) {
             std::ostringstream text;
             text << "tool '" << tool.name() << "', at t = " << to << " s: " << error.what();
+            if (dynamic_cast<const cutting::UndividableElement*>(&error))
+                text << "; " << tool.instead_of_dividing();
             throw InputError(text.str());
         }
     };
@@ -222,11 +238,10 @@ void Simulation::follow(Tool& tool, const cutting::Split& done) {
     const topology::ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     edits_(changes);
-    // The model has not followed yet; and nothing moves between the edits of one step.
-    const auto& edits = ledger_.edits();
-    const bool is_as_left = !edits.empty() && edits.back().step == num_steps_;
-    if (!is_as_left) model_.compute_states_and_forces();
-    const Account before = is_as_left ? edits.back().after : ledger_.account();
+    // The model has not followed yet.
+    if (has_moved_) model_.compute_states_and_forces();
+    const Account before = has_moved_ ? ledger_.account() : ledger_.edits().back().after;
+    has_moved_ = false;
     const double mass_removed = removed_mass(model_, changes);
     model_.apply(changes);
     topology::append_new_nodes(changes, previous_positions_);

@@ -107,6 +107,7 @@ class Simulation {
     double last_step_ = 0.0;
     std::uint64_t num_steps_ = 0, num_frames_ = 0;
     std::vector<Vec3> previous_positions_;
+    bool has_moved_ = true;  ///< since the last edit
 };
 
 }  // namespace incise::sim

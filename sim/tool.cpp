@@ -2,6 +2,7 @@
 #include "sim/tool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "cutting/carver.h"
@@ -11,6 +12,7 @@
 #include "cutting/surface_check.h"
 #include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
+#include "cutting/undividable.h"
 #include "io/surface_reader.h"
 #include "topology/error.h"
 
@@ -122,6 +124,43 @@ cutting::Pose Tool::pose(double time) const {
     const double s = (time - before->time) / (after->time - before->time);
     const cutting::Pose a = rigid(before->value), b = rigid(after->value);
     return {a.rotation.slerp(s, b.rotation), a.position + s * (b.position - a.position)};
+}
+
+void Tool::require_divisible(const topology::Mesh& mesh) const {
+    const auto require = [&](const cutting::CutSurface& surface) {
+        const auto e = cutting::first_undividable(mesh, surface);
+        if (!e) return;
+        try {
+            cutting::refuse_to_divide(mesh, *e);
+        } catch (const cutting::UndividableElement& error) {
+            throw InputError("tool '" + spec_.name + "' meets what it cannot divide: " +
+                             error.what() + "; " + instead_of_dividing());
+        }
+    };
+    if (surface_) return require(*surface_);
+    const auto* blade = std::get_if<Blade>(&spec_.kind);
+    if (!blade || blade->mode != CutMode::split) return;
+    // Between keys that turn the edge, its points go on arcs: in short pieces.
+    constexpr double longest_turn = 0.05;
+    for (std::size_t key = 1; key < spec_.path.size(); ++key) {
+        const auto &from = spec_.path[key - 1], &to = spec_.path[key];
+        const double turn = rigid(from.value).rotation.angularDistance(rigid(to.value).rotation);
+        const int num_parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
+        const auto time = [&](int part) {
+            return part == num_parts ? to.time
+                                     : from.time + part * (to.time - from.time) / num_parts;
+        };
+        for (int part = 0; part < num_parts; ++part)
+            require(
+                cutting::SweptEdge(edge_at(*blade, time(part)), edge_at(*blade, time(part + 1))));
+    }
+}
+
+std::string Tool::instead_of_dividing() const {
+    if (surface_)
+        return "use a blade with mode = \"separate\", which opens the faces nearest to it, or keep "
+               "the cut to tetrahedra";
+    return "use mode = \"separate\", which opens the faces nearest to it";
 }
 
 bool Tool::is_present(double from, double to) const {

@@ -43,6 +43,12 @@ class Tool {
     /// False only if nothing of it is ever in the box. Cost: that of its path, or of its surface.
     bool may_meet(const cutting::Box& box) const;
 
+    /// Throws InputError if it is to divide elements and meets one on its path that it cannot
+    /// divide, where the body rests: a run would stop there. Cost: O(#elements) for each key.
+    void require_divisible(const topology::Mesh& mesh) const;
+    /// What to do about such an element.
+    std::string instead_of_dividing() const;
+
     /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
     /// did, which is nothing if it is not there.
     /// @param resting  the other tools that are on their way through the body

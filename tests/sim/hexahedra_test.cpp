@@ -126,20 +126,33 @@ fix = "xyz"
     EXPECT_LE(simulation.ledger().energy_error(), 0.05);
     EXPECT_EQ(simulation.mesh().num_elements(), num_hexahedra + tetrahedra.num_cells());
 
-    // A cut through both is not for the hexahedra: which tool, when and where is told.
-    Simulation split(folder.scenario(
-        head + "[[material]]\nregions = 7\n" + soft + "[[material]]\nmethod = \"hybmss\"\n" + soft +
-        "[[tool]]\nkind = \"cut\"\nname = \"saw\"\ntime = 0.1\nplane = { point = [0, 0, 0.05], "
-        "normal = [0, 0, 1] }\n"));
-    try {
-        run(split);
-        ADD_FAILURE() << "accepted";
-    } catch (const InputError& error) {
-        const std::string text = error.what();
-        EXPECT_EQ(text.find("tool 'saw', at t = 0.1"), 0u) << text;
-        EXPECT_NE(text.find(" is a hexahedron, and only tetrahedra can be split"),
-                  std::string::npos)
-            << text;
+    // A cut through both is not for the hexahedra, which is told before it runs.
+    const std::string materials =
+        "[[material]]\nregions = 7\n" + soft + "[[material]]\nmethod = \"hybmss\"\n" + soft;
+    const std::string saws[] = {
+        "kind = \"cut\"\ntime = 0.1\nplane = { point = [0, 0, 0.05], normal = [0, 0, 1] }\n",
+        "kind = \"blade\"\nmode = \"split\"\nedge = [[0, -1, 0.05], [0, 1, 0.05]]\npath = [{ time "
+        "= "
+        "0, at = [-0.1, 0, 0] }, { time = 0.15, at = [0.5, 0, 0] }]\n",
+        "kind = \"blade\"\nmode = \"split\"\nedge = [[0, 0, 0], [1, 0, 0]]\npath = [{ time = 0, at "
+        "= "
+        "[0.05, 0.05, 0.05] }, { time = 0.15, at = [0.05, 0.05, 0.05], rotate = { axis = [0, 0, "
+        "1], "
+        "angle = 3 } }]\n"};
+    for (const std::string& saw : saws) {
+        try {
+            Simulation split(
+                folder.scenario(head + materials + "[[tool]]\nname = \"saw\"\n" + saw));
+            ADD_FAILURE() << "accepted: " << saw;
+        } catch (const InputError& error) {
+            const std::string text = error.what();
+            EXPECT_NE(text.find("tool 'saw' meets what it cannot divide: element "),
+                      std::string::npos)
+                << text;
+            EXPECT_NE(text.find(" is a hexahedron, and only tetrahedra can be split; use "),
+                      std::string::npos)
+                << text;
+        }
     }
 
     try {

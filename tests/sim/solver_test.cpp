@@ -59,6 +59,43 @@ TEST(StaticRun, EndsEachLoadStepInEquilibrium) {
     EXPECT_EQ(end_of(text), end_of(text));  // to the bit
 }
 
+// A strip is stretched and then cut across, in few load steps. Each equilibrium draws the sides of
+// the wound apart and moves tissue ahead across the blade, which rests then.
+TEST(StaticRun, CutsWhatAnEquilibriumTakesAcrossTheBlade) {
+    for (const int num_steps : {7, 11, 20}) {
+        SCOPED_TRACE(num_steps);
+        std::ostringstream text;
+        text << R"([mesh]
+box = { size = [0.08, 0.04, 0.01], cells = [8, 4, 1] }
+[[material]]
+density = 1000
+young = 20000
+poisson = 0.4
+[[constraint]]
+where = { half_space = { point = [0, 0, 0], normal = [-1, 0, 0] } }
+fix = "xyz"
+[[constraint]]
+where = { half_space = { point = [0.08, 0, 0], normal = [1, 0, 0] } }
+move = [{ time = 0, by = [0, 0, 0] }, { time = 0.3, by = [0.016, 0, 0] }]
+[[tool]]
+kind = "blade"
+edge = [[0, 0, -0.05], [0, 0, 0.05]]
+path = [{ time = 0.4, at = [0.0413, -0.01, 0] }, { time = 0.9, at = [0.0473, 0.05, 0] }]
+[output]
+interval = 0
+[dynamics]
+mode = "static"
+end_time = 1
+steps = )" << num_steps
+             << "\n";
+        Simulation simulation(scenario_of(text.str()));
+        run(simulation);
+        EXPECT_EQ(topology::components(simulation.mesh()).count, 2);
+        EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
+        EXPECT_LT(simulation.ledger().energy_error(), 0.01);
+    }
+}
+
 TEST(StaticRun, TellsOfElementsThatEndInverted) {
     const auto pressed = [](const std::string& depth) {
         return R"(

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "cutting/undividable.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace incise::cutting {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::Mesh;
+
+void refuse_to_divide(const Mesh& mesh, ElementId e) {
+    throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
+                             topology::traits(mesh.kind(e)).name +
+                             ", and only tetrahedra can be split");
+}
+
+std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& surface) {
+    std::vector<Crossing> crossings;
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e) || mesh.kind(e) == CellKind::tetrahedron) continue;
+        const auto corners = mesh.corners(e);
+        std::array<MovingPoint, topology::max_corners> points;
+        Box box;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const Vec3& X = mesh.rest_position(corners[k]);
+            points[k] = {X, X};
+            box.extend(X);
+        }
+        if (!surface.may_meet(box) ||
+            !surface.may_meet_hull(std::span(points).first(corners.size())))
+            continue;
+        const topology::CellTraits& t = topology::traits(mesh.kind(e));
+        for (int k = 0; k < t.num_edges; ++k) {
+            const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
+            surface.append_crossings(points[static_cast<std::size_t>(p)],
+                                     points[static_cast<std::size_t>(q)], crossings);
+            if (!crossings.empty()) return e;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,29 @@
+// Elements that a cut cannot divide: all but tetrahedra.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cutting/cut_surface.h"
+#include "topology/error.h"
+#include "topology/mesh.h"
+
+namespace incise::cutting {
+
+/// A cut that is to divide elements has met one that it cannot divide. The text names the element;
+/// the remedy is the caller's, who knows what the user has asked for.
+struct UndividableElement : InputError {
+    using InputError::InputError;
+};
+
+/// Throws UndividableElement.
+[[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, topology::ElementId e);
+
+/// The element of lowest id that the surface crosses where the mesh is at rest and that is no
+/// tetrahedron; nothing if there is none. Cost: O(#elements), and of those that are no tetrahedra
+/// and that the surface may meet a look at their edges.
+std::optional<topology::ElementId> first_undividable(const topology::Mesh& mesh,
+                                                     const CutSurface& surface);
+
+}  // namespace incise::cutting
