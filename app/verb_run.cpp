@@ -53,6 +53,32 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
+/// Tells, once, of an edit after which the run takes many times as long.
+class ShortStepObserver : public sim::Observer {
+  public:
+    void on_edit(const sim::Simulation& simulation, const sim::EditRecord& edit) override {
+        constexpr double much_shorter = 0.1;
+        const sim::DynamicsSpec& dynamics = simulation.scenario().dynamics;
+        const double first = simulation.ledger().initial().stable_step,
+                     now = edit.after.stable_step;
+        if (has_told_ || dynamics.mode == sim::Mode::statics ||
+            dynamics.integrator != sim::TimeIntegrator::semi_implicit_euler ||
+            !(now < much_shorter * first))
+            return;
+        has_told_ = true;
+        std::ostringstream text;
+        text.precision(3);
+        text << "tool '" << edit.tool << "', at t = " << edit.time
+             << " s: its cut has left elements so thin that the stable step fell from " << first
+             << " to " << now << " s: the run takes " << first / now
+             << " times as long from here on; use a larger tool.snap";
+        print_warning(text.str());
+    }
+
+  private:
+    bool has_told_ = false;
+};
+
 int num_threads(const RunOptions& options) {
     if (options.num_threads > 0) return options.num_threads;
     return physics::Workers::num_cores();
@@ -162,6 +188,8 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
     simulation.add_observer(progress);
+    ShortStepObserver short_steps;
+    simulation.add_observer(short_steps);
 
     const Stopwatch watch;
     const auto finish = [&](sim::Outcome outcome) {
@@ -169,20 +197,25 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         progress.finish();
         writer.finish(simulation, outcome);
     };
-    try {
-        if (!options.resume) simulation.start();
-        while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
-    } catch (const PhysicsError& error) {
+    const auto failure = [&](const std::exception& error, std::uint64_t step) {
         std::ostringstream text;
-        text << scenario.name << ": step " << simulation.num_steps() + 1
-             << ", t = " << simulation.time() << " s: " << error.what()
-             << ". What was written up to then is in " << writer.main_result().string();
+        text << scenario.name << ": step " << step << ", t = " << simulation.time()
+             << " s: " << error.what() << ". What was written up to then is in "
+             << writer.main_result().string();
         try {
             finish({"failed", text.str()});
         } catch (const OutputError& refusal) {
             text << '\n' << refusal.what();
         }
-        throw PhysicsError(text.str());
+        return text.str();
+    };
+    try {
+        if (!options.resume) simulation.start();
+        while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
+    } catch (const PhysicsError& error) {
+        throw PhysicsError(failure(error, simulation.num_steps() + 1));
+    } catch (const InputError& error) {  // a tool has met what it cannot cut
+        throw InputError(failure(error, simulation.num_steps()));
     }
     if (!simulation.is_finished()) {
         writer.take_checkpoint(simulation, sim::CheckpointKind::of_a_stop);
