@@ -53,17 +53,17 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
-/// Tells, once, of an edit after which the run takes many times as long.
+/// Tells, once, of the edit after which the run takes many times as long.
 class ShortStepObserver : public sim::Observer {
   public:
     void on_edit(const sim::Simulation& simulation, const sim::EditRecord& edit) override {
         constexpr double much_shorter = 0.1;
         const sim::DynamicsSpec& dynamics = simulation.scenario().dynamics;
         const double first = simulation.ledger().initial().stable_step,
-                     now = edit.after.stable_step;
+                     before = edit.before.stable_step, now = edit.after.stable_step;
         if (has_told_ || dynamics.mode == sim::Mode::statics ||
             dynamics.integrator != sim::TimeIntegrator::semi_implicit_euler ||
-            !(now < much_shorter * first))
+            !(now < much_shorter * first) || before < much_shorter * first)
             return;
         has_told_ = true;
         std::ostringstream text;

@@ -5,11 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "cutting/edge_list.h"
+
 namespace incise::cutting {
 
 using topology::CellKind;
 using topology::ElementId;
 using topology::Mesh;
+using topology::NodeId;
 
 void refuse_to_divide(const Mesh& mesh, ElementId e) {
     throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
@@ -23,12 +26,14 @@ std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& s
         const ElementId e(i);
         if (!mesh.is_alive(e) || mesh.kind(e) == CellKind::tetrahedron) continue;
         const auto corners = mesh.corners(e);
+        const auto at_rest = [&](NodeId n) {
+            return MovingPoint{mesh.rest_position(n), mesh.rest_position(n)};
+        };
         std::array<MovingPoint, topology::max_corners> points;
         Box box;
         for (std::size_t k = 0; k < corners.size(); ++k) {
-            const Vec3& X = mesh.rest_position(corners[k]);
-            points[k] = {X, X};
-            box.extend(X);
+            points[k] = at_rest(corners[k]);
+            box.extend(points[k][0]);
         }
         if (!surface.may_meet(box) ||
             !surface.may_meet_hull(std::span(points).first(corners.size())))
@@ -36,8 +41,10 @@ std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& s
         const topology::CellTraits& t = topology::traits(mesh.kind(e));
         for (int k = 0; k < t.num_edges; ++k) {
             const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
-            surface.append_crossings(points[static_cast<std::size_t>(p)],
-                                     points[static_cast<std::size_t>(q)], crossings);
+            // In the direction in which the cut asks, so that ties are decided as there.
+            const Edge edge = edge_between(corners[static_cast<std::size_t>(p)],
+                                           corners[static_cast<std::size_t>(q)]);
+            surface.append_crossings(at_rest(edge.a), at_rest(edge.b), crossings);
             if (!crossings.empty()) return e;
         }
     }
