@@ -24,6 +24,10 @@ using DoubleGroup = LinkGroup<double>;
     return links;
 }
 
+const FibreGroup<double>* fibres_of(const LinkGroups<double>& groups, std::size_t g) {
+    return groups.fibres.empty() ? nullptr : &groups.fibres[g];
+}
+
 /// To the bit as HemlKernel::volume_ratio.
 DoubleLanes volume_ratio(const DoubleLanes3& v1, const DoubleLanes3& v2, const DoubleLanes3& v3,
                          DoubleLanes rest_volume) {
@@ -43,15 +47,16 @@ template <class L>
 
 /// Of the part of the group of number g.
 template <class L>
-[[gnu::always_inline]] inline StrainedLinks<L, double> strained_links(
+[[gnu::always_inline]] inline LinkStrain<DoubleLanes> strain_of(
     const LinkGroups<double>& groups, std::size_t g, std::size_t first,
     const std::array<DoubleLanes3, 6>& links) {
     const DoubleGroup& group = groups.links[g];
     std::array<DoubleLanes, 6> dl;
     for (std::size_t k = 0; k < 6; ++k)
         dl[k] = rounded_dot(links[k], links[k]) - DoubleLanes::load(group.rest_links[k] + first);
-    return {group, groups.fibres.empty() ? nullptr : &groups.fibres[g], first, dl,
-            volume_ratio(links[0], links[1], links[2], DoubleLanes::load(group.volume + first))};
+    return strain_of_links<L, double>(
+        group, fibres_of(groups, g), first, dl,
+        volume_ratio(links[0], links[1], links[2], DoubleLanes::load(group.volume + first)));
 }
 
 /// Calls visit(group's number, first lane) for as many elements at a time as there are lanes.
@@ -71,10 +76,10 @@ template <class L>
                                    const LocalVector* positions, ElementEnergies* energies) {
     for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
         const auto links = gather_links(positions, groups.links[g], first);
-        const auto strained = strained_links<L>(groups, g, first, links);
+        const auto strain = strain_of<L>(groups, g, first, links);
         const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
-        put(volume * energy_density(law, strained.strain, J0), energies[g].energy + first);
-        put(strained.strain.J, energies[g].volume_ratio + first);
+        put(volume * energy_density(law, strain, J0), energies[g].energy + first);
+        put(strain.J, energies[g].volume_ratio + first);
     });
 }
 
@@ -92,15 +97,14 @@ void heml_states(const Law& law, double J0, const LinkGroups<double>& groups,
             for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
                 const DoubleGroup& group = groups.links[g];
                 const auto links = gather_links(positions, group, first);
-                const auto strained = strained_links<L>(groups, g, first, links);
+                const auto strain = strain_of<L>(groups, g, first, links);
                 const DoubleLanes volume = DoubleLanes::load(group.volume + first);
                 ElementStates& state = states[g];
-                put(volume * energy_density(l, strained.strain, J0), state.energy + first);
-                put(strained.strain.J, state.volume_ratio + first);
+                put(volume * energy_density(l, strain, J0), state.energy + first);
+                put(strain.J, state.volume_ratio + first);
                 const LinkVectors<double> edges{links[0], links[1], links[2]};
-                const LinkVectors<double> f =
-                    link_forces(l, J0, group, first, edges, across<double>(edges), strained);
-                put_virials(f, edges, state, first);
+                put_virials(link_forces(l, J0, group, fibres_of(groups, g), first, edges), edges,
+                            state, first);
             });
         },
         law);

@@ -70,9 +70,8 @@ class HemlLanes {
     /// @param positions m, by local number
     BlockState state(const HemlKernel& kernel, const LocalVector* positions) const;
     /// Sets all of the elements' results, in the order of their numbers, but volumes at rest, which
-    /// are read: as the reference within rounding, and without stress at rest but for what parts
-    /// of a law leave that cancel there. In double precision
-    /// only, the same bits on every processor.
+    /// are read: as the reference within rounding. In double precision only, the same bits on every
+    /// processor.
     void set_results(const HemlKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
     /// Those in the numbers that the kernel's precision asks for.

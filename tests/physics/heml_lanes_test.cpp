@@ -301,24 +301,16 @@ TEST(HemlLanes, HaveTheResultsOfTheReference) {
 }
 
 // As the forces: but for laws of which the reference has a rest of rounding there.
-TEST(HemlLanes, HaveNoStressAtRest) {
+TEST(HemlLanes, HaveNoStressAtRestButRounding) {
     test::Random random(16);
-    std::size_t num_without = 0;
     for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
         SCOPED_TRACE(name);
         std::vector<Tetrahedron> rest;
         for (int i = 0; i < 50; ++i) rest.push_back(random_tetrahedron(random, 0.01));
         const Elements<double> elements(kernel, rest, rest);
-        const auto results = results_of(kernel, elements);
-        for (std::size_t i = 0; i < rest.size(); ++i) {
-            if (name.starts_with("Saint Venant")) {  // with nothing that only cancels at rest
-                EXPECT_TRUE(results[i].cauchy_stress.isZero(0.0));
-                ++num_without;
-            }
-            EXPECT_LE(results[i].cauchy_stress.norm(), 1e-12 * stiffness(kernel));
-        }
+        for (const ElementResult& result : results_of(kernel, elements))
+            EXPECT_LE(result.cauchy_stress.norm(), 1e-12 * stiffness(kernel));
     });
-    EXPECT_GE(num_without, 150u);
 }
 
 TEST(HemlLanes, HaveTheSameBitsOfResultsOnEachProcessor) {
