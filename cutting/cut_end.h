@@ -36,8 +36,8 @@ class CutEnd {
                                            double farthest);
 
     /// The node counts as at the blade's edge.
-    void put_at(topology::NodeId n) { nodes_.insert(n.value); }
-    bool is_at(topology::NodeId n) const { return nodes_.contains(n.value); }
+    void put_at(topology::NodeId n) { nodes_.insert(n); }
+    bool is_at(topology::NodeId n) const { return nodes_.contains(n); }
 
     /// Whether no part of a face on the cut is ahead of the blade's edge, once what crosses that is
     /// divided there.
@@ -50,7 +50,7 @@ class CutEnd {
     const topology::Mesh& mesh_;
     const BladeEnd& blade_;
     PositionOf position_;
-    std::unordered_set<std::int32_t> nodes_;  // at the blade's edge
+    std::unordered_set<topology::NodeId> nodes_;  // at the blade's edge
 };
 
 /// The same blade, if its cut is behind it, else one that goes on away from its cut: a blade may

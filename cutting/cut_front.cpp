@@ -12,14 +12,14 @@ using topology::Mesh;
 using topology::NodeId;
 
 void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
-    const auto [place, is_new] = nodes_.try_emplace(n.value, Node{is_exact, reach, rank, n});
+    const auto [place, is_new] = nodes_.try_emplace(n, Node{is_exact, reach, rank, n});
     place->second.reach = std::max(place->second.reach, reach);
     num_new_ += is_new;
     has_changed_ = true;
 }
 
 bool CutFront::is_crossed(NodeId a, NodeId b) const {
-    const auto place = crossed_.find(a.value);
+    const auto place = crossed_.find(a);
     return place != crossed_.end() &&
            std::find(place->second.begin(), place->second.end(), b) != place->second.end();
 }
@@ -27,14 +27,14 @@ bool CutFront::is_crossed(NodeId a, NodeId b) const {
 void CutFront::toggle(NodeId a, NodeId b) {
     has_changed_ = true;
     const auto toggle_from = [&](NodeId from, NodeId to) {
-        auto& others = crossed_[from.value];
+        auto& others = crossed_[from];
         const auto place = std::find(others.begin(), others.end(), to);
         if (place == others.end()) {
             others.push_back(to);
             return;
         }
         others.erase(place);
-        if (others.empty()) crossed_.erase(from.value);
+        if (others.empty()) crossed_.erase(from);
     };
     toggle_from(a, b);
     toggle_from(b, a);
@@ -51,7 +51,7 @@ std::optional<CutFront::Place> CutFront::place_of(ElementId e,
     for (const NodeId n : corners)
         if (is_near(n) && (!last.is_valid() || rank(n) > rank(last))) last = n;
     if (last.is_valid()) return Place{last};
-    const auto place = places_.find(e.value);
+    const auto place = places_.find(e);
     if (place == places_.end()) return std::nullopt;
     const auto& [corner, is_crossed] = place->second;
     return Place{corners[static_cast<std::size_t>(corner)], is_crossed};
@@ -63,14 +63,14 @@ void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
         std::array<NodeId, 4> whole;
         std::ranges::replace_copy(mesh.corners(kept), whole.begin(), middle, b);
         const std::optional<Place> place = place_of(kept, whole);
-        places_.erase(kept.value);
+        places_.erase(kept);
         if (!place) continue;
         for (const auto& [half, lost] : {std::pair(kept, b), std::pair(added, a)}) {
             const auto corners = mesh.corners(half);
             if (!std::ranges::all_of(corners, [&](NodeId n) { return is_on(n); })) continue;
             const bool is_beyond = place->corner == lost;
             const NodeId corner = is_beyond ? middle : place->corner;
-            places_[half.value] = {
+            places_[half] = {
                 mesh.corner_of(half, corner),
                 is_beyond ? place->is_crossed == is_crossed(lost, middle) : place->is_crossed};
         }
@@ -78,18 +78,17 @@ void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
 }
 
 bool CutFront::is_on(const topology::Mesh& mesh) const {
-    std::unordered_set<std::int32_t> followers;
+    std::unordered_set<topology::NodeId> followers;
     const auto is_sound = [&](const auto& node) {
-        const NodeId n(static_cast<std::size_t>(node.first)), twin = node.second.next_twin;
+        const NodeId n = node.first, twin = node.second.next_twin;
         return n.is_valid() && n.index() < mesh.node_capacity() && is_on(twin) &&
-               followers.insert(twin.value).second;
+               followers.insert(twin).second;
     };
     const auto is_element = [&](ElementId e) {
         return e.is_valid() && e.index() < mesh.element_capacity();
     };
     const auto is_place = [&](const auto& place) {
-        return is_element(ElementId(static_cast<std::size_t>(place.first))) &&
-               place.second.corner >= 0 && place.second.corner < 4;
+        return is_element(place.first) && place.second.corner >= 0 && place.second.corner < 4;
     };
     return std::ranges::all_of(nodes_, is_sound) && std::ranges::all_of(places_, is_place) &&
            std::ranges::all_of(waiting_, is_element);
@@ -103,15 +102,15 @@ void CutFront::follow(const topology::ChangeSet& changes, bool has_opened_faces_
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
         const NodeId source = record.sources[0].node;
-        if (const auto place = nodes_.find(source.value); place != nodes_.end()) {
+        if (const auto place = nodes_.find(source); place != nodes_.end()) {
             Node copy = place->second;
             if (!has_opened_faces_of_it) copy.next_twin = record.id;
-            if (nodes_.emplace(record.id.value, copy).second) {
+            if (nodes_.emplace(record.id, copy).second) {
                 ++num_new_;
-                if (has_opened_faces_of_it) nodes_.at(source.value).next_twin = record.id;
+                if (has_opened_faces_of_it) nodes_.at(source).next_twin = record.id;
             }
         }
-        const auto place = crossed_.find(source.value);
+        const auto place = crossed_.find(source);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) toggle(record.id, other);
     }
@@ -119,13 +118,13 @@ void CutFront::follow(const topology::ChangeSet& changes, bool has_opened_faces_
 
 void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
     for (const NodeId n : nodes) {
-        if (const auto place = nodes_.find(n.value); place != nodes_.end()) {
+        if (const auto place = nodes_.find(n); place != nodes_.end()) {
             NodeId before = n;
             while (next_twin(before) != n) before = next_twin(before);
-            nodes_.at(before.value).next_twin = place->second.next_twin;
+            nodes_.at(before).next_twin = place->second.next_twin;
             nodes_.erase(place);
         }
-        const auto place = crossed_.find(n.value);
+        const auto place = crossed_.find(n);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) {
             // An edge between a node on the cut and another is forgotten with the former.
@@ -133,9 +132,9 @@ void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
         }
     }
     std::erase_if(places_, [&](const auto& place) {
-        const ElementId e(static_cast<std::size_t>(place.first));
-        if (!mesh.is_alive(e)) return true;
-        return std::ranges::any_of(mesh.corners(e), [&](NodeId n) { return !is_on(n); });
+        const ElementId e = place.first;
+        return !mesh.is_alive(e) ||
+               std::ranges::any_of(mesh.corners(e), [&](NodeId n) { return !is_on(n); });
     });
 }
 

@@ -36,22 +36,22 @@ class CutFront {
     /// it, on one side. `reach` is the size of the elements there, m; `rank`, see Scars::take_rank.
     /// Of a node that is on the cut already only the reach can change, to more.
     void put_on(topology::NodeId n, bool is_exact, double reach, std::uint64_t rank);
-    bool is_on(topology::NodeId n) const { return nodes_.contains(n.value); }
+    bool is_on(topology::NodeId n) const { return nodes_.contains(n); }
     bool is_near(topology::NodeId n) const {
-        const auto place = nodes_.find(n.value);
+        const auto place = nodes_.find(n);
         return place != nodes_.end() && !place->second.is_exact;
     }
 
     /// The same surface has cut here before: what it left joined between such nodes stays so.
-    void settle(topology::NodeId n) { nodes_.at(n.value).is_settled = true; }
+    void settle(topology::NodeId n) { nodes_.at(n).is_settled = true; }
     bool is_settled(topology::NodeId n) const {
-        const auto place = nodes_.find(n.value);
+        const auto place = nodes_.find(n);
         return place != nodes_.end() && place->second.is_settled;
     }
 
     /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
     std::uint64_t rank(topology::NodeId n) const {
-        const auto place = nodes_.find(n.value);
+        const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.rank : 0;
     }
 
@@ -59,13 +59,13 @@ class CutFront {
     /// opened since it came to it: from one to the next they make a ring. The node itself if it is
     /// the only one.
     topology::NodeId next_twin(topology::NodeId n) const {
-        const auto place = nodes_.find(n.value);
+        const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.next_twin : n;
     }
 
     /// Size of the elements at a node on the cut, m; 0 for others.
     double reach(topology::NodeId n) const {
-        const auto place = nodes_.find(n.value);
+        const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.reach : 0.0;
     }
 
@@ -106,15 +106,13 @@ class CutFront {
     /// Calls visit(node) for each node on the cut, in no order.
     template <class Visit>
     void for_each(Visit visit) const {
-        for (const auto& [value, node] : nodes_)
-            visit(topology::NodeId(static_cast<std::size_t>(value)));
+        for (const auto& [n, node] : nodes_) visit(n);
     }
 
     /// Calls visit(node, others) for each node with crossed edges, in no order.
     template <class Visit>
     void for_each_crossed(Visit visit) const {
-        for (const auto& [value, others] : crossed_)
-            visit(topology::NodeId(static_cast<std::size_t>(value)), others);
+        for (const auto& [n, others] : crossed_) visit(n, others);
     }
 
     /// Copies of a node are what it is, and its twins if the edit has opened faces of this cut.
@@ -157,10 +155,11 @@ class CutFront {
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
     std::uint64_t number_ = 0;
-    std::unordered_map<std::int32_t, Node> nodes_;
+    std::unordered_map<topology::NodeId, Node> nodes_;
     // Both directions of each crossed edge.
-    std::unordered_map<std::int32_t, std::vector<topology::NodeId>> crossed_;
-    std::unordered_map<std::int32_t, LocalPlace> places_;  // of elements whose corners are all on
+    std::unordered_map<topology::NodeId, std::vector<topology::NodeId>> crossed_;
+    std::unordered_map<topology::ElementId, LocalPlace>
+        places_;  // of elements whose corners are all on
     std::vector<topology::ElementId> waiting_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
@@ -169,10 +168,8 @@ class CutFront {
 template <class Keep>
 std::vector<topology::NodeId> CutFront::nodes_unless(Keep keep) const {
     std::vector<topology::NodeId> nodes;
-    for (const auto& [value, node] : nodes_) {
-        const topology::NodeId n(static_cast<std::size_t>(value));
+    for (const auto& [n, node] : nodes_)
         if (!keep(n)) nodes.push_back(n);
-    }
     std::sort(nodes.begin(), nodes.end());
     return nodes;
 }

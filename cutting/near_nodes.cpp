@@ -34,7 +34,7 @@ void NearNodes::collect_star(const EdgeEnd& end) {
 
 /// At the end of that name, or what it was when last asked for, which is no less.
 double NearNodes::longest_edge_once(const EdgeEnd& end) {
-    const auto [place, is_new] = longest_edges_.try_emplace(end.node.value, 0.0);
+    const auto [place, is_new] = longest_edges_.try_emplace(end.node, 0.0);
     double& longest = place->second;
     if (!is_new) return longest;
     collect_star(end);

@@ -48,7 +48,7 @@ class NearNodes {
     const NearLimits limits_;
     /// By node id, m, when the node was first asked for. Divisions make no edge at a node longer:
     /// a new one lies within a triangle that has two of them.
-    std::unordered_map<std::int32_t, double> longest_edges_;
+    std::unordered_map<topology::NodeId, double> longest_edges_;
     std::vector<topology::ElementId> star_;  // scratch
 };
 

@@ -83,9 +83,9 @@ class Crumbs {
     const std::vector<ElementId>& touched_;
     const std::vector<FaceId>& parted_;
     const Course& course_;
-    std::unordered_set<std::int32_t> large_;  // elements of large pieces
-    std::map<FaceId, double> times_;          // of those asked for
-    std::set<FaceId> kept_;                   // joined, of the parted ones
+    std::unordered_set<topology::ElementId> large_;  // elements of large pieces
+    std::map<FaceId, double> times_;                 // of those asked for
+    std::set<FaceId> kept_;                          // joined, of the parted ones
     std::vector<ElementId> elements_, waiting_;
 };
 
@@ -141,9 +141,9 @@ bool Crumbs::collect_piece(ElementId start, double by, std::vector<ElementId>& p
         const ElementId e = piece[next];
         if (!is_known(e)) volume += rest_volume(mesh_, e);
         for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.reach(n));
-        if (large_.contains(e.value) || volume > largest_crumb * edge * edge * edge) {
+        if (large_.contains(e) || volume > largest_crumb * edge * edge * edge) {
             if (by == at_last)  // and before it was no less
-                for (const ElementId member : piece) large_.insert(member.value);
+                for (const ElementId member : piece) large_.insert(member);
             return false;
         }
         for (int f = 0; f < mesh_.num_faces(e); ++f) {

@@ -17,7 +17,7 @@ class Recognizer {
         : tissue_(tissue), surface_(surface), scars_(scars) {
         if (surface.identity() == no_identity) return;
         for (const auto& [edge, element] : edges)
-            if (moves(edge.a) || moves(edge.b)) moving_.insert({edge.a.value, edge.b.value});
+            if (moves(edge.a) || moves(edge.b)) moving_.insert({edge.a, edge.b});
     }
 
     /// Looks for the node's scars; `length` is that of an edge there, m.
@@ -74,7 +74,7 @@ class Recognizer {
     /// Whether this is the surface of that cut, and the node where it was then.
     bool is_where_it_was(NodeId n, const Scar& scar, double length) const {
         return surface_.identity() != no_identity && scar.surface == surface_.identity() &&
-               !moving_.contains(n.value) &&
+               !moving_.contains(n) &&
                (tissue_.after[n.index()] - scar.place).norm() <= Scars::rounding * length;
     }
     static bool is_along(const Scar& scar, const Vec3& normal) {
@@ -84,7 +84,7 @@ class Recognizer {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     const Scars& scars_;
-    std::unordered_set<std::int32_t> moving_;  // nodes that move, and those next to such
+    std::unordered_set<topology::NodeId> moving_;  // nodes that move, and those next to such
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ bool is_same(const Scar& a, const Scar& b, double size) {
 }  // namespace
 
 void Scars::add(topology::NodeId n, const Scar& scar) {
-    if (!has(n, scar, scar.to_surface.norm())) scars_[n.value].push_back(scar);
+    if (!has(n, scar, scar.to_surface.norm())) scars_[n].push_back(scar);
 }
 
 const Scar* Scars::find(topology::NodeId n, const Scar& scar, double size) const {
@@ -29,7 +29,7 @@ const Scar* Scars::find(topology::NodeId n, const Scar& scar, double size) const
 }
 
 std::span<const Scar> Scars::of(topology::NodeId n) const {
-    const auto place = scars_.find(n.value);
+    const auto place = scars_.find(n);
     return place == scars_.end() ? std::span<const Scar>{} : std::span<const Scar>(place->second);
 }
 
@@ -62,12 +62,12 @@ void Scars::inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNo
 void Scars::follow(const topology::ChangeSet& changes) {
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1 || scars_.empty()) continue;
-        const auto place = scars_.find(record.sources[0].node.value);
+        const auto place = scars_.find(record.sources[0].node);
         if (place != scars_.end())
-            scars_.insert_or_assign(record.id.value, std::vector<Scar>(place->second));
+            scars_.insert_or_assign(record.id, std::vector<Scar>(place->second));
     }
     for (const topology::ElementRecord& record : changes.elements_added)
-        if (const auto place = crumbs_.find(record.parent.value); place != crumbs_.end())
+        if (const auto place = crumbs_.find(record.parent); place != crumbs_.end())
             add_crumb(record.id, place->second);
 }
 

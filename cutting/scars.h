@@ -55,15 +55,15 @@ class Scars {
     /// The element stayed with the other side of the cut of this number (CutFront::number), as
     /// there was too little of it.
     void add_crumb(topology::ElementId e, std::uint64_t cut) {
-        auto& first = crumbs_.emplace(e.value, cut).first->second;
+        auto& first = crumbs_.emplace(e, cut).first->second;
         first = std::min(first, cut);
     }
     /// Whether it did so at a cut that began before the one of this number.
     bool is_earlier_crumb(topology::ElementId e, std::uint64_t cut) const {
-        const auto place = crumbs_.find(e.value);
+        const auto place = crumbs_.find(e);
         return place != crumbs_.end() && place->second < cut;
     }
-    bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e.value); }
+    bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e); }
 
     /// The middle has been made on the edge between two nodes: a cut that passes by one of them and
     /// goes through the edge beyond the middle, or passes by both, passes by the middle.
@@ -79,8 +79,8 @@ class Scars {
   private:
     void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
 
-    std::unordered_map<std::int32_t, std::vector<Scar>> scars_;
-    std::unordered_map<std::int32_t, std::uint64_t> crumbs_;
+    std::unordered_map<topology::NodeId, std::vector<Scar>> scars_;
+    std::unordered_map<topology::ElementId, std::uint64_t> crumbs_;
     std::uint64_t next_rank_ = 1;
 };
 

@@ -31,7 +31,7 @@ std::vector<FaceId> Sides::parted_faces() const {
 /// Of the touched elements, and of those next to them that have no corner off the cut.
 void Sides::collect_faces(const std::vector<ElementId>& touched) {
     std::vector<ElementId> pending = touched;
-    std::unordered_set<std::int32_t> followed;
+    std::unordered_set<topology::ElementId> followed;
     while (!pending.empty()) {
         const ElementId e = pending.back();
         pending.pop_back();
@@ -40,8 +40,7 @@ void Sides::collect_faces(const std::vector<ElementId>& touched) {
             const FaceId face{e, f}, other = mesh_.neighbor(face);
             if (!other.is_valid() || !is_on_cut(face)) continue;
             faces_.push_back(std::min(face, other));
-            if (!far_corner(other.element).is_valid() &&
-                followed.insert(other.element.value).second)
+            if (!far_corner(other.element).is_valid() && followed.insert(other.element).second)
                 pending.push_back(other.element);
         }
     }
@@ -65,7 +64,7 @@ void Sides::place_elements_on_cut() {
     for (const FaceId face : faces_)
         for (const ElementId e : {face.element, mesh_.neighbor(face).element})
             if (!far_corner(e).is_valid())
-                if (const auto known = place(e)) places_.emplace(e.value, *known);
+                if (const auto known = place(e)) places_.emplace(e, *known);
     for (const FaceId face : faces_) {
         add(face, mesh_.neighbor(face));
         add(mesh_.neighbor(face), face);
@@ -76,7 +75,7 @@ void Sides::place_elements_on_cut() {
         const ElementId e = mesh_.neighbor(from).element;
         if (is_placed(e)) continue;
         const NodeId corner = mesh_.face_corner(from, 0);
-        places_.emplace(e.value, Place{corner, is_crossed_to(from.element, corner)});
+        places_.emplace(e, Place{corner, is_crossed_to(from.element, corner)});
         for (int f = 0; f < 4; ++f)
             if (const FaceId next = mesh_.neighbor({e, f}); next.is_valid()) add({e, f}, next);
     }
@@ -97,7 +96,7 @@ NodeId Sides::far_corner(ElementId e) const {
 
 std::optional<CutFront::Place> Sides::place(ElementId e) const {
     if (const NodeId far = far_corner(e); far.is_valid()) return Place{far};
-    if (const auto known = places_.find(e.value); known != places_.end()) return known->second;
+    if (const auto known = places_.find(e); known != places_.end()) return known->second;
     if (mesh_.kind(e) != CellKind::tetrahedron) return std::nullopt;
     if (place_on_cut_)
         if (const std::optional<Place> place = place_on_cut_(e)) return place;

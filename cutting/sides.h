@@ -50,8 +50,9 @@ class Sides {
     const topology::Mesh& mesh_;
     const CutFront& front_;
     const PlaceOnCut& place_on_cut_;
-    std::vector<topology::FaceId> faces_;             // joined, on the cut, from their lower side
-    std::unordered_map<std::int32_t, Place> places_;  // of elements all of whose corners are on it
+    std::vector<topology::FaceId> faces_;  // joined, on the cut, from their lower side
+    std::unordered_map<topology::ElementId, Place>
+        places_;  // of elements all of whose corners are on it
 };
 
 }  // namespace incise::cutting

@@ -196,8 +196,9 @@ class Splitter {
     std::optional<CutEnd> end_;     // where the surface goes on ahead of the cut
 
     std::vector<MovingPoint> new_points_;
-    double now_ = 0.0;                                  // the time of what is being done
-    std::unordered_map<std::int32_t, double> came_on_;  // when nodes came to the cut, in this step
+    double now_ = 0.0;  // the time of what is being done
+    std::unordered_map<topology::NodeId, double>
+        came_on_;                   // when nodes came to the cut, in this step
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
@@ -285,7 +286,7 @@ void Splitter::find_crossed_edges() {
     }
     if (!found.empty())
         for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
-            came_on_[n.value] = time;
+            came_on_[n] = time;
     for (const Found& f : found)
         if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
     for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));
@@ -356,8 +357,7 @@ void Splitter::open(const CutFront& front, const Parting& parting) {
 double Splitter::time_of_parting(FaceId f) const {
     double last = -1.0;
     for (int p = 0; p < 3; ++p)
-        if (const auto place = came_on_.find(mesh_.face_corner(f, p).value);
-            place != came_on_.end())
+        if (const auto place = came_on_.find(mesh_.face_corner(f, p)); place != came_on_.end())
             last = std::max(last, place->second);
     std::array<NodeId, 3> corners;
     for (int p = 0; p < 3; ++p) corners[static_cast<std::size_t>(p)] = mesh_.face_corner(f, p);
@@ -383,7 +383,7 @@ void Splitter::put_on_lying_nodes() {
 }
 
 void Splitter::put_on(NodeId n, bool is_exact, double reach) {
-    if (!front_.is_on(n)) came_on_[n.value] = now_;
+    if (!front_.is_on(n)) came_on_[n] = now_;
     front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : scars_.take_rank());
 }
 

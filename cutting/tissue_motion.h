@@ -29,8 +29,7 @@ struct TissueMotion {
             boxes->for_each_near(mesh, may_meet, look_at);
             return;
         }
-        for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-            if (const topology::ElementId e(i); mesh.is_alive(e)) look_at(e);
+        for (const topology::ElementId e : mesh.elements()) look_at(e);
     }
 
     /// False only if no element comes into what is swept in the step. Without boxes: true.

@@ -22,9 +22,8 @@ void refuse_to_divide(const Mesh& mesh, ElementId e) {
 
 std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& surface) {
     std::vector<Crossing> crossings;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e) || mesh.kind(e) == CellKind::tetrahedron) continue;
+    for (const ElementId e : mesh.elements()) {
+        if (mesh.kind(e) == CellKind::tetrahedron) continue;
         const auto corners = mesh.corners(e);
         const auto at_rest = [&](NodeId n) {
             return MovingPoint{mesh.rest_position(n), mesh.rest_position(n)};

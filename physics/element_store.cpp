@@ -81,11 +81,10 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
                     "mass springs have no forces in single precision; use double precision, or "
                     "another method");
     if (!table_.fibres.empty()) table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const ElementId e(i); mesh.is_alive(e)) {
-            require_law(mesh, e);
-            insert(mesh, e);
-        }
+    for (const ElementId e : mesh.elements()) {
+        require_law(mesh, e);
+        insert(mesh, e);
+    }
     number_nodes(mesh.node_capacity());
 }
 

@@ -28,9 +28,8 @@ std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
         while (parent[n] != n) n = parent[n] = parent[parent[n]];
         return n;
     };
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        if (!mesh.is_alive(ElementId(i))) continue;
-        const auto corners = mesh.corners(ElementId(i));
+    for (const ElementId e : mesh.elements()) {
+        const auto corners = mesh.corners(e);
         for (const NodeId n : corners) {
             const std::size_t a = root(n.index()), b = root(corners[0].index());
             parent[std::max(a, b)] = std::min(a, b);
@@ -77,12 +76,9 @@ std::vector<FreePiece> find_free_pieces(const Mesh& mesh, std::span<const Vec3> 
     constexpr double hold = 1e-13;
     const std::vector<std::size_t> piece_of = pieces_of_nodes(mesh);
     std::vector<std::size_t> num_elements(mesh.node_capacity(), 0);
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const ElementId e(i); mesh.is_alive(e))
-            ++num_elements[piece_of[mesh.corners(e)[0].index()]];
+    for (const ElementId e : mesh.elements()) ++num_elements[piece_of[mesh.corners(e)[0].index()]];
     std::vector<FreePiece> pieces(mesh.node_capacity());
-    for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-        if (mesh.is_alive(NodeId(n))) pieces[piece_of[n]].nodes.emplace_back(n);
+    for (const NodeId n : mesh.nodes()) pieces[piece_of[n.index()]].nodes.push_back(n);
 
     std::vector<FreePiece> free;
     for (std::size_t p = 0; p < pieces.size(); ++p) {

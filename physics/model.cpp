@@ -17,8 +17,7 @@ namespace {
 
 double diagonal(const topology::Mesh& mesh) {
     Eigen::AlignedBox3d box;
-    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
-        if (mesh.is_alive(NodeId(i))) box.extend(mesh.rest_position(NodeId(i)));
+    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     return box.diagonal().norm();
 }
 

@@ -19,9 +19,7 @@ std::vector<NodePair> coupled_nodes(const Mesh& mesh,
                                     std::span<const std::array<bool, 3>> is_free) {
     const auto moves = [&](NodeId n) { return is_free[n.index()] != std::array<bool, 3>{}; };
     std::vector<NodePair> pairs;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const topology::ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const topology::ElementId e : mesh.elements()) {
         for (const NodeId a : mesh.corners(e))
             for (const NodeId b : mesh.corners(e))
                 if (a <= b && moves(a) && moves(b))

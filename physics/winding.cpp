@@ -38,9 +38,8 @@ Winding find_winding(const topology::Mesh& mesh, std::span<const Vec3> positions
         {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     std::vector<Wedge> wedges;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
+    for (const ElementId e : mesh.elements()) {
+        if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         const auto corners = mesh.corners(e);
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = positions[corners[k].index()];

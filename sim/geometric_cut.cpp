@@ -36,8 +36,7 @@ namespace {
 
 template <class Do>
 void for_each_element(const Mesh& mesh, Do act) {
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (mesh.is_alive(ElementId(i))) act(ElementId(i));
+    for (const ElementId e : mesh.elements()) act(e);
 }
 
 double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corners) {

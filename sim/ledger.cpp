@@ -46,9 +46,8 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
 
 double least_altitude(const topology::Mesh& mesh) {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i); mesh.is_alive(e))
-            least = std::min(least, least_altitude(mesh, e));
+    for (const topology::ElementId e : mesh.elements())
+        least = std::min(least, least_altitude(mesh, e));
     return least;
 }
 

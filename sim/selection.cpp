@@ -31,11 +31,9 @@ Selection without_regions(Selection where) {
 std::vector<char> selected(const Mesh& mesh, const Selection& where) {
     std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
     if (where.regions)
-        for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-            const ElementId e(i);
-            if (mesh.is_alive(e) && is_in_regions(mesh, where, e))
+        for (const ElementId e : mesh.elements())
+            if (is_in_regions(mesh, where, e))
                 for (const NodeId n : mesh.corners(e)) in_regions[n.index()] = 1;
-        }
     std::vector<char> on_surface(mesh.node_capacity(), !where.surface);
     if (where.surface)
         for (const FaceId f : topology::boundary_faces(mesh))
@@ -99,9 +97,8 @@ std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
 std::vector<ElementId> select_elements(const Mesh& mesh, const Selection& where) {
     const auto is_in = selected(mesh, without_regions(where));
     std::vector<ElementId> elements;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e) || !is_in_regions(mesh, where, e)) continue;
+    for (const ElementId e : mesh.elements()) {
+        if (!is_in_regions(mesh, where, e)) continue;
         const auto corners = mesh.corners(e);
         if (std::all_of(corners.begin(), corners.end(), [&](NodeId n) { return is_in[n.index()]; }))
             elements.push_back(e);
@@ -113,8 +110,7 @@ void require_selected(std::size_t count, const Mesh& mesh, const std::string& wh
                       const std::string& things) {
     if (count > 0) return;
     Eigen::AlignedBox3d box;
-    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
-        if (mesh.is_alive(NodeId(i))) box.extend(mesh.rest_position(NodeId(i)));
+    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
     std::ostringstream text;
     text << what << " selects no " << things << "; the mesh lies between "

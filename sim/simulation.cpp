@@ -30,9 +30,8 @@ cutting::UncutBody uncut_body(const physics::Model& model) {
     const topology::Mesh& mesh = model.mesh();
     cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
     const double stable_step = model.stable_step();
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const topology::ElementId e(i);
-        if (!mesh.is_alive(e) || mesh.kind(e) != topology::CellKind::tetrahedron) continue;
+    for (const topology::ElementId e : mesh.elements()) {
+        if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
         const double speed = cutting::own_step_length(x) / model.own_step(e);
@@ -179,9 +178,8 @@ void Simulation::warn_of_lost_elements() {
     constexpr double least_volume_ratio = 0.01;
     std::size_t num_crushed = 0;
     if (model_.min_volume_ratio() < least_volume_ratio)
-        for (std::size_t i = 0; i < mesh_.element_capacity(); ++i)
-            if (const topology::ElementId e(i); mesh_.is_alive(e))
-                num_crushed += model_.element_result(e).volume_ratio < least_volume_ratio;
+        for (const topology::ElementId e : mesh_.elements())
+            num_crushed += model_.element_result(e).volume_ratio < least_volume_ratio;
     std::ostringstream text;
     text << "at the end, t = " << time_ << " s, ";
     if (num_crushed > 0) {

@@ -87,10 +87,8 @@ cutting::Split carry_out(const cutting::CutPlan& plan, topology::Mesh& mesh) {
 }  // namespace
 
 CutMode usual_mode(const topology::Mesh& mesh) {
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i);
-            mesh.is_alive(e) && mesh.kind(e) != topology::CellKind::tetrahedron)
-            return CutMode::separate;
+    for (const topology::ElementId e : mesh.elements())
+        if (mesh.kind(e) != topology::CellKind::tetrahedron) return CutMode::separate;
     return CutMode::split;
 }
 
@@ -100,10 +98,8 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
     const bool splits =
         blade ? blade->mode == CutMode::split : std::holds_alternative<Cut>(spec.kind);
     if (!splits) return spec;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i);
-            mesh.is_alive(e) && mesh.kind(e) == topology::CellKind::tetrahedron)
-            return spec;
+    for (const topology::ElementId e : mesh.elements())
+        if (mesh.kind(e) == topology::CellKind::tetrahedron) return spec;
     throw InputError("tool '" + spec.name +
                      "' splits tetrahedra, and the mesh has none; use a blade with mode = "
                      "\"separate\", which opens the faces nearest to it");

@@ -246,9 +246,7 @@ std::vector<std::string> CellMap::differences_to(const Mesh& mesh) const {
                " elements");
 
     std::size_t expected_darts = 0;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const ElementId e : mesh.elements()) {
         const CellTraits& t = traits(mesh.kind(e));
         expected_darts += static_cast<std::size_t>(t.num_face_corners());
         for (int f = 0; f < t.num_faces; ++f) {

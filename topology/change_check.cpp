@@ -36,8 +36,7 @@ class ChangeCheck {
         for (std::size_t i = 0; i < changes_.elements_added.size(); ++i) check_added_element(i);
         for (const Rewiring& rewiring : changes_.rewired) check_rewired(rewiring);
         for (const FacePair& pair : changes_.faces_closed) check_closed(pair);
-        for (const auto& [e, corners] : rewired_)
-            check_joins_kept(ElementId(static_cast<std::size_t>(e)));
+        for (const auto& [e, corners] : rewired_) check_joins_kept(e);
     }
 
   private:
@@ -60,7 +59,7 @@ class ChangeCheck {
     }
     bool is_old(ElementId e) const { return e.is_valid() && e.index() < mesh_.element_capacity(); }
     void require_old(ElementId e) const {
-        require(is_old(e) && mesh_.is_alive(e) && !removed_.contains(e.value),
+        require(is_old(e) && mesh_.is_alive(e) && !removed_.contains(e),
                 "names " + name_of(e) + ", which is not there");
     }
 
@@ -99,7 +98,7 @@ class ChangeCheck {
         require(record.region == mesh_.region(record.id) && record.kind == mesh_.kind(record.id) &&
                     std::ranges::equal(record.corners, corners) && !record.parent.is_valid(),
                 "removes " + name_of(record.id) + " as another one");
-        removed_.insert(record.id.value);
+        removed_.insert(record.id);
     }
 
     void check_opened(const FacePair& pair) {
@@ -138,10 +137,10 @@ class ChangeCheck {
     void check_rewired(const Rewiring& rewiring) {
         const ElementId e = rewiring.element;
         require_old(e);
-        auto place = rewired_.find(e.value);
+        auto place = rewired_.find(e);
         if (place == rewired_.end()) {
             const auto corners = mesh_.corners(e);
-            place = rewired_.emplace(e.value, std::vector(corners.begin(), corners.end())).first;
+            place = rewired_.emplace(e, std::vector(corners.begin(), corners.end())).first;
         }
         auto& corners = place->second;
         const auto corner = static_cast<std::size_t>(rewiring.corner);
@@ -200,16 +199,16 @@ class ChangeCheck {
     CellKind kind_of(ElementId e) const { return is_old(e) ? mesh_.kind(e) : added(e).kind; }
     std::span<const NodeId> corners_after(ElementId e) const {
         if (!is_old(e)) return added(e).corners;
-        const auto place = rewired_.find(e.value);
+        const auto place = rewired_.find(e);
         return place == rewired_.end() ? mesh_.corners(e) : std::span<const NodeId>(place->second);
     }
     static std::int64_t key(FaceId f) { return std::int64_t{f.element.value} * max_faces + f.face; }
 
     const ChangeSet& changes_;
     const Mesh& mesh_;
-    std::unordered_set<std::int32_t> removed_;                       // elements
-    std::unordered_set<std::int64_t> opened_, closed_;               // faces, both sides of each
-    std::unordered_map<std::int32_t, std::vector<NodeId>> rewired_;  // their corners afterwards
+    std::unordered_set<ElementId> removed_;                       // elements
+    std::unordered_set<std::int64_t> opened_, closed_;            // faces, both sides of each
+    std::unordered_map<ElementId, std::vector<NodeId>> rewired_;  // their corners afterwards
 };
 
 }  // namespace

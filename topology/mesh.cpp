@@ -181,9 +181,7 @@ double rest_area(const Mesh& mesh, FaceId f) {
 // Elements are taken in ascending order, in which neighbours lie near each other in memory.
 Components components(const Mesh& mesh) {
     Groups groups(mesh.element_capacity());
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const ElementId e : mesh.elements()) {
         std::int32_t own = e.value;
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const ElementId other = mesh.neighbor({e, f}).element;
@@ -192,24 +190,19 @@ Components components(const Mesh& mesh) {
     }
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const ElementId e(i); mesh.is_alive(e)) {
-            const std::int32_t first = groups.find(e.value);
-            result.of_element[i] = first == e.value
-                                       ? result.count++
-                                       : result.of_element[static_cast<std::size_t>(first)];
-        }
+    for (const ElementId e : mesh.elements()) {
+        const std::int32_t first = groups.find(e.value);
+        result.of_element[e.index()] =
+            first == e.value ? result.count++ : result.of_element[static_cast<std::size_t>(first)];
+    }
     return result;
 }
 
 std::vector<FaceId> boundary_faces(const Mesh& mesh) {
     std::vector<FaceId> faces;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const ElementId e : mesh.elements())
         for (int f = 0; f < mesh.num_faces(e); ++f)
             if (!mesh.neighbor({e, f}).is_valid()) faces.push_back({e, f});
-    }
     return faces;
 }
 
@@ -222,33 +215,29 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::ve
         nodes->reserve(mesh.num_nodes());
     }
     std::vector<std::int64_t> row_of_node(mesh.node_capacity(), -1);
-    for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
-        if (!mesh.is_alive(NodeId(i))) continue;
-        row_of_node[i] = static_cast<std::int64_t>(data.points.size());
-        data.points.push_back(positions[i]);
-        if (nodes) nodes->emplace_back(i);
+    for (const NodeId n : mesh.nodes()) {
+        row_of_node[n.index()] = static_cast<std::int64_t>(data.points.size());
+        data.points.push_back(positions[n.index()]);
+        if (nodes) nodes->push_back(n);
     }
 
-    std::vector<ElementId> living;
-    living.reserve(mesh.num_elements());
     std::size_t num_corners = 0;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
-        living.push_back(e);
-        num_corners += mesh.corners(e).size();
-    }
-    data.kinds.reserve(living.size());
-    data.offsets.reserve(living.size() + 1);
-    data.regions.reserve(living.size());
+    for (const ElementId e : mesh.elements()) num_corners += mesh.corners(e).size();
+    data.kinds.reserve(mesh.num_elements());
+    data.offsets.reserve(mesh.num_elements() + 1);
+    data.regions.reserve(mesh.num_elements());
     data.corners.reserve(num_corners);
-    for (const ElementId e : living) {
+    if (elements) {
+        elements->clear();
+        elements->reserve(mesh.num_elements());
+    }
+    for (const ElementId e : mesh.elements()) {
         for (const NodeId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
         data.kinds.push_back(mesh.kind(e));
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));
+        if (elements) elements->push_back(e);
     }
-    if (elements) *elements = std::move(living);
     return data;
 }
 

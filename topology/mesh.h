@@ -9,6 +9,7 @@
 
 #include "topology/cell_kind.h"
 #include "topology/cell_map.h"
+#include "topology/living_ids.h"
 #include "topology/mesh_data.h"
 #include "topology/types.h"
 
@@ -45,6 +46,10 @@ class Mesh {
     std::size_t element_capacity() const { return kinds_.size(); }
     bool is_alive(NodeId n) const { return anchors_[n.index()].is_valid(); }
     bool is_alive(ElementId e) const { return alive_[e.index()] != 0; }
+    /// The living ids in ascending order, to loop over.
+    /// @pre The mesh is not edited while a loop runs.
+    LivingIds<NodeId, Mesh> nodes() const { return {*this, node_capacity()}; }
+    LivingIds<ElementId, Mesh> elements() const { return {*this, element_capacity()}; }
 
     /// Rest positions by node id, metres; those of dead nodes are their last ones.
     std::span<const Vec3> rest_positions() const { return rest_positions_; }

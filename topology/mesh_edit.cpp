@@ -29,8 +29,7 @@ int face_opposite(int corner) { return opposite_face[static_cast<std::size_t>(co
 MeshEdit::MeshEdit(Mesh& mesh)
     : mesh_(mesh),
       node_capacity_before_(mesh.node_capacity()),
-      element_capacity_before_(mesh.element_capacity()),
-      is_saved_(mesh.element_capacity(), 0) {}
+      element_capacity_before_(mesh.element_capacity()) {}
 
 MeshEdit::~MeshEdit() {
     if (!is_open_ || (saved_.empty() && parents_.empty())) return;
@@ -58,8 +57,7 @@ void MeshEdit::require_older(ElementId e, const char* what) const {
 }
 
 void MeshEdit::save(ElementId e) {
-    if (e.index() >= element_capacity_before_ || is_saved_[e.index()]) return;
-    is_saved_[e.index()] = 1;
+    if (e.index() >= element_capacity_before_ || !is_saved_.insert(e).second) return;
     const auto corners = mesh_.corners(e);
     SavedRow row{e, mesh_.is_alive(e), {}, {}};
     std::copy(corners.begin(), corners.end(), row.corners.begin());

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 #include "topology/change_set.h"
@@ -96,7 +96,7 @@ class MeshEdit {
     const std::size_t node_capacity_before_, element_capacity_before_;
     bool is_open_ = true;
     std::vector<SavedRow> saved_;
-    std::vector<std::uint8_t> is_saved_;  // by element id
+    std::unordered_set<ElementId> is_saved_;
     std::vector<TouchedCorner> touched_;
     std::vector<std::pair<NodeId, NodeId>> merged_;  // absorbed, survivor
     std::vector<NodeRecord> nodes_added_;

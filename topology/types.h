@@ -7,6 +7,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 namespace incise {
 
@@ -45,3 +46,10 @@ struct FaceId {
 };
 
 }  // namespace incise::topology
+
+template <class Tag>
+struct std::hash<incise::topology::Id<Tag>> {
+    std::size_t operator()(incise::topology::Id<Tag> id) const noexcept {
+        return std::hash<std::int32_t>()(id.value);
+    }
+};

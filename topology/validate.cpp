@@ -20,31 +20,30 @@ std::vector<std::string> validate(const Mesh& mesh) {
     std::size_t num_elements = 0;
     std::vector<std::vector<ElementId>> holders(mesh.node_capacity());
     std::vector<Vec3> x;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const ElementId e : mesh.elements()) {
         ++num_elements;
         x.clear();
         const auto corners = mesh.corners(e);
         for (std::size_t k = 0; k < corners.size(); ++k) {
             if (!mesh.is_alive(corners[k]))
-                report("element ", i, " has the dead node ", corners[k].value);
+                report("element ", e.value, " has the dead node ", corners[k].value);
             if (std::count(corners.begin(), corners.end(), corners[k]) != 1)
-                report("element ", i, " has node ", corners[k].value, " twice");
+                report("element ", e.value, " has node ", corners[k].value, " twice");
             holders[corners[k].index()].push_back(e);
             x.push_back(mesh.rest_position(corners[k]));
         }
         if (!(signed_volume(mesh.kind(e), x) > 0.0))
-            report("element ", i, " has no positive volume at rest");
+            report("element ", e.value, " has no positive volume at rest");
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;
             if (!mesh.is_alive(other.element))
-                report("element ", i, " has the dead neighbour ", other.element.value);
+                report("element ", e.value, " has the dead neighbour ", other.element.value);
             else if (mesh.neighbor(other) != face)
-                report("element ", i, " is unknown to its neighbour ", other.element.value);
+                report("element ", e.value, " is unknown to its neighbour ", other.element.value);
             else if (matching_shift(mesh, face, other) < 0)
-                report("elements ", i, " and ", other.element.value, " disagree on their face");
+                report("elements ", e.value, " and ", other.element.value,
+                       " disagree on their face");
         }
     }
     if (num_elements != mesh.num_elements())

@@ -75,8 +75,7 @@ class Patient {
   private:
     std::vector<Vec3> living_positions() const {
         std::vector<Vec3> positions;
-        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n)
-            if (mesh_.is_alive(NodeId(n))) positions.push_back(model_.positions()[n]);
+        for (const NodeId n : mesh_.nodes()) positions.push_back(model_.positions()[n.index()]);
         return positions;
     }
 

@@ -67,10 +67,8 @@ struct CrossingBlades {
 double reach_across(const topology::Mesh& mesh, const Blade& blade) {
     const topology::Components components = topology::components(mesh);
     std::vector<double> above(static_cast<std::size_t>(components.count)), below(above.size());
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
-        const auto piece = static_cast<std::size_t>(components.of_element[i]);
+    for (const ElementId e : mesh.elements()) {
+        const auto piece = static_cast<std::size_t>(components.of_element[e.index()]);
         for (const NodeId n : mesh.corners(e)) {
             const double height = (mesh.rest_position(n) - blade.point).dot(blade.normal);
             above[piece] = std::max(above[piece], height);

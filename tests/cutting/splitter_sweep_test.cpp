@@ -332,13 +332,11 @@ TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
 bool are_sides_joined(const topology::Mesh& mesh) {
     const topology::Components components = topology::components(mesh);
     std::set<int> left, right;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const topology::ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const topology::ElementId e : mesh.elements()) {
         for (const NodeId n : mesh.corners(e)) {
             const double x = mesh.rest_position(n).x();
-            if (x == 0.0) left.insert(components.of_element[i]);
-            if (x == 1.0) right.insert(components.of_element[i]);
+            if (x == 0.0) left.insert(components.of_element[e.index()]);
+            if (x == 1.0) right.insert(components.of_element[e.index()]);
         }
     }
     return std::any_of(left.begin(), left.end(), [&](int piece) { return right.contains(piece); });

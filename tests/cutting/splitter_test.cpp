@@ -411,9 +411,7 @@ TEST(Split, NeverDividesAnElementBelowTheLimit) {
 
 double least_altitude(const Mesh& mesh) {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
-        if (!mesh.is_alive(e)) continue;
+    for (const ElementId e : mesh.elements()) {
         std::vector<Vec3> corners;
         for (const NodeId n : mesh.corners(e)) corners.push_back(mesh.rest_position(n));
         least = std::min(least, topology::min_altitude(mesh.kind(e), corners));

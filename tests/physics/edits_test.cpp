@@ -160,9 +160,9 @@ class EditedBody {
     /// So short that no node leaves the body, however stiff the strain has made its law.
     double short_step() const {
         double fastest = 0.0;  // m/s2
-        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n)
-            if (mesh_.is_alive(NodeId(n)))
-                fastest = std::max(fastest, model_.elastic_forces()[n].norm() / model_.masses()[n]);
+        for (const NodeId n : mesh_.nodes())
+            fastest = std::max(
+                fastest, model_.elastic_forces()[n.index()].norm() / model_.masses()[n.index()]);
         return std::min(0.05 * std::min(model_.stable_step(), 1.0), std::sqrt(1e-4 / fastest));
     }
 

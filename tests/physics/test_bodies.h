@@ -148,9 +148,8 @@ inline Support holding(std::string name, NodeSet nodes,
 template <class Predicate>
 std::vector<topology::NodeId> nodes_where(const topology::Mesh& mesh, Predicate is_inside) {
     std::vector<topology::NodeId> nodes;
-    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
-        if (const topology::NodeId n(i); mesh.is_alive(n) && is_inside(mesh.rest_position(n)))
-            nodes.push_back(n);
+    for (const topology::NodeId n : mesh.nodes())
+        if (is_inside(mesh.rest_position(n))) nodes.push_back(n);
     return nodes;
 }
 inline NodeSet left_end(const topology::Mesh& mesh) {
@@ -159,8 +158,7 @@ inline NodeSet left_end(const topology::Mesh& mesh) {
 
 inline std::vector<topology::ElementId> living_elements(const topology::Mesh& mesh) {
     std::vector<topology::ElementId> elements;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i); mesh.is_alive(e)) elements.push_back(e);
+    for (const topology::ElementId e : mesh.elements()) elements.push_back(e);
     return elements;
 }
 

@@ -102,9 +102,8 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
             for (const double x : m.rest_position(n)) corners.push_back(x);
         return corners;
     };
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (const topology::ElementId e(i); mesh.is_alive(e))
-            expected[place(mesh, e)] = simulation.model().fibres()[i];
+    for (const topology::ElementId e : mesh.elements())
+        expected[place(mesh, e)] = simulation.model().fibres()[e.index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     for (std::size_t i = 0; i < again.mesh().element_capacity(); ++i)
         EXPECT_EQ(again.model().fibres()[i],

@@ -83,8 +83,7 @@ MeshData mixed() {
 
 std::vector<ElementId> living_elements(const Mesh& mesh) {
     std::vector<ElementId> alive;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (mesh.is_alive(ElementId(i))) alive.emplace_back(i);
+    for (const ElementId e : mesh.elements()) alive.push_back(e);
     return alive;
 }
 
