@@ -83,13 +83,23 @@ std::string known_formats() {
     return known;
 }
 
+/// The format whose mark the text begins with, behind blanks. Null if there is none.
+const ReadFormat* marked_format_of(const std::string& head) {
+    for (const auto& format : read_formats)
+        if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+    return nullptr;
+}
+
+std::string_view behind_blanks(std::string_view text) {
+    return {std::find_if_not(text.begin(), text.end(), is_blank), text.end()};
+}
+
 /// Null if it is not known. Throws InputError for an index of other files or a mesh of another
 /// program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
-        const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
-        text = {begin, text.end()};
+        text = behind_blanks(text);
         const auto head = head_of(text);
         for (const auto& format : foreign_formats)
             if (head.starts_with(format.magic))
@@ -97,8 +107,7 @@ const ReadFormat* read_format_of(const InputFile& file) {
                                  ", which cannot be read; convert it, with Gmsh or meshio for "
                                  "instance, to one of: " +
                                  known_formats());
-        for (const auto& format : read_formats)
-            if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+        if (const auto* format = marked_format_of(head)) return format;
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
@@ -126,6 +135,10 @@ void finish(const InputFile& file, MeshFile& result) {
 }
 
 }  // namespace
+
+bool begins_like_a_mesh(std::string_view text) {
+    return marked_format_of(head_of(behind_blanks(text))) != nullptr;
+}
 
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const auto file = load_input_file(path);

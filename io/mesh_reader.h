@@ -32,6 +32,9 @@ struct UnknownFormat : InputError {
     using InputError::InputError;
 };
 
+/// True if the text begins as one of the mesh formats does that are known by that.
+bool begins_like_a_mesh(std::string_view text);
+
 struct MeshFile {
     topology::MeshData mesh;
     std::vector<std::string> warnings;  ///< one sentence each, without the name of the file

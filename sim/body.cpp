@@ -14,6 +14,7 @@
 #include "sim/body_problems.h"
 #include "sim/elastic_constants.h"
 #include "sim/selection.h"
+#include "sim/single_precision.h"
 #include "sim/step_limit.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -225,9 +226,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
 
 std::set<int> regions_of(const topology::Mesh& mesh) {
     std::set<int> regions;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (mesh.is_alive(topology::ElementId(i)))
-            regions.insert(mesh.region(topology::ElementId(i)));
+    for (const topology::ElementId e : mesh.elements()) regions.insert(mesh.region(e));
     return regions;
 }
 
@@ -454,6 +453,9 @@ Parts build_parts(const Scenario& scenario) {
                 return std::optional(
                     build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
             });
+        if (scenario.dynamics.precision == physics::Precision::single_precision)
+            if (const auto warning = warning_of_thin_elements(*mesh))
+                parts.warnings.push_back(placed(scenario.dynamics.precision_place, *warning));
         parts.surroundings = build_surroundings(scenario, *mesh, problems);
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 
+#include "io/mesh_reader.h"
 #include "io/number_format.h"
 #include "sim/diagnostics.h"
 #include "topology/error.h"
@@ -320,6 +321,11 @@ Value read_document(const std::filesystem::path& file) {
         throw InputError(file.string() + ": cannot be read; check its permissions");
     if (text.size() > max_file_size)
         throw InputError(file.string() + ": is too long for a scenario" + remedy);
+    if (io::begins_like_a_mesh(text))
+        throw InputError(file.string() +
+                         ": is a mesh, not a scenario; a scenario is a text file that names its "
+                         "mesh: [mesh] file = \"" +
+                         file.filename().string() + "\"");
     require_flat_keys(text, -1);
     try {
         return convert(toml::parse(text), -1);

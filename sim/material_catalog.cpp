@@ -314,7 +314,7 @@ const MaterialModel& hybmss_model() {
         .use =
             "Voxels and grids: hexahedra that are cubes, or boxes with edges of at most 1.4 to 1; "
             "strains of some 10 %, nearly incompressible tissue too. stiffness_ratio = inf for "
-            "bodies that are cut or stand beside other elements.",
+            "bodies that are cut.",
         .limits =
             "Below a Poisson's ratio of 1/4 kappa is negative and tension is lost at large strain: "
             "at a stretch of 1.2 for 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 along one axis, of "

@@ -79,7 +79,7 @@ struct DynamicsSpec {
     std::uint64_t seed = 1;
     /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
     physics::Precision precision = physics::Precision::double_precision;
-    std::string end_time_place = {}, time_step_place = {};  ///< for messages
+    std::string end_time_place = {}, time_step_place = {}, precision_place = {};  ///< for messages
 };
 
 /// A place and an extent along the axes.

@@ -219,6 +219,7 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
     spec.end_time_place = dynamics->place_text("end_time");
     spec.time_step_place = dynamics->place_text("time_step");
+    spec.precision_place = dynamics->place_text("precision");
     spec.end_time = dynamics->number("end_time", spec.end_time, limits::positive);
     if (dynamics->is_text("time_step")) {
         if (const auto text = dynamics->text("time_step"); text != "auto")

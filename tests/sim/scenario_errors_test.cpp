@@ -121,6 +121,21 @@ TEST(ScenarioErrors, OfTheFileItself) {
     EXPECT_EQ(read_scenario("/dev/zero").errors, too_long);
 }
 
+TEST(ScenarioErrors, OfAMeshInPlaceOfAScenario) {
+    const support::TemporaryFolder folder;
+    for (const char* text :
+         {"<?xml version=\"1.0\"?>\n<VTKFile a.b.c>", "\n# vtk DataFile Version 3.0\n",
+          "$MeshFormat\n", "MeshVersionFormatted 2\n", "*NODE\n1, 0.0, 0.0, 0.0\n"}) {
+        SCOPED_TRACE(text);
+        const auto file = folder / "liver.vtu";
+        std::ofstream(file) << text;
+        EXPECT_EQ(read_scenario(file).errors,
+                  Lines{file.string() +
+                        ": is a mesh, not a scenario; a scenario is a text file that names its "
+                        "mesh: [mesh] file = \"liver.vtu\""});
+    }
+}
+
 TEST(ScenarioErrors, OfTheMesh) {
     const auto error = [](const std::string& mesh) {
         return ScenarioFile("[mesh]\n" + mesh + "\n" + minimal_rest).errors();

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/single_precision.h"
+
+#include <algorithm>
+#include <array>
+
+#include "io/number_format.h"
+#include "topology/mesh_metrics.h"
+
+namespace incise::sim {
+
+namespace {
+
+/// Least altitude over longest edge of a tetrahedron.
+double thinness(const topology::Mesh& mesh, topology::ElementId e) {
+    std::array<Vec3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
+    double longest = 0.0;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = 0; l < k; ++l) longest = std::max(longest, (x[k] - x[l]).norm());
+    return topology::min_altitude(topology::CellKind::tetrahedron, x) / longest;
+}
+
+}  // namespace
+
+std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) {
+    constexpr double least_thinness = 1e-2;
+    std::size_t num_thin = 0;
+    double thinnest = 1.0;
+    topology::ElementId thinnest_element;
+    for (const topology::ElementId e : mesh.elements()) {
+        if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
+        const double ratio = thinness(mesh, e);
+        if (ratio >= least_thinness) continue;
+        ++num_thin;
+        if (ratio < thinnest) {
+            thinnest = ratio;
+            thinnest_element = e;
+        }
+    }
+    if (num_thin == 0) return std::nullopt;
+    return "key 'dynamics.precision': \"single\" leaves no strain to speak of in " +
+           std::to_string(num_thin) + (num_thin == 1 ? " tetrahedron" : " tetrahedra") +
+           " with a least altitude below " + io::format_number(least_thinness) +
+           " of the longest edge (the thinnest, element " +
+           std::to_string(mesh.label(thinnest_element)) + ", has " + io::format_number(thinnest) +
+           "); use \"double\", or a mesh without them";
+}
+
+}  // namespace incise::sim

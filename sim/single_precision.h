@@ -1,0 +1,16 @@
+// What single precision cannot compute with.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "topology/mesh.h"
+
+namespace incise::sim {
+
+/// Returns a warning of the tetrahedra that are too thin at rest for forces in single precision, if
+/// there are any: see docs/theory.md, Accuracy. Cost: O(#elements).
+std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh);
+
+}  // namespace incise::sim
