@@ -59,24 +59,24 @@ class ShortStepObserver : public sim::Observer {
     void on_edit(const sim::Simulation& simulation, const sim::EditRecord& edit) override {
         constexpr double much_shorter = 0.1;
         const sim::DynamicsSpec& dynamics = simulation.scenario().dynamics;
-        const double first = simulation.ledger().initial().stable_step,
-                     before = edit.before.stable_step, now = edit.after.stable_step;
-        if (has_told_ || dynamics.mode == sim::Mode::statics ||
+        const double known = last_told_.value_or(simulation.ledger().initial().stable_step),
+                     now = edit.after.stable_step;
+        if (dynamics.mode == sim::Mode::statics ||
             dynamics.integrator != sim::TimeIntegrator::semi_implicit_euler ||
-            !(now < much_shorter * first) || before < much_shorter * first)
+            !(now < much_shorter * known))
             return;
-        has_told_ = true;
+        last_told_ = now;
         std::ostringstream text;
         text.precision(3);
         text << "tool '" << edit.tool << "', at t = " << edit.time
-             << " s: its cut has left elements so thin that the stable step fell from " << first
-             << " to " << now << " s: the run takes " << first / now
+             << " s: its cut has left elements so thin that the stable step fell from " << known
+             << " to " << now << " s: the run takes " << known / now
              << " times as long from here on; use a larger tool.snap";
         print_warning(text.str());
     }
 
   private:
-    bool has_told_ = false;
+    std::optional<double> last_told_;  // stable step, s
 };
 
 int num_threads(const RunOptions& options) {

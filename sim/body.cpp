@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -402,6 +403,10 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
     cutting::Box body;
     if (mesh)
         for (const Vec3& x : mesh->rest_positions()) body.extend(x);
+    // An end that is not known yet hides nothing.
+    const double end_time = scenario.dynamics.end_time > 0.0
+                                ? scenario.dynamics.end_time
+                                : std::numeric_limits<double>::infinity();
     std::vector<Tool> tools;
     std::vector<std::string> idle;
     for (ToolSpec spec : scenario.tools) {
@@ -414,7 +419,7 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
         const auto* cut = std::get_if<Cut>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
             tools.emplace_back(spec, warnings);
-            if (suits_mesh) tools.back().require_divisible(*mesh);
+            if (suits_mesh) tools.back().require_divisible(*mesh, end_time);
             if (mesh && !spec.path.empty() && !tools.back().may_meet(body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });

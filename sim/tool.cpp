@@ -122,7 +122,7 @@ cutting::Pose Tool::pose(double time) const {
     return {a.rotation.slerp(s, b.rotation), a.position + s * (b.position - a.position)};
 }
 
-void Tool::require_divisible(const topology::Mesh& mesh) const {
+void Tool::require_divisible(const topology::Mesh& mesh, double end_time) const {
     const auto require = [&](const cutting::CutSurface& surface) {
         const auto e = cutting::first_undividable(mesh, surface);
         if (!e) return;
@@ -133,6 +133,7 @@ void Tool::require_divisible(const topology::Mesh& mesh) const {
                              error.what() + "; " + instead_of_dividing());
         }
     };
+    if (spec_.path.empty() || spec_.path.front().time > end_time) return;
     if (surface_) return require(*surface_);
     const auto* blade = std::get_if<Blade>(&spec_.kind);
     if (!blade || blade->mode != CutMode::split) return;
@@ -140,11 +141,13 @@ void Tool::require_divisible(const topology::Mesh& mesh) const {
     constexpr double longest_turn = 0.05;
     for (std::size_t key = 1; key < spec_.path.size(); ++key) {
         const auto &from = spec_.path[key - 1], &to = spec_.path[key];
+        if (from.time >= end_time) return;
         const double turn = rigid(from.value).rotation.angularDistance(rigid(to.value).rotation);
         const int num_parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
         const auto time = [&](int part) {
-            return part == num_parts ? to.time
-                                     : from.time + part * (to.time - from.time) / num_parts;
+            const double at =
+                part == num_parts ? to.time : from.time + part * (to.time - from.time) / num_parts;
+            return std::min(at, end_time);
         };
         for (int part = 0; part < num_parts; ++part)
             require(

@@ -44,8 +44,9 @@ class Tool {
     bool may_meet(const cutting::Box& box) const;
 
     /// Throws InputError if it is to divide elements and meets one on its path that it cannot
-    /// divide, where the body rests: a run would stop there. Cost: O(#elements) for each key.
-    void require_divisible(const topology::Mesh& mesh) const;
+    /// divide, where the body rests: a run would stop there. Its path after `end_time`, s, is not
+    /// looked at. Cost: O(#elements) for each key.
+    void require_divisible(const topology::Mesh& mesh, double end_time) const;
     /// What to do about such an element.
     std::string instead_of_dividing() const;
 

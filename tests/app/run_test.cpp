@@ -226,6 +226,16 @@ snap = )" + snap + "\n");
         << exact.err;
     EXPECT_NE(exact.err.find("use a larger tool.snap\n"), std::string::npos) << exact.err;
     EXPECT_EQ(cut("0.1").err.find("tool.snap"), std::string::npos);
+    // A later cut that makes them much shorter once more is told of as well.
+    const auto again = cut(R"(0
+[[tool]]
+name = "razor"
+kind = "cut"
+time = 0.025
+plane = { point = [0.0500001, 0, 0], normal = [1, 0, 0] }
+snap = 0)");
+    EXPECT_NE(again.err.find("tool 'saw', at t = 0.02 s"), std::string::npos) << again.err;
+    EXPECT_NE(again.err.find("tool 'razor', at t = 0.025 s"), std::string::npos) << again.err;
 }
 
 // A brick is led to where a blade passes that divides, which no look at the body at rest tells.

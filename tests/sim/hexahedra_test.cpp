@@ -154,6 +154,12 @@ fix = "xyz"
                 << text;
         }
     }
+    // What a tool would meet after the end stops no run.
+    for (const std::string& saw : {saws[0], saws[1]}) {
+        Scenario scenario = folder.scenario(head + materials + "[[tool]]\nname = \"saw\"\n" + saw);
+        scenario.dynamics.end_time = 0.005;
+        EXPECT_NO_THROW(Simulation{scenario}) << saw;
+    }
 
     try {
         Simulation other(folder.scenario(head + "[[material]]\n" + soft));
