@@ -53,7 +53,8 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
-/// Tells, once, of the edit after which the run takes many times as long.
+/// Warns of each edit after which steps are ten times as short as at the start, or as at the
+/// warning before.
 class ShortStepObserver : public sim::Observer {
   public:
     void on_edit(const sim::Simulation& simulation, const sim::EditRecord& edit) override {

@@ -158,8 +158,8 @@ class CutFront {
     std::unordered_map<topology::NodeId, Node> nodes_;
     // Both directions of each crossed edge.
     std::unordered_map<topology::NodeId, std::vector<topology::NodeId>> crossed_;
-    std::unordered_map<topology::ElementId, LocalPlace>
-        places_;  // of elements whose corners are all on
+    // Of elements whose corners are all on the cut.
+    std::unordered_map<topology::ElementId, LocalPlace> places_;
     std::vector<topology::ElementId> waiting_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;

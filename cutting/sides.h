@@ -51,8 +51,8 @@ class Sides {
     const CutFront& front_;
     const PlaceOnCut& place_on_cut_;
     std::vector<topology::FaceId> faces_;  // joined, on the cut, from their lower side
-    std::unordered_map<topology::ElementId, Place>
-        places_;  // of elements all of whose corners are on it
+    // Of elements all of whose corners are on the cut.
+    std::unordered_map<topology::ElementId, Place> places_;
 };
 
 }  // namespace incise::cutting

@@ -197,8 +197,8 @@ class Splitter {
 
     std::vector<MovingPoint> new_points_;
     double now_ = 0.0;  // the time of what is being done
-    std::unordered_map<topology::NodeId, double>
-        came_on_;                   // when nodes came to the cut, in this step
+    // When nodes came to the cut, in this step.
+    std::unordered_map<topology::NodeId, double> came_on_;
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;

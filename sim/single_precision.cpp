@@ -24,7 +24,7 @@ double thinness(const topology::Mesh& mesh, topology::ElementId e) {
 }  // namespace
 
 std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) {
-    constexpr double least_thinness = 1e-2;
+    constexpr double least_thinness = 1e-2;  // below it floats lose strains of a few per cent
     std::size_t num_thin = 0;
     double thinnest = 1.0;
     topology::ElementId thinnest_element;

@@ -14,20 +14,19 @@ namespace {
 
 static_assert(std::forward_iterator<LivingIds<NodeId, Mesh>::Iterator>);
 
-void expect_all_living(const Mesh& mesh) {
-    std::vector<ElementId> elements;
-    for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        if (mesh.is_alive(ElementId(i))) elements.emplace_back(i);
-    const auto found = mesh.elements();
-    EXPECT_EQ(std::vector<ElementId>(found.begin(), found.end()), elements);
-    EXPECT_EQ(elements.size(), mesh.num_elements());
+template <class Id>
+void expect_living(const Mesh& mesh, LivingIds<Id, Mesh> found, std::size_t capacity,
+                   std::size_t count) {
+    std::vector<Id> living;
+    for (std::size_t i = 0; i < capacity; ++i)
+        if (mesh.is_alive(Id(i))) living.emplace_back(i);
+    EXPECT_EQ(std::vector<Id>(found.begin(), found.end()), living);
+    EXPECT_EQ(living.size(), count);
+}
 
-    std::vector<NodeId> nodes;
-    for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
-        if (mesh.is_alive(NodeId(i))) nodes.emplace_back(i);
-    const auto found_nodes = mesh.nodes();
-    EXPECT_EQ(std::vector<NodeId>(found_nodes.begin(), found_nodes.end()), nodes);
-    EXPECT_EQ(nodes.size(), mesh.num_nodes());
+void expect_all_living(const Mesh& mesh) {
+    expect_living(mesh, mesh.nodes(), mesh.node_capacity(), mesh.num_nodes());
+    expect_living(mesh, mesh.elements(), mesh.element_capacity(), mesh.num_elements());
 }
 
 TEST(LivingIds, AreThoseAliveAfterRemovals) {
