@@ -14,13 +14,16 @@ namespace incise::cutting {
 /// Shapes in the tool's frame, metres.
 struct Sphere {
     double radius;  ///< about the origin
+    static void archive(auto& ar, auto& self) { ar(self.radius); }
 };
 struct Capsule {
     Vec3 from, to;  ///< ends of the axis
     double radius;
+    static void archive(auto& ar, auto& self) { ar(self.from, self.to, self.radius); }
 };
 struct Cuboid {
     Vec3 size;  ///< edge lengths, centred at the origin
+    static void archive(auto& ar, auto& self) { ar(self.size); }
 };
 using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
 

@@ -15,6 +15,11 @@ struct Pose {
 
     Vec3 to_world(const Vec3& local) const { return rotation * local + position; }
     Vec3 to_tool(const Vec3& world) const { return rotation.conjugate() * (world - position); }
+
+    static void archive(auto& ar, auto& self) {
+        auto& q = self.rotation.coeffs();
+        ar(q.x(), q.y(), q.z(), q.w(), self.position);
+    }
 };
 
 }  // namespace incise::cutting

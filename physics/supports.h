@@ -28,6 +28,11 @@ struct Support {
 
     /// Where the node with rest position X is to be at `time`.
     Vec3 target(const Vec3& X, double time) const;
+
+    static void archive(auto& ar, auto& self) {
+        ar(self.name, self.nodes, self.components, self.displacement, self.angle, self.point,
+           self.axis);
+    }
 };
 
 /// Two supports that prescribe the same component of a node.
@@ -54,6 +59,7 @@ class Supports {
     /// a node.
     Supports(const topology::Mesh& mesh, std::vector<Support> supports);
 
+    std::span<const Support> all() const { return supports_; }
     std::size_t size() const { return supports_.size(); }
     const std::string& name(std::size_t i) const { return supports_[i].name; }
     /// What its nodes turn about, m.

@@ -32,6 +32,8 @@ class TimeCurve {
         return v0 + s * (v1 - v0);
     }
 
+    static void archive(auto& ar, auto& self) { ar(self.keys_); }
+
   private:
     std::vector<std::pair<double, Value>> keys_;
 };
