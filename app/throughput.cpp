@@ -243,7 +243,7 @@ EditRate measure_separation(CutCube& cube) {
 /// A ball that goes half way through the cube.
 EditRate measure_carving(CutCube& cube) {
     const auto at = [](int step) {
-        cutting::Pose pose;
+        Pose pose;
         pose.position = cube_size * Vec3(-0.1 + 0.6 * step / num_cut_steps, 0.48, 0.53);
         return pose;
     };

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/pose.h"
 #include "cutting/tissue_motion.h"
+#include "topology/pose.h"
 #include "topology/types.h"
 
 namespace incise::cutting {

@@ -34,7 +34,7 @@ MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh,
 Surroundings read_surroundings(const topology::Mesh& mesh, topology::ArchiveReader& ar) {
     Surroundings surroundings;
     ar(surroundings.gravity, surroundings.damping, surroundings.supports, surroundings.loads);
-    for (const Support& support : surroundings.supports) support.nodes.require_fit(mesh);
+    for (const Support& support : surroundings.supports) support.require_fit(mesh);
     for (const Load& load : surroundings.loads) load.require_fit(mesh);
     return surroundings;
 }
@@ -198,7 +198,7 @@ Model::NodeStep Model::support_node(std::size_t n, double time, double dt, const
     const auto& support_of = *supports_.of_node(n);
     const double mass = masses_[n];
     const Vec3 &x = positions_[n], &v = velocities_[n];
-    supports_.place(support_of, mesh_.rest_positions()[n], time + dt, step.x);
+    supports_.place(support_of, mesh_, NodeId(n), time + dt, step.x);
     for (int c = 0; c < 3; ++c) {
         const int s = support_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
@@ -386,7 +386,7 @@ void Model::apply(const ChangeSet& changes) {
                          std::to_string(epoch_) + " and the mesh at " +
                          std::to_string(mesh_.epoch()));
     epoch_ = changes.epoch_after;
-    ++num_edits_;
+    ++structure_version_;
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
     history_.apply(changes);
@@ -436,11 +436,33 @@ void Model::apply(const ChangeSet& changes) {
     loads_.apply(changes, loaded_body(), touched);
 }
 
+void Model::add_support(Support support) {
+    supports_.add(mesh_, std::move(support));
+    reactions_.emplace_back();
+    ++structure_version_;
+}
+
+void Model::remove_support(std::size_t i) {
+    supports_.remove(mesh_, i);
+    reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
+    ++structure_version_;
+}
+
+void Model::add_load(Load load) {
+    loads_.add(std::move(load), loaded_body());
+    ++structure_version_;
+}
+
+void Model::remove_load(std::size_t i) {
+    loads_.remove(i);
+    ++structure_version_;
+}
+
 void Model::save(topology::ArchiveWriter& ar) const {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
     ar(copy(fibres()), gravity_, damping_, copy(supports_.all()), copy(loads_.all()));
     ar(positions_, velocities_, copy(history_.values()), reactions_, external_work_,
-       dissipated_energy_, largest_move_, body_size_, num_edits_, merges_);
+       dissipated_energy_, largest_move_, body_size_, structure_version_, merges_);
 }
 
 Model::Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
@@ -455,7 +477,7 @@ void Model::restore_state(topology::ArchiveReader& ar, double time) {
     std::vector<double> history;
     std::vector<Reaction> reactions;
     ar(positions, velocities, history, reactions, external_work_, dissipated_energy_, largest_move_,
-       body_size_, num_edits_, merges_);
+       body_size_, structure_version_, merges_);
     const auto is_there = [&](NodeId n) { return n.is_valid() && n.index() < masses_.size(); };
     if (positions.size() != positions_.size() || velocities.size() != velocities_.size() ||
         history.size() != history_.values().size() || reactions.size() != reactions_.size() ||

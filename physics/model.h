@@ -139,6 +139,25 @@ class Model {
     /// the stars touched.
     void apply(const topology::ChangeSet& changes);
 
+    /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
+    /// prescribes what another one does. Cost: O(#nodes) of it.
+    void add_support(Support support);
+    /// Removes constraint `i`; those behind it move up. Cost: O(n) in the nodes of all constraints.
+    void remove_support(std::size_t i);
+    /// Gives the grip of constraint `i` another way; see Support::grip.
+    void set_grip(std::size_t i, TimeCurve<Pose> grip) { supports_.set_grip(i, std::move(grip)); }
+
+    /// Adds a load at the end of the list. Forces are those of before until compute_forces is
+    /// called, as with the next two.
+    void add_load(Load load);
+    /// Removes load `i`; those behind it move up.
+    void remove_load(std::size_t i);
+    /// Gives load `i` another factor of time.
+    void set_load_factor(std::size_t i, TimeCurve<double> factor) {
+        loads_.set_factor(i, std::move(factor));
+    }
+    const Loads& loads() const { return loads_; }
+
     /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
     /// constraints and loads. Cost: O(n).
     void save(topology::ArchiveWriter& ar) const;
@@ -159,8 +178,9 @@ class Model {
     }
     /// J; of viscous elements that of the long-time moduli.
     double elastic_energy() const;
-    /// How many edits it has followed, undone ones counted twice.
-    std::uint64_t num_edits() const { return num_edits_; }
+    /// Grows with every change of what the body consists of: edits (undone ones count twice),
+    /// constraints and loads that are added or removed.
+    std::uint64_t structure_version() const { return structure_version_; }
 
     /// How far the fastest node went in the last step, m.
     double largest_move() const { return largest_move_; }
@@ -270,7 +290,7 @@ class Model {
 
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
-    std::uint64_t num_edits_ = 0;
+    std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;
     ViscousHistory history_;

@@ -23,7 +23,8 @@ class NodeSet {
         static void archive(auto& ar, auto& self) { ar(self.node, self.origin); }
     };
 
-    explicit NodeSet(std::vector<topology::NodeId> nodes = {});
+    NodeSet() = default;
+    explicit NodeSet(std::vector<topology::NodeId> nodes);
 
     /// In ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }

@@ -271,7 +271,7 @@ class CountingCutter {
     }
 
     void cut(const ShapeRemoval& removal) {
-        const cutting::Pose pose{Eigen::Quaterniond::Identity(), removal.at};
+        const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
         const auto changes =
             cutter_.carve(mesh_, mesh_.rest_positions(), removal.shape, pose, pose).changes;
         long double removed = 0.0;

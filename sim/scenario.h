@@ -149,7 +149,6 @@ struct LoadSpec {
 
 using cutting::Carver;
 using cutting::CutMode;
-using cutting::Pose;
 
 /// Cuts along what its edge sweeps.
 struct BladeSpec {

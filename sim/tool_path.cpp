@@ -5,7 +5,6 @@
 
 namespace incise::sim {
 
-using cutting::Pose;
 
 Pose ToolPath::pose(double time) const {
     const auto after =
@@ -15,8 +14,7 @@ Pose ToolPath::pose(double time) const {
     if (after == keys_.end()) return keys_.back().value;
     const auto before = after - 1;
     const double s = (time - before->time) / (after->time - before->time);
-    const Pose &a = before->value, &b = after->value;
-    return {a.rotation.slerp(s, b.rotation), a.position + s * (b.position - a.position)};
+    return interpolate(before->value, after->value, s);
 }
 
 bool ToolPath::is_present(double from, double to) const {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "cutting/pose.h"
+#include "topology/pose.h"
 #include "sim/time_key.h"
 
 namespace incise::sim {
@@ -15,10 +15,10 @@ namespace incise::sim {
 class ToolPath {
   public:
     /// @pre There is a key, and times ascend strictly.
-    explicit ToolPath(std::vector<TimeKey<cutting::Pose>> keys) : keys_(std::move(keys)) {}
+    explicit ToolPath(std::vector<TimeKey<Pose>> keys) : keys_(std::move(keys)) {}
 
     /// The pose at `time`, s; that of the first key before it, and of the last after it.
-    cutting::Pose pose(double time) const;
+    Pose pose(double time) const;
 
     /// True if the tool acts in the step (from, to], s: it is there from its first to its last key,
     /// a tool with one key in the step that contains the key. The first step contains its start.
@@ -29,12 +29,12 @@ class ToolPath {
 
     /// The pose a moment before the tool came to where it ends, which tells the direction in which
     /// it moved; nothing if it never moved.
-    std::optional<cutting::Pose> pose_before_end() const;
+    std::optional<Pose> pose_before_end() const;
 
-    const std::vector<TimeKey<cutting::Pose>>& keys() const { return keys_; }
+    const std::vector<TimeKey<Pose>>& keys() const { return keys_; }
 
   private:
-    std::vector<TimeKey<cutting::Pose>> keys_;
+    std::vector<TimeKey<Pose>> keys_;
 };
 
 }  // namespace incise::sim

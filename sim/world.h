@@ -16,13 +16,13 @@
 #include "cutting/tool.h"
 #include "physics/model.h"
 #include "sim/ledger.h"
+#include "topology/boundary_surface.h"
 #include "topology/error.h"
 #include "topology/mesh.h"
 #include "topology/mesh_data.h"
+#include "topology/pose.h"
 
 namespace incise::sim {
-
-using cutting::Pose;
 
 /// How a world gets from one moment to the next.
 enum class Solver {
@@ -34,9 +34,9 @@ enum class Solver {
 /// What a world is made of: plain values.
 struct WorldDef {
     /// The body at rest, m. Mesh data are checked and built; see topology::Mesh::build.
-    std::variant<topology::MeshData, topology::Mesh> mesh;
+    std::variant<topology::MeshData, topology::Mesh> mesh = {};
 
-    std::vector<physics::Material> materials;
+    std::vector<physics::Material> materials = {};
     /// The index of the material of each region. Empty: all regions have the first material.
     std::map<int, std::size_t> material_of_region = {};
     /// The direction of the fibres at rest, of unit length, by element id. Needed if a material has
@@ -53,15 +53,27 @@ struct WorldDef {
     int num_threads = 1;  ///< of no influence on any result
 };
 
-/// The number of a tool in its world.
+/// The number of a tool in its world; never given to another one.
 struct ToolId {
     std::size_t index = 0;
     bool operator==(const ToolId&) const = default;
 };
 
+/// The number of a constraint in its world; never given to another one.
+struct ConstraintId {
+    std::size_t index = 0;
+    bool operator==(const ConstraintId&) const = default;
+};
+
+/// The number of a load in its world; never given to another one.
+struct LoadId {
+    std::size_t index = 0;
+    bool operator==(const LoadId&) const = default;
+};
+
 struct ToolDef {
-    std::string name;  ///< for reports and messages
-    cutting::ToolShape shape;
+    std::string name = {};  ///< for reports and messages
+    cutting::ToolShape shape = {};
 };
 
 /// One edit of the mesh, which a tool has made.
@@ -144,6 +156,32 @@ class World {
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
     std::size_t num_tools() const;
+
+    /// Adds a constraint whose motion is known beforehand: its curves go with the time of the
+    /// world. Those of the definition have the first numbers. Throws InputError, and changes
+    /// nothing, if a node is not there, or if it prescribes what another constraint does.
+    ConstraintId add_constraint(physics::Support constraint);
+    /// Takes hold of nodes where they are now. `pose` is that of the thing that holds them, m: the
+    /// nodes go where its frame goes. Throws as add_constraint().
+    ConstraintId grasp(std::string name, std::vector<topology::NodeId> nodes, const Pose& pose);
+    /// Where the frame of a grasp is to be at the end of the next step. Without a call it rests.
+    /// Throws InputError for a constraint that is no grasp.
+    void set_grasp_pose(ConstraintId grasp, const Pose& pose);
+    /// Removes a constraint, a grasp or another one. Its nodes go on with the velocities that they
+    /// have.
+    void release(ConstraintId constraint);
+    /// What a constraint did to the body in the last step, N and N m.
+    const physics::Reaction& reaction(ConstraintId constraint) const;
+
+    /// Adds a load. Those of the definition have the first numbers. Throws InputError, and changes
+    /// nothing, if it acts on what is not there, or on nothing.
+    LoadId add_load(physics::Load load);
+    /// Scales a load by a constant factor from now on.
+    void set_load_factor(LoadId load, double factor);
+    void remove_load(LoadId load);
+
+    /// The surface of the body. It is built at the first call, and follows edits from then on.
+    topology::BoundarySurface& surface();
 
     void set_num_threads(int n);
 

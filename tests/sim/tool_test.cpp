@@ -17,7 +17,7 @@ Pose pose_at(const Vec3& at, const Vec3& axis = Vec3::UnitZ(), double angle = 0.
     return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), at};
 }
 
-double angle_between(const cutting::Pose& pose, double angle, const Vec3& axis) {
+double angle_between(const Pose& pose, double angle, const Vec3& axis) {
     return pose.rotation.angularDistance(
         Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
 }
