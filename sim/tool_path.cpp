@@ -5,7 +5,6 @@
 
 namespace incise::sim {
 
-
 Pose ToolPath::pose(double time) const {
     const auto after =
         std::upper_bound(keys_.begin(), keys_.end(), time,

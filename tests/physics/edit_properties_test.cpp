@@ -307,7 +307,7 @@ class FollowingBody {
                 for (int c = 0; c < 3; ++c)
                     if (support.components[static_cast<std::size_t>(c)])
                         state.positions[member.node.index()][c] =
-                            support.target(mesh_.mesh().rest_position(member.node), now_time)[c];
+                            support.target(mesh_.mesh(), member.node, now_time)[c];
         set_state(model_, state, now_time);
     }
 

@@ -76,7 +76,7 @@ class EditedBody {
                 for (int c = 0; c < 3; ++c)
                     if (support.components[static_cast<std::size_t>(c)])
                         state.positions[member.node.index()][c] =
-                            support.target(mesh_.rest_position(member.node), time)[c];
+                            support.target(mesh_, member.node, time)[c];
         const double room = shortest_edge();
         for (const auto& record : nodes_born_) {
             Vec3 x = random_.vector(0.01 * room);
