@@ -148,10 +148,11 @@ void finish(const InputFile& file, MeshFile& result) {
     if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
         std::string_view::npos)
         result.mesh.points_may_coincide = true;
-    if (topology::turn_inverted_cells(result.mesh)) {
-        const auto num_cells = result.mesh.num_cells();
+    if (const auto num_inverted = topology::turn_inverted_cells(result.mesh)) {
+        const auto num_cells = result.mesh.num_cells(), num_flat = num_cells - num_inverted;
         result.warnings.push_back(
             (num_cells == 1 ? "the only cell has"
+             : num_flat > 0 ? "all cells but " + std::to_string(num_flat) + " without volume have"
                             : "all " + std::to_string(num_cells) + " cells have") +
             std::string(" negative volume by VTK's order of corners: the order was reversed; make "
                         "sure that the body is not the mirror image of what is meant"));

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "topology/flat_cell.h"
 #include "topology/geometry.h"
 
 namespace incise::topology {
@@ -162,13 +164,19 @@ void drop_welded_points(MeshData& data) {
     data.welded_to.clear();
 }
 
-bool turn_inverted_cells(MeshData& data) {
+std::size_t turn_inverted_cells(MeshData& data) {
     std::array<Vec3, max_corners> x;
+    std::size_t num_inverted = 0;
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         const auto corners = data.cell(c);
         for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
-        if (!(signed_volume(data.kinds[c], {x.data(), corners.size()}) < 0.0)) return false;
+        const std::span<const Vec3> cell{x.data(), corners.size()};
+        const double volume = signed_volume(data.kinds[c], cell);
+        if (is_flat_to_rounding(data.kinds[c], cell, volume)) continue;
+        if (!(volume < 0.0)) return 0;
+        ++num_inverted;
     }
+    if (num_inverted == 0) return 0;
     std::array<std::int64_t, max_corners> old{};
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         std::ranges::copy(data.cell(c), old.begin());
@@ -176,7 +184,7 @@ bool turn_inverted_cells(MeshData& data) {
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
             data.corners[data.offsets[c] + k] = old[static_cast<std::size_t>(mirrored[k])];
     }
-    return data.num_cells() > 0;
+    return num_inverted;
 }
 
 }  // namespace incise::topology

@@ -34,8 +34,9 @@ std::string weld_report(std::size_t num_joined);
 /// Removes the points that were welded to others. Later points move up.
 void drop_welded_points(MeshData& data);
 
-/// If every cell has negative volume, winds all of them the other way round. Returns whether.
+/// Winds all cells the other way round if every cell has negative volume, but for cells without
+/// volume to rounding. Returns how many had negative volume, or zero if none was turned.
 /// @pre  as above
-bool turn_inverted_cells(MeshData& data);
+std::size_t turn_inverted_cells(MeshData& data);
 
 }  // namespace incise::topology

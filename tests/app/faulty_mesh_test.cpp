@@ -127,6 +127,18 @@ TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
     EXPECT_NE(outcome.out.find("volume           0.5\n"), std::string::npos) << outcome.out;
     EXPECT_EQ(run("convert --weld two.msh one.vtu").status, 0);
     EXPECT_EQ(run("info one.vtu").err, "");
+    write("flat.msh", soup({"0 0 0  0 1 0  1 0 0  0 0 1", "0 1 0  1 0 0  0 0 1  1 1 1",
+                            "5 0 0  6 0 0  5 1 0  6 1 0"}));
+    const auto flat = run("check flat.msh");
+    EXPECT_EQ(flat.status, 2);
+    EXPECT_EQ(count_of(flat.err, "\n"), 2u) << flat.err;
+    EXPECT_NE(flat.err.find("all cells but 1 without volume have negative volume"),
+              std::string::npos)
+        << flat.err;
+    EXPECT_NE(flat.err.find("flat.msh: cell 2 (tetrahedron, number 3 in the file) has zero volume; "
+                            "remove it or remesh\n"),
+              std::string::npos)
+        << flat.err;
     write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
     EXPECT_EQ(run("info some.msh").status, 2);
 }

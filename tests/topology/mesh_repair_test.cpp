@@ -211,10 +211,10 @@ TEST(TurnedCells, MakeEveryMirrorImageSound) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         MeshData data = family.data;
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
         data = mirrored(data);
         ASSERT_FALSE(check(data).errors.empty());
-        EXPECT_TRUE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), data.num_cells());
         EXPECT_TRUE(check(data).errors.empty());
         EXPECT_EQ(check(data).shared_faces.size(), check(family.data).shared_faces.size());
         EXPECT_EQ(data.regions, family.data.regions);
@@ -224,7 +224,25 @@ TEST(TurnedCells, MakeEveryMirrorImageSound) {
                 before(family.data.cell(c).begin(), family.data.cell(c).end());
             EXPECT_TRUE(std::ranges::is_permutation(now, before));
         }
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
+    }
+}
+
+TEST(TurnedCells, LeaveTheFlatOneToTheCheck) {
+    const MeshData sound = box_mesh(CellKind::tetrahedron, {5, 6, 7}, {3, 3, 3}, {2, 2, 2});
+    for (const double height : {0.0, 1e-16}) {
+        SCOPED_TRACE(height);
+        MeshData data = mirrored(sound);
+        const auto first = static_cast<std::int64_t>(data.points.size());
+        for (const Vec3& x : {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 2, 0), Vec3(2, 2, height)})
+            data.points.push_back(x);
+        data.add_cell(CellKind::tetrahedron,
+                      std::vector<std::int64_t>{first, first + 1, first + 2, first + 3});
+        EXPECT_EQ(turn_inverted_cells(data), sound.num_cells());
+        const auto errors = check(data).errors;
+        ASSERT_EQ(errors.size(), 1u);
+        EXPECT_TRUE(errors[0].starts_with("cell 48 (tetrahedron) ")) << errors[0];
+        EXPECT_TRUE(errors[0].ends_with("; remove it or remesh")) << errors[0];
     }
 }
 
@@ -241,7 +259,7 @@ TEST(TurnedCells, AreNoneWhereSomeAreSound) {
             data.corners[data.offsets[data.num_cells() - 1] + k] =
                 old[static_cast<std::size_t>(order[k])];
         const auto corners = data.corners;
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
         EXPECT_EQ(data.corners, corners);
     }
 }
