@@ -16,8 +16,13 @@ namespace incise::topology {
 /// that a mesh resolves.
 inline constexpr double weld_tolerance = 1e-4;
 
-/// A warning about points that cells use and that lie where another such point lies, unless they
-/// may (MeshData::points_may_coincide).
+/// Points of the boundary nearer to each other than this part of the shortest edge are a gap that
+/// is hardly meant.
+inline constexpr double near_tolerance = 1e-2;
+
+/// A warning about points that cells use and that lie where another such point lies, or on the
+/// boundary and near another one there, unless they may (MeshData::points_may_coincide). It offers
+/// welding where that joins cells.
 /// @pre  corners are numbers of points, whose coordinates are finite
 /// Cost: O(n log n) in the number of points, some 0.2 us each.
 std::optional<std::string> coincidence_warning(const MeshData& data);
