@@ -419,7 +419,11 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
         const auto* cut = std::get_if<Cut>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
             tools.emplace_back(spec, warnings);
-            if (suits_mesh) tools.back().require_divisible(*mesh, end_time);
+            if (suits_mesh) {
+                tools.back().require_divisible(*mesh, end_time);
+                if (const auto near = tools.back().warning_of_near_misses(*mesh, end_time))
+                    warnings.push_back(placed(spec.place, *near));
+            }
             if (mesh && !spec.path.empty() && !tools.back().may_meet(body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });

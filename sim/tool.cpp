@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "cutting/carver.h"
@@ -123,7 +124,7 @@ cutting::Pose Tool::pose(double time) const {
 }
 
 void Tool::require_divisible(const topology::Mesh& mesh, double end_time) const {
-    const auto require = [&](const cutting::CutSurface& surface) {
+    for_each_surface(end_time, [&](const cutting::CutSurface& surface) {
         const auto e = cutting::first_undividable(mesh, surface);
         if (!e) return;
         try {
@@ -132,11 +133,42 @@ void Tool::require_divisible(const topology::Mesh& mesh, double end_time) const 
             throw InputError("tool '" + spec_.name + "' meets what it cannot divide: " +
                              error.what() + "; " + instead_of_dividing());
         }
-    };
+    });
+}
+
+std::optional<std::string> Tool::warning_of_near_misses(const topology::Mesh& mesh,
+                                                        double end_time) const {
+    constexpr double margin = 0.05;  // of an element's mean edge: it takes little motion
+    cutting::NearMisses found;
+    for_each_surface(end_time, [&](const cutting::CutSurface& surface) {
+        cutting::add_near_misses(mesh, surface, margin, found);
+    });
+    if (found.is_empty()) return std::nullopt;
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << spec_.name << "' passes ";
+    if (found.distance > 0.0)
+        text << "only " << found.distance << " m from";
+    else
+        text << "along a side of";
+    text << " element " << mesh.label(found.nearest) << ", a "
+         << topology::traits(mesh.kind(found.nearest)).name
+         << " that it cannot divide, where the body rests";
+    const std::size_t num_others = found.elements.size() - 1;
+    if (num_others > 0)
+        text << " (and near " << num_others << (num_others == 1 ? " other)" : " others)");
+    text << ": the run stops if the tissue moves into it; keep it farther from there, or "
+         << instead_of_dividing();
+    return text.str();
+}
+
+/// Calls look(surface) for each surface that the tool divides elements along up to `end_time`, s.
+void Tool::for_each_surface(double end_time,
+                            const std::function<void(const cutting::CutSurface&)>& look) const {
     if (spec_.path.empty() || spec_.path.front().time > end_time) return;
-    if (surface_) return require(*surface_);
-    const auto* blade = std::get_if<Blade>(&spec_.kind);
-    if (!blade || blade->mode != CutMode::split) return;
+    if (!divides()) return;
+    if (surface_) return look(*surface_);
+    const auto& blade = std::get<Blade>(spec_.kind);
     // Between keys that turn the edge, its points go on arcs: in short pieces.
     constexpr double longest_turn = 0.05;
     for (std::size_t key = 1; key < spec_.path.size(); ++key) {
@@ -150,8 +182,7 @@ void Tool::require_divisible(const topology::Mesh& mesh, double end_time) const 
             return std::min(at, end_time);
         };
         for (int part = 0; part < num_parts; ++part)
-            require(
-                cutting::SweptEdge(edge_at(*blade, time(part)), edge_at(*blade, time(part + 1))));
+            look(cutting::SweptEdge(edge_at(blade, time(part)), edge_at(blade, time(part + 1))));
     }
 }
 
@@ -160,6 +191,11 @@ std::string Tool::instead_of_dividing() const {
         return "use a blade with mode = \"separate\", which opens the faces nearest to it, or keep "
                "the cut to tetrahedra";
     return "use mode = \"separate\", which opens the faces nearest to it";
+}
+
+bool Tool::divides() const {
+    const auto* blade = std::get_if<Blade>(&spec_.kind);
+    return surface_ || (blade && blade->mode == CutMode::split);
 }
 
 bool Tool::is_present(double from, double to) const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,8 +48,16 @@ class Tool {
     /// divide, where the body rests: a run would stop there. Its path after `end_time`, s, is not
     /// looked at. Cost: O(#elements) for each key.
     void require_divisible(const topology::Mesh& mesh, double end_time) const;
+    /// A warning of elements that it cannot divide and comes near to at rest, if it is to divide
+    /// and there are any: tissue that moves may come into its way.
+    /// @pre  require_divisible() throws nothing
+    /// Cost: as there.
+    std::optional<std::string> warning_of_near_misses(const topology::Mesh& mesh,
+                                                      double end_time) const;
     /// What to do about such an element.
     std::string instead_of_dividing() const;
+    /// Whether it divides elements: a cut, or a blade in the mode "split".
+    bool divides() const;
 
     /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
     /// did, which is nothing if it is not there.
@@ -77,6 +86,8 @@ class Tool {
     static void archive(auto& ar, auto& self) { ar(self.front_); }
 
   private:
+    void for_each_surface(double end_time,
+                          const std::function<void(const cutting::CutSurface&)>& look) const;
     cutting::Split cut_with(const Carver& carver, topology::Mesh& mesh,
                             const cutting::TissueMotion& tissue, cutting::Scars& scars,
                             std::span<cutting::RestingBlade> resting, double from, double to);
