@@ -79,7 +79,8 @@ Simulation::Simulation(const Scenario& scenario, Body body)
       integrator_(make_integrator(scenario.dynamics)),
       ledger_(model_),
       tools_(std::move(body.tools)),
-      boxes_(mesh_, model_.positions()) {
+      boxes_(mesh_, model_.positions()),
+      warned_step_(ledger_.initial().stable_step) {
     const cutting::UncutBody uncut = uncut_body(model_);
     for (Tool& tool : tools_) tool.prepare(uncut);
     fingerprint_ = fingerprint_of(model_, scenario.tools);
@@ -163,6 +164,7 @@ void Simulation::restore(topology::ArchiveReader& ar) {
     model_.restore(ar, time_);
     integrator_->restore(ar, model_);
     ledger_.restore(ar, traces);
+    for (const EditRecord& edit : ledger_.edits()) warn_of_short_steps(edit);
     for (Tool& tool : tools_) ar(tool);
     ar(boxes_, scars_, last_step_, num_steps_, num_frames_);
     const auto is_here = [&](const Tool& tool) { return tool.is_on(mesh_); };
@@ -171,6 +173,28 @@ void Simulation::restore(topology::ArchiveReader& ar) {
     if (!(last_step_ >= 0.0 && last_step_ <= time_))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
+}
+
+/// Of edits after which steps are ten times as short as at the start, or as at the warning before.
+void Simulation::warn_of_short_steps(const EditRecord& edit) {
+    constexpr double much_shorter = 0.1;
+    const DynamicsSpec& dynamics = scenario_.dynamics;
+    const double now = edit.after.stable_step;
+    if (dynamics.mode == Mode::statics ||
+        dynamics.integrator != TimeIntegrator::semi_implicit_euler ||
+        !(now < much_shorter * warned_step_))
+        return;
+    const auto tool = std::ranges::find(tools_, edit.tool, &Tool::name);
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left "
+         << (tool != tools_.end() && !tool->divides() ? "stiff elements with so little mass"
+                                                      : "elements so thin")
+         << " that the stable step fell from " << warned_step_ << " to " << now
+         << " s: the run takes " << warned_step_ / now << " times as long from here on";
+    if (tool != tools_.end()) text << "; " << tool->for_longer_steps();
+    warnings_.push_back(text.str());
+    warned_step_ = now;
 }
 
 void Simulation::warn_of_lost_elements() {
@@ -250,6 +274,7 @@ void Simulation::follow(Tool& tool, const cutting::Split& done) {
         if (&other != &tool) other.follow(changes);
     const EditRecord& edit =
         ledger_.record(time_, num_steps_, tool.name(), done, before, mass_removed);
+    warn_of_short_steps(edit);
     for (Observer* observer : observers_) observer->on_edit(*this, edit);
 }
 

@@ -74,6 +74,7 @@ class Simulation {
     double time_step() const;              ///< s, of the last step, or of the first
     std::uint64_t num_steps() const { return num_steps_; }
     std::uint64_t num_frames() const { return num_frames_; }
+    /// Those of before the start, and what the run has added up to now.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
@@ -86,6 +87,7 @@ class Simulation {
     double step_limit() const;
     void cut(Tool& tool, double from, double to);
     void follow(Tool& tool, const cutting::Split& done);
+    void warn_of_short_steps(const EditRecord& edit);
     void warn_of_lost_elements();
     void tell_frame();
     void tell_pause();
@@ -105,6 +107,7 @@ class Simulation {
 
     double time_ = 0.0;
     double last_step_ = 0.0;
+    double warned_step_;  // s, the stable step of the last warning of it, or of the start
     std::uint64_t num_steps_ = 0, num_frames_ = 0;
     std::vector<Vec3> previous_positions_;
     bool has_moved_ = true;  ///< since the last edit

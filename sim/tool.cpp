@@ -198,6 +198,14 @@ bool Tool::divides() const {
     return surface_ || (blade && blade->mode == CutMode::split);
 }
 
+std::string Tool::for_longer_steps() const {
+    if (divides()) return "use a larger tool.snap";
+    const std::string extent = std::holds_alternative<Carver>(spec_.kind) ? "shape" : "edge";
+    return "change tool." + extent +
+           " or tool.path, so that it takes those as well or leaves "
+           "them more of what they hang on";
+}
+
 bool Tool::is_present(double from, double to) const {
     const double first = spec_.path.front().time, last = spec_.path.back().time;
     if (first == last) return first <= to && (from < first || (from == 0.0 && first == 0.0));

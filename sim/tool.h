@@ -58,6 +58,8 @@ class Tool {
     std::string instead_of_dividing() const;
     /// Whether it divides elements: a cut, or a blade in the mode "split".
     bool divides() const;
+    /// What to do where its edits leave a stable step that is too short.
+    std::string for_longer_steps() const;
 
     /// Cuts what it meets while it and the tissue of the mesh move in [from, to]. Returns what it
     /// did, which is nothing if it is not there.
