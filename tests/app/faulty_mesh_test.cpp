@@ -88,6 +88,18 @@ TEST_F(FaultyMesh, IsWeldedOnConversion) {
               "joined\n");
 }
 
+TEST_F(FaultyMesh, IsToldOfWhereAGapIsTooWideToWeld) {
+    write("gap.msh", soup({first, "1.001 0 0  0.001 1 0  0.001 0 1  1 1 1"}));
+    for (const auto* arguments : {"check gap.msh", "convert gap.msh gap.vtu",
+                                  "convert --weld gap.msh gap.vtu", "check gap.vtu"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << arguments;
+        EXPECT_EQ(count_of(outcome.err, "3 points are within 0.01 of the shortest edge of others"),
+                  1u)
+            << arguments << ": " << outcome.err;
+    }
+}
+
 TEST_F(FaultyMesh, IsNotWeldedToAnUnsoundOne) {
     write("three.msh", soup({first, second, "1 0 0  0 1 0  0 0 1  2 2 2"}));
     write("three.toml", "[mesh]\nfile = \"three.msh\"\nweld = true\n" + rest_of_scenario);
