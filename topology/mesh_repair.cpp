@@ -50,19 +50,20 @@ std::vector<std::int64_t> used_points(const MeshData& data) {
 
 /// Of each point the lowest one at its position: nearer than `part` of the shortest edge.
 /// Points that no cell uses stand for themselves.
-/// A sweep along one direction compares few points with each other: the direction is that of no
-/// plane in which meshes have many of their points.
+/// A sweep along one direction compares few points with each other, and most of those along a
+/// second one only: the directions are those of no plane in which meshes have many of their points.
 std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) {
     struct Leader {
-        double at;
+        double at, across;
         std::int64_t point;
     };
-    static const Vec3 direction = Vec3(1.0, std::sqrt(2.0), std::sqrt(3.0)) / std::sqrt(6.0);
+    static const Vec3 direction = Vec3(1.0, std::sqrt(2.0), std::sqrt(3.0)) / std::sqrt(6.0),
+                      second = Vec3(std::sqrt(5.0), -1.0, std::sqrt(7.0)) / std::sqrt(13.0);
     const double tolerance = part * shortest_edge(data);
 
     std::vector<Leader> order;
     for (const std::int64_t p : used_points(data))
-        order.push_back({direction.dot(position_of(data, p)), p});
+        order.push_back({direction.dot(position_of(data, p)), second.dot(position_of(data, p)), p});
     std::sort(order.begin(), order.end(), [](const Leader& a, const Leader& b) {
         return std::pair(a.at, a.point) < std::pair(b.at, b.point);
     });
@@ -71,16 +72,17 @@ std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) 
     std::iota(leader_of.begin(), leader_of.end(), 0);
     std::vector<Leader> leaders;
     std::size_t begin = 0;  // of the leaders that later points may be near to
-    for (const auto& [at, point] : order) {
+    for (const auto& [at, across, point] : order) {
         while (begin < leaders.size() && leaders[begin].at < at - 2.0 * tolerance) ++begin;
         const Vec3& here = position_of(data, point);
         const auto found = std::find_if(
             leaders.begin() + static_cast<std::ptrdiff_t>(begin), leaders.end(),
             [&](const Leader& leader) {
-                return (position_of(data, leader.point) - here).stableNorm() <= tolerance;
+                return !(std::abs(leader.across - across) > 2.0 * tolerance) &&
+                       (position_of(data, leader.point) - here).stableNorm() <= tolerance;
             });
         if (found == leaders.end())
-            leaders.push_back({at, point});
+            leaders.push_back({at, across, point});
         else
             leader_of[static_cast<std::size_t>(point)] = found->point;
     }
