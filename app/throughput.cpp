@@ -10,13 +10,7 @@
 #include <random>
 #include <span>
 
-#include "cutting/carver.h"
-#include "cutting/cut_plan.h"
-#include "cutting/element_boxes.h"
-#include "cutting/separator.h"
-#include "cutting/splitter.h"
-#include "cutting/step_length.h"
-#include "cutting/swept_edge.h"
+#include "cutting/cutter.h"
 #include "physics/heml_lanes.h"
 #include "physics/hybmss_lanes.h"
 #include "physics/machine_speed.h"
@@ -185,20 +179,19 @@ struct CutCube {
     std::string_view method;
     topology::Mesh mesh;
     physics::Model model;
-    cutting::ElementBoxes boxes;
+    cutting::Cutter cutter;
 
     CutCube(std::size_t num_elements, const Measured& measured)
         : method(measured.method),
           mesh(make_cube(kind_of(measured), num_elements)),
           model(mesh, table_of(measured.material)),
-          boxes(mesh, model.positions()) {}
+          cutter(mesh, model.positions(),
+                 kind_of(measured) == topology::CellKind::tetrahedron ? cutting::uncut_body(mesh)
+                                                                      : cutting::UncutBody{}) {}
 
-    cutting::TissueMotion at_rest() const {
-        return {mesh, model.positions(), model.positions(), &boxes};
-    }
     void follow(const topology::ChangeSet& changes) {
         model.apply(changes);
-        boxes.follow(mesh, model.positions(), changes);
+        cutter.apply(mesh, model.positions(), changes);
     }
 };
 
@@ -227,12 +220,10 @@ EditRate time_tool(std::string_view kind, std::string_view item, CutCube& cube, 
 }
 
 EditRate measure_split(CutCube& cube) {
-    const cutting::SplitOptions options{cutting::default_snap, cutting::uncut_body(cube.mesh)};
-    cutting::CutFront front;
-    cutting::Scars scars;
+    const cutting::CutId cut = cube.cutter.begin_cut(cutting::default_snap);
     return time_tool("split", "element crossed", cube, [&](CutCube& c, int step) {
-        const cutting::SweptEdge way(edge_of_blade(step), edge_of_blade(step + 1));
-        const auto done = cutting::split(c.mesh, c.at_rest(), way, front, options, scars);
+        const auto done = c.cutter.split(cut, c.mesh, c.model.positions(), edge_of_blade(step),
+                                         edge_of_blade(step + 1));
         c.follow(done.changes);
         return done.report.elements_crossed;
     });
@@ -240,9 +231,10 @@ EditRate measure_split(CutCube& cube) {
 
 EditRate measure_separation(CutCube& cube) {
     return time_tool("separate", "face opened", cube, [](CutCube& c, int step) {
-        const auto from = edge_of_blade(step), to = edge_of_blade(step + 1);
         const auto changes =
-            cutting::execute({{}, cutting::faces_to_open(c.at_rest(), from, to)}, c.mesh);
+            c.cutter
+                .separate(c.mesh, c.model.positions(), edge_of_blade(step), edge_of_blade(step + 1))
+                .changes;
         c.follow(changes);
         return changes.faces_opened.size();
     });
@@ -251,14 +243,14 @@ EditRate measure_separation(CutCube& cube) {
 /// A ball that goes half way through the cube.
 EditRate measure_carving(CutCube& cube) {
     const auto at = [](int step) {
-        cutting::Pose pose;
+        Pose pose;
         pose.position = cube_size * Vec3(-0.1 + 0.6 * step / num_cut_steps, 0.48, 0.53);
         return pose;
     };
     return time_tool("carve", "element removed", cube, [&](CutCube& c, int step) {
         const cutting::Sphere ball{0.12 * cube_size};
-        const auto changes = cutting::execute(
-            {cutting::covered_elements(c.at_rest(), ball, at(step), at(step + 1)), {}}, c.mesh);
+        const auto changes =
+            c.cutter.carve(c.mesh, c.model.positions(), ball, at(step), at(step + 1)).changes;
         c.follow(changes);
         return changes.elements_removed.size();
     });

@@ -18,7 +18,7 @@
 #include "sim/diagnostics.h"
 #include "sim/geometric_cut.h"
 #include "sim/table_reader.h"
-#include "sim/tool.h"
+#include "sim/tool_build.h"
 #include "topology/error.h"
 
 namespace incise::app {

@@ -44,7 +44,7 @@ class ProgressObserver : public sim::Observer {
     void on_step(const sim::Simulation& simulation) override {
         char note[128];
         std::snprintf(note, sizeof note, "t = %.4g s, %zu elements, %zu edits", simulation.time(),
-                      simulation.mesh().num_elements(), simulation.ledger().edits().size());
+                      simulation.mesh().num_elements(), simulation.edits().size());
         progress_.update(simulation.time(), note);
     }
     void finish() { progress_.finish(); }
@@ -96,7 +96,7 @@ void require_inputs_elsewhere(const sim::Scenario& scenario, const std::filesyst
     if (const auto* mesh = std::get_if<std::filesystem::path>(&scenario.mesh.source))
         inputs.push_back(*mesh);
     for (const sim::ToolSpec& tool : scenario.tools)
-        if (const auto* cut = std::get_if<sim::Cut>(&tool.kind))
+        if (const auto* cut = std::get_if<sim::CutSpec>(&tool.kind))
             if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
                 inputs.push_back(*surface);
     // What cannot be looked at is told when it is opened.
@@ -144,7 +144,7 @@ auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
 /// Tools that had time to cut and did not, which is seldom what was meant.
 void warn_of_idle_tools(const sim::Simulation& simulation) {
     for (const sim::ToolSpec& tool : simulation.scenario().tools) {
-        const auto& edits = simulation.ledger().edits();
+        const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
         if (!has_cut && tool.path.front().time < simulation.time())
@@ -223,7 +223,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
 
     if (!options.quiet)
         std::cerr << scenario.name << ": " << simulation.num_steps() << " steps in "
-                  << duration_text(watch.seconds()) << ", " << simulation.ledger().edits().size()
+                  << duration_text(watch.seconds()) << ", " << simulation.edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
     std::cout << writer.main_result().string() << '\n';
     return tell_expectations(scenario, sim::summary_quantities(simulation));

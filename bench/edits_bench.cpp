@@ -4,9 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bodies.h"
-#include "cutting/splitter.h"
-#include "cutting/step_length.h"
-#include "cutting/swept_edge.h"
+#include "cutting/cutter.h"
 #include "topology/mesh_edit.h"
 
 namespace incise::bench {
@@ -111,8 +109,6 @@ void split(benchmark::State& state) {
     constexpr int num_steps = 20;
     topology::Mesh mesh = make_cube(state.range(0));
     physics::Model model(mesh, make_material(physics::NeoHookean{2000, 6000}));
-    cutting::ElementBoxes boxes(mesh, model.positions());
-    const cutting::SplitOptions options{cutting::default_snap, cutting::uncut_body(mesh)};
     const Vec3 low = mesh_box(mesh).min(), size = mesh_box(mesh).sizes();
     const auto edge = [&](int step) {
         const double x = -0.01 + 0.51 * step / num_steps;
@@ -123,15 +119,15 @@ void split(benchmark::State& state) {
     };
     double crossed = 0.0;
     for (auto _ : state) {
-        cutting::CutFront front;
-        cutting::Scars scars;
+        state.PauseTiming();
+        cutting::Cutter cutter(mesh, model.positions(), cutting::uncut_body(mesh));
+        const cutting::CutId cut = cutter.begin_cut(cutting::default_snap);
+        state.ResumeTiming();
         std::vector<topology::ChangeSet> history;
         for (int step = 0; step < num_steps; ++step) {
-            const cutting::TissueMotion tissue{mesh, model.positions(), model.positions(), &boxes};
-            auto done = cutting::split(mesh, tissue, cutting::SweptEdge(edge(step), edge(step + 1)),
-                                       front, options, scars);
+            auto done = cutter.split(cut, mesh, model.positions(), edge(step), edge(step + 1));
             model.apply(done.changes);
-            boxes.follow(mesh, model.positions(), done.changes);
+            cutter.apply(mesh, model.positions(), done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);
             history.push_back(std::move(done.changes));
         }
@@ -141,7 +137,6 @@ void split(benchmark::State& state) {
             const auto back = topology::inverse(history.back());
             topology::replay(mesh, back);
             model.apply(back);
-            boxes.follow(mesh, model.positions(), back);
         }
         state.ResumeTiming();
     }

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/pose.h"
 #include "cutting/tissue_motion.h"
+#include "topology/pose.h"
 #include "topology/types.h"
 
 namespace incise::cutting {
@@ -14,13 +14,16 @@ namespace incise::cutting {
 /// Shapes in the tool's frame, metres.
 struct Sphere {
     double radius;  ///< about the origin
+    static void archive(auto& ar, auto& self) { ar(self.radius); }
 };
 struct Capsule {
     Vec3 from, to;  ///< ends of the axis
     double radius;
+    static void archive(auto& ar, auto& self) { ar(self.from, self.to, self.radius); }
 };
 struct Cuboid {
     Vec3 size;  ///< edge lengths, centred at the origin
+    static void archive(auto& ar, auto& self) { ar(self.size); }
 };
 using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
 

@@ -28,6 +28,7 @@ struct UncutBody {
     /// By region, the body's stable step times the speed of waves in the region, m. Elements of
     /// regions that are not named may become as small as the cut leaves them.
     std::map<int, double> step_length;
+    static void archive(auto& ar, auto& self) { ar(self.edge_length, self.step_length); }
 };
 
 /// Mean length at rest over all edges, m; infinite without any. Cost: O(n log n).

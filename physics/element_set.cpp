@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "topology/error.h"
+
 namespace incise::physics {
 
 using topology::ChangeSet;
@@ -144,6 +146,23 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
     // New ids lie above all others.
     std::sort(born.begin(), born.end());
     for (const FaceId f : born) members_.push_back({f, {}});
+}
+
+// Members that an undone edit took back may be listed beyond what is there: who asks passes over
+// them.
+void ElementSet::require_fit() const {
+    if (!std::ranges::all_of(members_, &ElementId::is_valid) || !std::ranges::is_sorted(members_))
+        throw InputError("a selection has elements that cannot be");
+}
+
+void FaceSet::require_fit(const Mesh& mesh) const {
+    for (const Member& m : members_) {
+        const ElementId e = m.face.element;
+        const bool can_be =
+            e.is_valid() && m.face.face >= 0 &&
+            (e.index() >= mesh.element_capacity() || m.face.face < mesh.num_faces(e));
+        if (!can_be) throw InputError("a selection has faces that cannot be");
+    }
 }
 
 }  // namespace incise::physics

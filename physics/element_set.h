@@ -20,6 +20,10 @@ class ElementSet {
 
     void apply(const topology::ChangeSet& changes);
 
+    /// Throws InputError if a member cannot be an element.
+    void require_fit() const;
+    static void archive(auto& ar, auto& self) { ar(self.members_); }
+
   private:
     std::vector<topology::ElementId> members_;
 };
@@ -33,6 +37,7 @@ class FaceSet {
         /// Valid when a division took the face to other elements as a whole: the first part that
         /// the edit made. What now has the member's number lies inside the former element.
         topology::ElementId left_to;
+        static void archive(auto& ar, auto& self) { ar(self.face, self.left_to); }
     };
 
     FaceSet(std::vector<topology::FaceId> faces = {});
@@ -42,6 +47,10 @@ class FaceSet {
 
     /// @param mesh after the edit
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+
+    /// Throws InputError if a member cannot be a face of the mesh.
+    void require_fit(const topology::Mesh& mesh) const;
+    static void archive(auto& ar, auto& self) { ar(self.members_); }
 
   private:
     std::vector<Member> members_;

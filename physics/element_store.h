@@ -74,6 +74,8 @@ class ElementStore {
         return table_.materials[table_.of_region.at(region)].density;
     }
 
+    /// What the store was built from, with the fibres of the elements that edits added.
+    const MaterialTable& materials() const { return table_; }
     /// As MaterialTable has them, also of the elements that edits added.
     std::span<const Vec3> fibres() const { return table_.fibres; }
 

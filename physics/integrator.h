@@ -65,7 +65,7 @@ class Statics final : public Integrator {
     void require_equilibrium_of_free_pieces(const Model& model, double time);
 
     NewtonSolver newton_{true};
-    std::uint64_t num_edits_ = 0;  // of the model, at the last equilibrium
+    std::uint64_t structure_version_ = 0;  // of the model, at the last equilibrium
     std::vector<Vec3> x_, velocities_, elastic_, outer_, reactions_, holding_, imbalance_,
         next_elastic_, next_outer_;  // by node id
 };

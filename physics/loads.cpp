@@ -6,6 +6,8 @@
 #include <cassert>
 #include <map>
 
+#include "topology/error.h"
+
 namespace incise::physics {
 
 using topology::FaceId;
@@ -182,14 +184,43 @@ void share(NodalLoad& load, const LoadedBody& body, std::span<const NodeId> touc
 
 }  // namespace
 
-Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move(loads)) {
-    for (Load& load : loads_)
-        if (auto* nodal = std::get_if<NodalLoad>(&load.kind)) {
-            std::vector<NodeId> all;
-            for (const auto& member : nodal->nodes.members()) all.push_back(member.node);
-            share(*nodal, body, all);
+void Load::require_fit(const topology::Mesh& mesh) const {
+    struct Requirement {
+        const topology::Mesh& mesh;
+        void operator()(const NodalLoad& load) const {
+            load.nodes.require_fit(mesh);
+            if (!load.shares.empty() && load.shares.size() != load.nodes.members().size())
+                throw InputError("a nodal load has not as many shares as nodes");
         }
+        void operator()(const TractionLoad& load) const { load.faces.require_fit(mesh); }
+        void operator()(const PressureLoad& load) const { load.faces.require_fit(mesh); }
+        void operator()(const BodyLoad& load) const { load.elements.require_fit(); }
+    };
+    std::visit(Requirement{mesh}, kind);
+}
+
+Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move(loads)) {
+    for (Load& load : loads_) share_out(load, body);
     update(body);
+}
+
+void Loads::share_out(Load& load, const LoadedBody& body) {
+    auto* nodal = std::get_if<NodalLoad>(&load.kind);
+    if (!nodal || !nodal->shares.empty()) return;
+    std::vector<NodeId> all;
+    for (const auto& member : nodal->nodes.members()) all.push_back(member.node);
+    share(*nodal, body, all);
+}
+
+void Loads::add(Load load, const LoadedBody& body) {
+    share_out(load, body);
+    loads_.push_back(std::move(load));
+    is_up_to_date_ = false;
+}
+
+void Loads::remove(std::size_t i) {
+    loads_.erase(loads_.begin() + static_cast<std::ptrdiff_t>(i));
+    is_up_to_date_ = false;
 }
 
 void Loads::update(const LoadedBody& body) {

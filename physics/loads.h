@@ -21,33 +21,41 @@ namespace incise::physics {
 /// opening a face neither adds force nor tears the copies apart. A node born between selected ones
 /// has no share: the force stays what it was, and where it was.
 struct NodalLoad {
-    NodeSet nodes;
-    Vec3 force;
-    std::vector<double> shares;  ///< of the nodes' members; Loads keeps it
+    NodeSet nodes = {};
+    Vec3 force = Vec3::Zero();
+    std::vector<double> shares = {};  ///< of the nodes' members; Loads keeps it
+    static void archive(auto& ar, auto& self) { ar(self.nodes, self.force, self.shares); }
 };
 
 /// Force per rest area, Pa, in a fixed direction, on faces of the boundary.
 struct TractionLoad {
-    FaceSet faces;
-    Vec3 traction;
+    FaceSet faces = {};
+    Vec3 traction = Vec3::Zero();
+    static void archive(auto& ar, auto& self) { ar(self.faces, self.traction); }
 };
 
 /// Pressure, Pa, positive inwards, on the current area along the current normal.
 struct PressureLoad {
-    FaceSet faces;
-    double pressure;
+    FaceSet faces = {};
+    double pressure = 0.0;
+    static void archive(auto& ar, auto& self) { ar(self.faces, self.pressure); }
 };
 
 /// Force per rest volume, N/m3.
 struct BodyLoad {
-    ElementSet elements;
-    Vec3 force;
+    ElementSet elements = {};
+    Vec3 force = Vec3::Zero();
+    static void archive(auto& ar, auto& self) { ar(self.elements, self.force); }
 };
 
 struct Load {
-    std::string name;
-    std::variant<NodalLoad, TractionLoad, PressureLoad, BodyLoad> kind;
-    TimeCurve<double> factor;  ///< scales the load in time; empty: 1
+    std::string name = {};
+    std::variant<NodalLoad, TractionLoad, PressureLoad, BodyLoad> kind = {};
+    TimeCurve<double> factor = {};  ///< scales the load in time; empty: 1
+
+    /// Throws InputError if it acts on what cannot be in the mesh.
+    void require_fit(const topology::Mesh& mesh) const;
+    static void archive(auto& ar, auto& self) { ar(self.name, self.kind, self.factor); }
 };
 
 /// What the loads need to know of the body.
@@ -74,7 +82,15 @@ struct PressedCorner {
 /// All loads on a body.
 class Loads {
   public:
+    /// Nodal loads that have shares keep them: those of a body that goes on.
     Loads(std::vector<Load> loads, const LoadedBody& body);
+
+    std::span<const Load> all() const { return loads_; }
+    void add(Load load, const LoadedBody& body);
+    void remove(std::size_t i);
+    void set_factor(std::size_t i, TimeCurve<double> factor) {
+        loads_[i].factor = std::move(factor);
+    }
 
     /// Finds what nodes bear, if there were edits: before add and visit_tangents.
     /// Cost: nothing without edits, else in proportion to the selections.
@@ -98,6 +114,7 @@ class Loads {
                std::span<const topology::NodeId> touched);
 
   private:
+    static void share_out(Load& load, const LoadedBody& body);
     /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
     struct Burden {
         std::vector<NodeShare> shares;

@@ -21,6 +21,24 @@ double diagonal(const topology::Mesh& mesh) {
     return box.diagonal().norm();
 }
 
+/// Throws InputError, as the next one does.
+MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh,
+                          topology::ArchiveReader& ar) {
+    const bool has_fibres = !table.fibres.empty();
+    ar(table.fibres);
+    if (table.fibres.size() != (has_fibres ? mesh.element_capacity() : 0))
+        throw InputError("the fibres are those of another body");
+    return table;
+}
+
+Surroundings read_surroundings(const topology::Mesh& mesh, topology::ArchiveReader& ar) {
+    Surroundings surroundings;
+    ar(surroundings.gravity, surroundings.damping, surroundings.supports, surroundings.loads);
+    for (const Support& support : surroundings.supports) support.require_fit(mesh);
+    for (const Load& load : surroundings.loads) load.require_fit(mesh);
+    return surroundings;
+}
+
 }  // namespace
 
 Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings)
@@ -180,7 +198,7 @@ Model::NodeStep Model::support_node(std::size_t n, double time, double dt, const
     const auto& support_of = *supports_.of_node(n);
     const double mass = masses_[n];
     const Vec3 &x = positions_[n], &v = velocities_[n];
-    supports_.place(support_of, mesh_.rest_positions()[n], time + dt, step.x);
+    supports_.place(support_of, mesh_, NodeId(n), time + dt, step.x);
     for (int c = 0; c < 3; ++c) {
         const int s = support_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
@@ -368,7 +386,7 @@ void Model::apply(const ChangeSet& changes) {
                          std::to_string(epoch_) + " and the mesh at " +
                          std::to_string(mesh_.epoch()));
     epoch_ = changes.epoch_after;
-    ++num_edits_;
+    ++structure_version_;
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
     history_.apply(changes);
@@ -418,25 +436,58 @@ void Model::apply(const ChangeSet& changes) {
     loads_.apply(changes, loaded_body(), touched);
 }
 
-void Model::save(topology::ArchiveWriter& ar) const {
-    const auto history = history_.values();
-    ar(positions_, velocities_, std::vector<double>(history.begin(), history.end()), reactions_,
-       external_work_, dissipated_energy_, largest_move_);
+void Model::add_support(Support support) {
+    supports_.add(mesh_, std::move(support));
+    reactions_.emplace_back();
+    ++structure_version_;
 }
 
-void Model::restore(topology::ArchiveReader& ar, double time) {
+void Model::remove_support(std::size_t i) {
+    supports_.remove(mesh_, i);
+    reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
+    ++structure_version_;
+}
+
+void Model::add_load(Load load) {
+    loads_.add(std::move(load), loaded_body());
+    ++structure_version_;
+}
+
+void Model::remove_load(std::size_t i) {
+    loads_.remove(i);
+    ++structure_version_;
+}
+
+void Model::save(topology::ArchiveWriter& ar) const {
+    const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
+    ar(copy(fibres()), gravity_, damping_, copy(supports_.all()), copy(loads_.all()));
+    ar(positions_, velocities_, copy(history_.values()), reactions_, external_work_,
+       dissipated_energy_, largest_move_, body_size_, structure_version_, merges_);
+}
+
+Model::Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
+             double time)
+    // Braces, as they read the archive from left to right.
+    : Model{mesh, read_fibres(std::move(table), mesh, ar), read_surroundings(mesh, ar)} {
+    restore_state(ar, time);
+}
+
+void Model::restore_state(topology::ArchiveReader& ar, double time) {
     std::vector<Vec3> positions, velocities;
     std::vector<double> history;
     std::vector<Reaction> reactions;
-    ar(positions, velocities, history, reactions, external_work_, dissipated_energy_,
-       largest_move_);
+    ar(positions, velocities, history, reactions, external_work_, dissipated_energy_, largest_move_,
+       body_size_, structure_version_, merges_);
+    const auto is_there = [&](NodeId n) { return n.is_valid() && n.index() < masses_.size(); };
     if (positions.size() != positions_.size() || velocities.size() != velocities_.size() ||
-        history.size() != history_.values().size() || reactions.size() != reactions_.size())
+        history.size() != history_.values().size() || reactions.size() != reactions_.size() ||
+        !std::ranges::all_of(merges_, [&](const auto& row) {
+            return is_there(row.first) && is_there(row.second.survivor);
+        }))
         throw InputError("the state is that of another body");
     const auto is_finite = [](const Vec3& v) { return v.allFinite(); };
-    if (!std::all_of(positions.begin(), positions.end(), is_finite) ||
-        !std::all_of(velocities.begin(), velocities.end(), is_finite) ||
-        !std::all_of(history.begin(), history.end(), [](double x) { return std::isfinite(x); }))
+    if (!std::ranges::all_of(positions, is_finite) || !std::ranges::all_of(velocities, is_finite) ||
+        !std::ranges::all_of(history, [](double x) { return std::isfinite(x); }))
         throw InputError("the state is not finite");
     positions_ = std::move(positions);
     velocities_ = std::move(velocities);

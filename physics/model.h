@@ -46,6 +46,18 @@ struct Totals {
     }
 };
 
+/// What a constraint does to the body: force, N, and moment about the constraint's point, N m.
+struct Reaction {
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+
+    Reaction& operator+=(const Reaction& o) {
+        force += o.force;
+        moment += o.moment;
+        return *this;
+    }
+    static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
+};
+
 /// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
 /// node id; slots of dead nodes keep their last values, so that an undone edit finds them again.
 class Model {
@@ -54,6 +66,14 @@ class Model {
     /// @param mesh must outlive the model, which reads it and never changes it
     /// Throws InputError: see ElementStore, Supports.
     Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings = {});
+
+    /// Goes on from what save() has written of a model of this mesh.
+    /// @param table  of that model; its fibres come from the archive
+    /// @param time   of the state, s
+    /// To the bit the same model then.
+    /// Throws InputError for the data of another mesh. Cost: that of a new model.
+    Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
+          double time);
 
     /// How many threads compute, at least 1; of no influence on any result. At first one.
     void set_num_threads(int n) { workers_ = Workers(n); }
@@ -119,12 +139,28 @@ class Model {
     /// the stars touched.
     void apply(const topology::ChangeSet& changes);
 
-    /// What neither the mesh nor its edits tell: state, history, work, reactions.
+    /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
+    /// prescribes what another one does. Cost: O(#nodes) of it.
+    void add_support(Support support);
+    /// Removes constraint `i`; those behind it move up. Cost: O(n) in the nodes of all constraints.
+    void remove_support(std::size_t i);
+    /// Gives the grip of constraint `i` another way; see Support::grip.
+    void set_grip(std::size_t i, TimeCurve<Pose> grip) { supports_.set_grip(i, std::move(grip)); }
+
+    /// Adds a load at the end of the list. Forces are those of before until compute_forces is
+    /// called, as with the next two.
+    void add_load(Load load);
+    /// Removes load `i`; those behind it move up.
+    void remove_load(std::size_t i);
+    /// Gives load `i` another factor of time.
+    void set_load_factor(std::size_t i, TimeCurve<double> factor) {
+        loads_.set_factor(i, std::move(factor));
+    }
+    const Loads& loads() const { return loads_; }
+
+    /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
+    /// constraints and loads. Cost: O(n).
     void save(topology::ArchiveWriter& ar) const;
-    /// Goes on from what a model saved that has followed the same edits of the same mesh; `time` is
-    /// that of the state. To the bit the same body then, but for what undoes merges.
-    /// Throws InputError for the data of another mesh.
-    void restore(topology::ArchiveReader& ar, double time);
 
     const ElementStore& elements() const { return elements_; }
     const Supports& supports() const { return supports_; }
@@ -142,8 +178,9 @@ class Model {
     }
     /// J; of viscous elements that of the long-time moduli.
     double elastic_energy() const;
-    /// How many edits it has followed, undone ones counted twice.
-    std::uint64_t num_edits() const { return num_edits_; }
+    /// Grows with every change of what the body consists of: edits (undone ones count twice),
+    /// constraints and loads that are added or removed.
+    std::uint64_t structure_version() const { return structure_version_; }
 
     /// How far the fastest node went in the last step, m.
     double largest_move() const { return largest_move_; }
@@ -193,10 +230,8 @@ class Model {
 
     std::size_t num_supports() const { return supports_.size(); }
     const std::string& support_name(std::size_t i) const { return supports_.name(i); }
-    /// Force of support `i` on the body during the last step, N.
-    const Vec3& reaction(std::size_t i) const { return reactions_[i].force; }
-    /// Moment of that force about the support's point, N m.
-    const Vec3& reaction_moment(std::size_t i) const { return reactions_[i].moment; }
+    /// What each support did to the body during the last step.
+    std::span<const Reaction> reactions() const { return reactions_; }
 
     const topology::Mesh& mesh() const { return mesh_; }
 
@@ -206,18 +241,10 @@ class Model {
     struct Merge {
         NodeId survivor;
         Vec3 position_before, velocity_before, position_after, velocity_after;
-    };
-
-    /// Force (N) and moment about its point (N m) of a support.
-    struct Reaction {
-        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-
-        Reaction& operator+=(const Reaction& o) {
-            force += o.force;
-            moment += o.moment;
-            return *this;
+        static void archive(auto& ar, auto& self) {
+            ar(self.survivor, self.position_before, self.velocity_before, self.position_after,
+               self.velocity_after);
         }
-        static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
     };
 
     struct NodeStep {
@@ -245,6 +272,7 @@ class Model {
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
                           std::span<Vec3> forces) const;
 
+    void restore_state(topology::ArchiveReader& ar, double time);
     NodeSums sums_of(NodeRange range) const;
     LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
     void resize(std::size_t num_nodes);
@@ -262,7 +290,7 @@ class Model {
 
     const topology::Mesh& mesh_;
     std::uint64_t epoch_;
-    std::uint64_t num_edits_ = 0;
+    std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;
     ViscousHistory history_;

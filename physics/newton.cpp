@@ -44,7 +44,7 @@ struct NewtonSolver::Forces {
 };
 
 void NewtonSolver::follow(const Model& model) {
-    if (num_edits_ == model.num_edits()) return;
+    if (structure_version_ == model.structure_version()) return;
     if (pins_free_pieces_)
         free_pieces_ = find_free_pieces(model.mesh(), model.positions(), model.supports());
     prepare(model);
@@ -62,15 +62,15 @@ void NewtonSolver::prepare(const Model& model) {
     tangent_.set_pattern(mesh, is_free_);
     for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_, &increments_})
         scratch->assign(mesh.node_capacity(), Vec3::Zero());
-    num_edits_ = model.num_edits();
+    structure_version_ = model.structure_version();
 }
 
 void NewtonSolver::save(topology::ArchiveWriter& ar) const {
-    ar(num_edits_.value_or(never), free_pieces_);
+    ar(structure_version_.value_or(never), free_pieces_);
 }
 
 void NewtonSolver::restore(topology::ArchiveReader& ar, const Model& model) {
-    const auto num_edits = ar.read<std::uint64_t>();
+    const auto structure_version = ar.read<std::uint64_t>();
     ar(free_pieces_);
     const auto is_there = [&](topology::NodeId n) {
         return n.is_valid() && n.index() < model.mesh().node_capacity();
@@ -82,7 +82,7 @@ void NewtonSolver::restore(topology::ArchiveReader& ar, const Model& model) {
                           });
         if (!fits) throw InputError("it pins nodes that are not there");
     }
-    if (num_edits == model.num_edits()) prepare(model);
+    if (structure_version == model.structure_version()) prepare(model);
 }
 
 NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProblem& problem,
@@ -181,7 +181,7 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
         if (const auto* support_of = model.supports().of_node(n);
             support_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.supports().place(*support_of, model.mesh().rest_positions()[n], time, target);
+            model.supports().place(*support_of, model.mesh(), topology::NodeId(n), time, target);
             increments_[n] = target - x[n];
             supports_move = supports_move || !increments_[n].isZero(0.0);
         }

@@ -77,7 +77,7 @@ class NewtonSolver {
                          const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
     bool pins_free_pieces_;
-    std::optional<std::uint64_t> num_edits_;  // of the model, when the pattern was found
+    std::optional<std::uint64_t> structure_version_;  // of the model, when the pattern was found
     std::vector<std::array<bool, 3>> is_free_;
     std::vector<FreePiece> free_pieces_;
     TangentMatrix tangent_;

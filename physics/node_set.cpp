@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "topology/error.h"
+
 namespace incise::physics {
 
 using topology::NodeId;
@@ -34,6 +36,15 @@ void NodeSet::apply(const topology::ChangeSet& changes) {
         const bool is_copy = record.num_sources == 1;
         members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : NodeId()});
     }
+}
+
+void NodeSet::require_fit(const topology::Mesh& mesh) const {
+    const auto is_there = [&](NodeId n) { return n.index() < mesh.node_capacity(); };
+    for (const Member& m : members_)
+        if (!m.node.is_valid() || !is_there(m.node))
+            throw InputError("a selection has nodes that are not there");
+    if (!std::ranges::is_sorted(members_, std::ranges::less_equal(), &Member::node))
+        throw InputError("a selection of nodes is out of order");
 }
 
 }  // namespace incise::physics

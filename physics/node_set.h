@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "topology/change_set.h"
+#include "topology/mesh.h"
 #include "topology/types.h"
 
 namespace incise::physics {
@@ -19,9 +20,11 @@ class NodeSet {
         /// The member of the first selection that it is, or is a copy of; invalid for one born
         /// between others and for its copies.
         topology::NodeId origin;
+        static void archive(auto& ar, auto& self) { ar(self.node, self.origin); }
     };
 
-    explicit NodeSet(std::vector<topology::NodeId> nodes = {});
+    NodeSet() = default;
+    explicit NodeSet(std::vector<topology::NodeId> nodes);
 
     /// In ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }
@@ -30,6 +33,10 @@ class NodeSet {
     bool contains(topology::NodeId n) const { return find(n) != nullptr; }
 
     void apply(const topology::ChangeSet& changes);
+
+    /// Throws InputError if a member is no node of the mesh.
+    void require_fit(const topology::Mesh& mesh) const;
+    static void archive(auto& ar, auto& self) { ar(self.members_); }
 
   private:
     std::vector<Member> members_;

@@ -17,7 +17,7 @@ constexpr int few_iterations = 10;                   // the next increment may b
 }  // namespace
 
 bool Statics::settle(Model& model, double time) {
-    if (num_edits_ == model.num_edits()) return false;
+    if (structure_version_ == model.structure_version()) return false;
     step(model, time, 0.0);
     return true;
 }
@@ -32,7 +32,7 @@ void Statics::require_equilibrium_of_free_pieces(const Model& model, double time
 }
 
 void Statics::step(Model& model, double time, double dt) {
-    num_edits_ = model.num_edits();
+    structure_version_ = model.structure_version();
     newton_.follow(model);
     model.begin_step();
     x_.assign(model.positions().begin(), model.positions().end());

@@ -11,11 +11,47 @@ namespace incise::physics {
 
 using topology::NodeId;
 
-Vec3 Support::target(const Vec3& X, double time) const {
+Vec3 Support::target(const topology::Mesh& mesh, NodeId n, double time) const {
+    if (!grip.is_empty()) return grip.at(time).to_world(gripped.at(n));
+    const Vec3& X = mesh.rest_position(n);
     Vec3 x = X;
     if (!angle.is_empty()) x = point + Eigen::AngleAxisd(angle.at(time), axis) * (X - point);
     if (!displacement.is_empty()) x += displacement.at(time);
     return x;
+}
+
+void Support::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
+    nodes.apply(changes);
+    if (grip.is_empty()) return;
+    gripped.erase(gripped.lower_bound(NodeId(changes.node_capacity_after)), gripped.end());
+    for (const topology::NodeRecord& record : changes.nodes_added) {
+        if (gripped.contains(record.id) || !nodes.contains(record.id)) continue;
+        Vec3 local = Vec3::Zero();
+        for (int s = 0; s < record.num_sources; ++s) {
+            const auto& source = record.sources[static_cast<std::size_t>(s)];
+            local += source.weight * gripped.at(source.node);
+        }
+        gripped[record.id] = local;
+    }
+}
+
+void Support::require_fit(const topology::Mesh& mesh) const {
+    nodes.require_fit(mesh);
+    if (grip.is_empty()) return;
+    for (const auto& [time, pose] : grip.keys())
+        if (!pose.is_sound()) throw InputError("the pose of a grip is none");
+    for (const NodeSet::Member& member : nodes.members())
+        if (!gripped.contains(member.node)) throw InputError("a grip misses one of its nodes");
+}
+
+Support make_grip(std::string name, std::vector<NodeId> nodes, std::span<const Vec3> positions,
+                  const Pose& pose) {
+    Support support;
+    support.name = std::move(name);
+    for (const NodeId n : nodes) support.gripped[n] = pose.to_tool(positions[n.index()]);
+    support.nodes = NodeSet(std::move(nodes));
+    support.grip = TimeCurve<Pose>({{0.0, pose}});
+    return support;
 }
 
 std::vector<SupportConflict> find_conflicts(const topology::Mesh& mesh,
@@ -49,9 +85,30 @@ std::string describe(const SupportConflict& conflict, const topology::Mesh& mesh
 
 Supports::Supports(const topology::Mesh& mesh, std::vector<Support> supports)
     : supports_(std::move(supports)) {
-    row_of_node_.resize(mesh.node_capacity(), -1);
+    index_all(mesh);
+}
+
+void Supports::index_all(const topology::Mesh& mesh) {
+    rows_.clear();
+    row_of_node_.assign(mesh.node_capacity(), -1);
     for (const Support& support : supports_)
         for (const NodeSet::Member& member : support.nodes.members()) index(mesh, member.node);
+}
+
+void Supports::add(const topology::Mesh& mesh, Support support) {
+    supports_.push_back(std::move(support));
+    try {
+        index_all(mesh);
+    } catch (const InputError&) {
+        supports_.pop_back();
+        index_all(mesh);
+        throw;
+    }
+}
+
+void Supports::remove(const topology::Mesh& mesh, std::size_t i) {
+    supports_.erase(supports_.begin() + static_cast<std::ptrdiff_t>(i));
+    index_all(mesh);
 }
 
 void Supports::index(const topology::Mesh& mesh, NodeId n) {
@@ -74,21 +131,21 @@ void Supports::index(const topology::Mesh& mesh, NodeId n) {
     if (place == rows_.end()) rows_.push_back(row);
 }
 
-void Supports::place(const std::array<int, 3>& support_of, const Vec3& X, double time,
-                     Vec3& x) const {
+void Supports::place(const std::array<int, 3>& support_of, const topology::Mesh& mesh, NodeId n,
+                     double time, Vec3& x) const {
     int last = -1;
-    Vec3 target = X;
+    Vec3 target = Vec3::Zero();
     for (int c = 0; c < 3; ++c) {
         const int s = support_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
-        if (s != last) target = supports_[static_cast<std::size_t>(s)].target(X, time);
+        if (s != last) target = supports_[static_cast<std::size_t>(s)].target(mesh, n, time);
         last = s;
         x[c] = target[c];
     }
 }
 
 void Supports::apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-    for (Support& support : supports_) support.nodes.apply(changes);
+    for (Support& support : supports_) support.apply(mesh, changes);
     row_of_node_.resize(changes.node_capacity_after, -1);
     for (const auto* records : {&changes.nodes_added, &changes.nodes_removed})
         for (const topology::NodeRecord& record : *records)

@@ -8,7 +8,13 @@
 
 namespace incise::physics {
 
-/// Piecewise linear in time, constant before the first key and after the last.
+/// Between a (s = 0) and b (s = 1). Poses have one of their own: topology/pose.h.
+template <class Value>
+Value interpolate(const Value& a, const Value& b, double s) {
+    return a + s * (b - a);
+}
+
+/// Piecewise linear in time (see interpolate), constant before the first key and after the last.
 template <class Value>
 class TimeCurve {
   public:
@@ -28,9 +34,10 @@ class TimeCurve {
         if (after == keys_.end()) return keys_.back().second;
         const auto& [t0, v0] = *(after - 1);
         const auto& [t1, v1] = *after;
-        const double s = (time - t0) / (t1 - t0);
-        return v0 + s * (v1 - v0);
+        return interpolate(v0, v1, (time - t0) / (t1 - t0));
     }
+
+    static void archive(auto& ar, auto& self) { ar(self.keys_); }
 
   private:
     std::vector<std::pair<double, Value>> keys_;

@@ -388,18 +388,18 @@ std::string place_of_material(const Scenario& scenario, int region) {
 }
 
 /// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
-std::string out_of_reach(const Tool& tool, const cutting::Box& body) {
+std::string out_of_reach(const ScriptedTool& tool, const cutting::Box& body) {
     const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
     std::ostringstream text;
-    text << "tool '" << tool.name() << "' touches nothing where the body rests, between "
+    text << "tool '" << tool.name << "' touches nothing where the body rests, between "
          << body.min().transpose().format(list) << " and " << body.max().transpose().format(list)
          << "; check its coordinates and units, unless the tissue moves to it";
     return text.str();
 }
 
 /// @param mesh  without one, only what needs none is checked: the files of surfaces
-std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
-                              BodyProblems& problems, std::vector<std::string>& warnings) {
+std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
+                                      BodyProblems& problems, std::vector<std::string>& warnings) {
     cutting::Box body;
     if (mesh)
         for (const Vec3& x : mesh->rest_positions()) body.extend(x);
@@ -407,7 +407,7 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
     const double end_time = scenario.dynamics.end_time > 0.0
                                 ? scenario.dynamics.end_time
                                 : std::numeric_limits<double>::infinity();
-    std::vector<Tool> tools;
+    std::vector<ScriptedTool> tools;
     std::vector<std::string> idle;
     for (ToolSpec spec : scenario.tools) {
         bool suits_mesh = false;
@@ -416,15 +416,15 @@ std::vector<Tool> build_tools(const Scenario& scenario, const topology::Mesh* me
                 spec = with_mode(spec, *mesh);
                 suits_mesh = true;
             });
-        const auto* cut = std::get_if<Cut>(&spec.kind);
+        const auto* cut = std::get_if<CutSpec>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
-            tools.emplace_back(spec, warnings);
+            tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
-                tools.back().require_divisible(*mesh, end_time);
-                if (const auto near = tools.back().warning_of_near_misses(*mesh, end_time))
+                require_divisible(tools.back(), *mesh, end_time);
+                if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
                     warnings.push_back(placed(spec.place, *near));
             }
-            if (mesh && !spec.path.empty() && !tools.back().may_meet(body))
+            if (mesh && !spec.path.empty() && !may_meet(tools.back(), body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });
     }
@@ -437,7 +437,7 @@ struct Parts {
     std::optional<SourceMesh> source;
     std::optional<physics::MaterialTable> materials;
     physics::Surroundings surroundings;
-    std::vector<Tool> tools;
+    std::vector<ScriptedTool> tools;
     std::vector<std::string> warnings;
     BodyProblems problems;
 };
@@ -488,6 +488,26 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           physics::Surroundings surroundings) {
     try {
         return physics::Model(mesh, materials, std::move(surroundings));
+    } catch (const physics::UnsuitableMaterial& error) {
+        throw BodyError(place_of_material(scenario, error.region), error.what());
+    }
+}
+
+World make_world(const Scenario& scenario, topology::Mesh mesh, physics::MaterialTable materials,
+                 physics::Surroundings surroundings) {
+    const DynamicsSpec& dynamics = scenario.dynamics;
+    WorldDef def{std::move(mesh), std::move(materials.materials), std::move(materials.of_region),
+                 std::move(materials.fibres), materials.precision};
+    def.gravity = surroundings.gravity;
+    def.damping = surroundings.damping;
+    def.constraints = std::move(surroundings.supports);
+    def.loads = std::move(surroundings.loads);
+    if (dynamics.mode == Mode::statics)
+        def.solver = Solver::statics;
+    else if (dynamics.integrator == TimeIntegrator::implicit_euler)
+        def.solver = Solver::implicit_euler;
+    try {
+        return World(std::move(def));
     } catch (const physics::UnsuitableMaterial& error) {
         throw BodyError(place_of_material(scenario, error.region), error.what());
     }

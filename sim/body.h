@@ -8,7 +8,8 @@
 
 #include "physics/model.h"
 #include "sim/scenario.h"
-#include "sim/tool.h"
+#include "sim/tool_build.h"
+#include "sim/world.h"
 #include "topology/mesh.h"
 
 namespace incise::sim {
@@ -49,12 +50,16 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
                           physics::Surroundings surroundings);
 
+/// The world of it, without tools. Throws as make_model.
+World make_world(const Scenario& scenario, topology::Mesh mesh, physics::MaterialTable materials,
+                 physics::Surroundings surroundings);
+
 /// What a scenario describes, at rest.
 struct Body {
     topology::Mesh mesh;
     physics::MaterialTable materials;
     physics::Surroundings surroundings;
-    std::vector<Tool> tools;            ///< not prepared yet
+    std::vector<ScriptedTool> tools;
     std::vector<std::string> warnings;  ///< with the place or file in front
 };
 

@@ -11,11 +11,10 @@
 #include <sstream>
 
 #include "cutting/cut_plan.h"
-#include "cutting/element_boxes.h"
+#include "cutting/cutter.h"
 #include "cutting/plane.h"
 #include "cutting/separator.h"
 #include "cutting/step_length.h"
-#include "cutting/swept_edge.h"
 #include "cutting/triangle_surface.h"
 #include "cutting/undividable.h"
 #include "topology/error.h"
@@ -24,7 +23,6 @@
 
 namespace incise::sim {
 
-using cutting::CutFront;
 using cutting::TissueMotion;
 using topology::CellKind;
 using topology::ElementId;
@@ -207,15 +205,15 @@ void add(const CutCounts& counts, CutCounts& total) {
     }
 }
 
-class Cutter {
+/// Cuts with one tool after the other, and counts what each does.
+class CountingCutter {
   public:
-    Cutter(Mesh& mesh, const GeometricCutOptions& options)
+    CountingCutter(Mesh& mesh, const GeometricCutOptions& options)
         : mesh_(mesh),
-          boxes_(mesh, mesh.rest_positions()),
           mode_(options.mode),
-          split_options_{options.snap, {}} {
-        if (mode_ == CutMode::split) split_options_.uncut = cutting::uncut_body(mesh);
-    }
+          snap_(options.snap),
+          cutter_(mesh, mesh.rest_positions(),
+                  mode_ == CutMode::split ? cutting::uncut_body(mesh) : cutting::UncutBody{}) {}
 
     CutCounts apply(const CutTool& tool) {
         counts_ = {};
@@ -251,29 +249,31 @@ class Cutter {
     }
 
     void cut(const SweepCut& sweep) {
-        CutFront front;
+        const cutting::CutId cut = cutter_.begin_cut(snap_);
         for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p) {
             const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
-            if (mode_ == CutMode::split) {
-                split(cutting::SweptEdge(before, after), front);
-            } else {
-                const auto rest = mesh_.rest_positions();
+            const auto rest = mesh_.rest_positions();
+            if (mode_ == CutMode::split)
+                split_by([&](std::span<const Vec3> positions) {
+                    return cutter_.split(cut, mesh_, positions, before, after);
+                });
+            else
                 open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
-            }
         }
-        if (!front.is_empty()) finish(end_of(sweep), front);
+        if (cutter_.is_in_tissue(cut))
+            split_by([&](std::span<const Vec3> positions) {
+                return cutter_.end_cut(cut, mesh_, positions, end_of(sweep));
+            });
+        cutter_.remove_cut(cut);
         if (counts_.faces_opened == 0) return;
         const cutting::TriangleSurface surface(swept_surface(sweep));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 
     void cut(const ShapeRemoval& removal) {
-        const auto rest = mesh_.rest_positions();
-        const cutting::Pose pose{Eigen::Quaterniond::Identity(), removal.at};
-        const auto covered =
-            cutting::covered_elements({mesh_, rest, rest}, removal.shape, pose, pose);
-        const auto changes = cutting::execute({covered, {}}, mesh_);
-        scars_.follow(changes);
+        const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
+        const auto changes =
+            cutter_.carve(mesh_, mesh_.rest_positions(), removal.shape, pose, pose).changes;
         long double removed = 0.0;
         for (const topology::ElementRecord& record : changes.elements_removed)
             removed += volume_of(mesh_, record.kind, record.corners);
@@ -282,30 +282,19 @@ class Cutter {
     }
 
     void split(const cutting::CutSurface& surface) {
-        CutFront front;
-        split(surface, front);
-    }
-
-    void split(const cutting::CutSurface& surface, CutFront& front) {
-        carry_out([&](const TissueMotion& tissue) {
-            return cutting::split(mesh_, tissue, surface, front, split_options_, scars_);
+        split_by([&](std::span<const Vec3> positions) {
+            return cutter_.split(mesh_, positions, surface, snap_);
         });
     }
 
-    void finish(const cutting::BladeEnd& blade, CutFront& front) {
-        carry_out([&](const TissueMotion& tissue) {
-            return cutting::finish(mesh_, tissue, blade, front, split_options_, scars_);
-        });
-    }
-
-    /// edit(tissue) returns a cutting::Split.
+    /// edit(positions) returns a cutting::Split.
     template <class Edit>
-    void carry_out(Edit edit) {
+    void split_by(Edit edit) {
         // A copy: the split adds positions to those of the mesh.
         const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
-        const cutting::Split result = edit(TissueMotion{mesh_, rest, rest, &boxes_});
+        const cutting::Split result = edit(rest);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;
@@ -351,7 +340,7 @@ class Cutter {
     }
 
     void book(const topology::ChangeSet& changes) {
-        boxes_.follow(mesh_, mesh_.rest_positions(), changes);
+        cutter_.apply(mesh_, mesh_.rest_positions(), changes);
         counts_.elements_added += changes.elements_added.size();
         counts_.elements_removed += changes.elements_removed.size();
         counts_.nodes_added += changes.nodes_added.size();
@@ -391,10 +380,9 @@ class Cutter {
     }
 
     Mesh& mesh_;
-    cutting::ElementBoxes boxes_;
     const CutMode mode_;
-    cutting::SplitOptions split_options_;
-    cutting::Scars scars_;  // of all splits so far
+    const double snap_;
+    cutting::Cutter cutter_;
     // Of the tool at work.
     CutCounts counts_;
     struct {
@@ -464,7 +452,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options) {
     GeometricCutReport report;
     report.before = describe(mesh);
-    Cutter cutter(mesh, options);
+    CountingCutter cutter(mesh, options);
     for (const CutTool& tool : tools) {
         try {
             const CutCounts counts = cutter.apply(tool);

@@ -11,12 +11,14 @@
 
 #include "cutting/carver.h"
 #include "cutting/splitter.h"
-#include "sim/scenario.h"
+#include "cutting/tool.h"
 #include "topology/mesh.h"
 #include "topology/surface_data.h"
 #include "topology/types.h"
 
 namespace incise::sim {
+
+using cutting::CutMode;
 
 /// Tools, in the mesh's unit of length (m).
 struct PlaneCut {

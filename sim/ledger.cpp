@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "topology/error.h"
 #include "topology/geometry.h"
 #include "topology/mesh_metrics.h"
 
@@ -58,7 +57,8 @@ Ledger::Ledger(const physics::Model& model)
       counts_(count()),
       pieces_(model.mesh()),
       initial_min_altitude_(least_altitude(model.mesh())),
-      initial_(account()) {}
+      initial_(account()),
+      last_(initial_) {}
 
 Ledger::Counts Ledger::count() const {
     const topology::Mesh& mesh = model_.mesh();
@@ -66,13 +66,20 @@ Ledger::Counts Ledger::count() const {
 }
 
 Account Ledger::account() const {
-    return {counts_.nodes, counts_.elements, pieces_.value(), model_.totals(),
-            model_.stable_step()};
+    const auto reactions = model_.reactions();
+    return {counts_.nodes,
+            counts_.elements,
+            pieces_.value(),
+            model_.totals(),
+            model_.stable_step(),
+            model_.external_work(),
+            model_.dissipated_energy(),
+            model_.min_volume_ratio(),
+            {reactions.begin(), reactions.end()}};
 }
 
-const EditRecord& Ledger::record(double time, std::uint64_t step, const std::string& tool,
-                                 const cutting::Split& done, const Account& before,
-                                 double mass_removed) {
+EditRecord Ledger::record(double time, std::uint64_t step, const std::string& tool,
+                          const cutting::Split& done, const Account& before, double mass_removed) {
     const topology::ChangeSet& changes = done.changes;
     const Divided divided = divided_elements(model_.mesh(), changes);
     EditRecord edit;
@@ -96,35 +103,14 @@ const EditRecord& Ledger::record(double time, std::uint64_t step, const std::str
     counts_ = count();
     pieces_.follow(model_.mesh(), changes);
     assert(pieces_.value() == topology::components(model_.mesh()).count);
-    edit.after = account();
-    add(std::move(edit));
-    return edits_.back();
-}
-
-void Ledger::add(EditRecord edit) {
+    edit.after = last_ = account();
     const auto energy = [](const Account& a) {
         return a.totals.kinetic_energy + a.totals.elastic_energy;
     };
-    mass_removed_ += edit.mass_removed;
+    ++num_edits_;
+    mass_removed_ += mass_removed;
     energy_removed_ += energy(edit.before) - energy(edit.after);
-    edits_.push_back(std::move(edit));
-}
-
-void Ledger::restore(topology::ArchiveReader& ar, const std::vector<EditTrace>& traces) {
-    auto edits = ar.read<std::vector<EditRecord>>();
-    const auto trace_of = [](const EditRecord& edit) {
-        return EditTrace{edit.elements_removed, edit.elements_added, edit.nodes_added,
-                         edit.nodes_removed,    edit.mass_removed,   edit.after.nodes,
-                         edit.after.elements};
-    };
-    if (!std::equal(edits.begin(), edits.end(), traces.begin(), traces.end(),
-                    [&](const EditRecord& edit, const EditTrace& trace) {
-                        return trace_of(edit) == trace;
-                    }))
-        throw InputError("its books are not of its edits");
-    for (EditRecord& edit : edits) add(std::move(edit));
-    counts_ = count();
-    pieces_ = topology::PieceCount(model_.mesh());
+    return edit;
 }
 
 double Ledger::mass_error() const {

@@ -21,8 +21,12 @@ struct Account {
     int components = 0;
     physics::Totals totals;
     double stable_step = 0.0;
+    double external_work = 0.0, dissipated_energy = 0.0;  ///< J, since the start
+    double min_volume_ratio = 0.0;                        ///< of all elements, J
+    std::vector<physics::Reaction> reactions;             ///< of each constraint, in the last step
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes, self.elements, self.components, self.totals, self.stable_step);
+        ar(self.nodes, self.elements, self.components, self.totals, self.stable_step,
+           self.external_work, self.dissipated_energy, self.min_volume_ratio, self.reactions);
     }
 };
 
@@ -54,14 +58,7 @@ struct EditRecord {
     }
 };
 
-/// What the mesh and the edits of it tell of one of them.
-struct EditTrace {
-    std::size_t elements_removed, elements_added, nodes_added, nodes_removed;
-    double mass_removed;
-    std::size_t nodes, elements;  ///< after it
-    bool operator==(const EditTrace&) const = default;
-};
-
+/// What came in, what went out, and what there is: adds up over all edits.
 class Ledger {
   public:
     explicit Ledger(const physics::Model& model);
@@ -69,18 +66,14 @@ class Ledger {
     /// The body as the model has it, edits counted up to the last one booked: between an edit of
     /// the mesh and the model's following it, the body of before. Cost: O(#nodes + #elements).
     Account account() const;
-    /// Books an edit; called after the model has followed it.
-    const EditRecord& record(double time, std::uint64_t step, const std::string& tool,
-                             const cutting::Split& done, const Account& before,
-                             double mass_removed);
+    /// The body after the last edit; at the start if there was none.
+    const Account& last() const { return last_; }
+    /// Books an edit; called after the model has followed it. Returns its record.
+    EditRecord record(double time, std::uint64_t step, const std::string& tool,
+                      const cutting::Split& done, const Account& before, double mass_removed);
 
-    /// What it has booked. The rest it has from the model: it restores after that.
-    void save(topology::ArchiveWriter& ar) const { ar(edits_); }
-    /// @param traces  of the edits that the model has followed
-    /// Throws InputError if the records are not of these.
-    void restore(topology::ArchiveReader& ar, const std::vector<EditTrace>& traces);
+    std::size_t num_edits() const { return num_edits_; }
 
-    const std::vector<EditRecord>& edits() const { return edits_; }
     const Account& initial() const { return initial_; }
 
     /// |mass now + mass removed - mass at the start| over that at the start.
@@ -91,19 +84,26 @@ class Ledger {
     /// order of the step: the integrator's energy swings with it.
     double energy_error() const;
 
+    void save(topology::ArchiveWriter& ar) const { list(ar, *this); }
+    /// Goes on from what was saved: on a ledger of the model as it was then.
+    void restore(topology::ArchiveReader& ar) { list(ar, *this); }
+
   private:
+    static void list(auto& ar, auto& self) {
+        ar(self.initial_min_altitude_, self.initial_, self.last_, self.num_edits_,
+           self.mass_removed_, self.energy_removed_);
+    }
     struct Counts {
         std::size_t nodes, elements;
     };
     Counts count() const;
-    void add(EditRecord edit);
 
     const physics::Model& model_;
     Counts counts_;
     topology::PieceCount pieces_;
     double initial_min_altitude_;
-    Account initial_;
-    std::vector<EditRecord> edits_;
+    Account initial_, last_;
+    std::size_t num_edits_ = 0;
     double mass_removed_ = 0.0, energy_removed_ = 0.0;
 };
 

@@ -42,19 +42,19 @@ Quantities history_row(const Simulation& simulation, const Account& account) {
                       t.rest_volume,
                       t.kinetic_energy,
                       t.elastic_energy,
-                      model.external_work(),
-                      model.dissipated_energy(),
+                      account.external_work,
+                      account.dissipated_energy,
                       t.momentum.x(),
                       t.momentum.y(),
                       t.momentum.z(),
                       t.angular_momentum.x(),
                       t.angular_momentum.y(),
                       t.angular_momentum.z(),
-                      model.min_volume_ratio(),
+                      account.min_volume_ratio,
                       simulation.time_step(),
                       account.stable_step});
     for (std::size_t s = 0; s < model.num_supports(); ++s) {
-        const Vec3 reaction = model.reaction(s), torque = model.reaction_moment(s);
+        const auto& [reaction, torque] = account.reactions[s];
         append(row, reaction_quantities(model.support_name(s)),
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
@@ -66,7 +66,7 @@ Quantities summary_quantities(const Simulation& simulation) {
     auto quantities = history_row(simulation);
     std::size_t removed = 0, split = 0, added = 0, opened = 0;
     double cut_area = 0.0, mass_removed = 0.0;
-    for (const EditRecord& edit : simulation.ledger().edits()) {
+    for (const EditRecord& edit : simulation.edits()) {
         removed += edit.elements_removed;
         split += edit.elements_split;
         added += edit.elements_added;
@@ -77,7 +77,7 @@ Quantities summary_quantities(const Simulation& simulation) {
     const Ledger& ledger = simulation.ledger();
     append(quantities, run_quantities,
            std::array{simulation.model().totals().gravity_energy,
-                      static_cast<double>(ledger.edits().size()), static_cast<double>(removed),
+                      static_cast<double>(simulation.edits().size()), static_cast<double>(removed),
                       static_cast<double>(split), static_cast<double>(added),
                       static_cast<double>(opened), cut_area, mass_removed, ledger.mass_error(),
                       ledger.energy_error(), simulation.model().volume_change(),

@@ -72,7 +72,7 @@ void require_files(const std::filesystem::path& folder, const Simulation& simula
     io::require_begins_with(edits, written.edits);
     io::require_frames(folder, simulation.scenario().name, written.frames);
     io::BytesWritten lines;
-    for (const EditRecord& edit : simulation.ledger().edits()) lines.append(line_of(edit) + "\n");
+    for (const EditRecord& edit : simulation.edits()) lines.append(line_of(edit) + "\n");
     if (lines != written.edits)
         throw InputError(edits.string() +
                          ": its edits are not those of the checkpoint; begin anew without "
@@ -254,7 +254,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     summary["version"] = INCISE_VERSION;
     summary["threads"] = simulation.model().num_threads();
     const auto quantities = has_failed ? last_row_ : summary_quantities(simulation);
-    summary["edits"] = simulation.ledger().edits().size();
+    summary["edits"] = simulation.edits().size();
     for (const auto& [name, value] : quantities) summary[name] = value;
     for (const char* count :
          {"step", "nodes", "elements", "components", "edits", "elements_removed", "elements_split",

@@ -13,10 +13,12 @@
 #include <variant>
 #include <vector>
 
+#include "cutting/tool.h"
 #include "io/frame.h"
 #include "physics/material.h"
 #include "physics/precision.h"
 #include "sim/material_catalog.h"
+#include "sim/time_key.h"
 #include "topology/cell_kind.h"
 #include "topology/types.h"
 
@@ -109,14 +111,6 @@ struct Selection {
     }
 };
 
-/// Key of something that is linear between keys and constant before the first and after the last.
-/// Times ascend strictly.
-template <class Value>
-struct TimeKey {
-    double time = 0.0;
-    Value value;
-};
-
 /// Nodes that are held or led: their positions along the fixed axes are those of
 /// x = about + R(angle) (X - about) + by, which without keys is the rest position X.
 struct ConstraintSpec {
@@ -153,29 +147,13 @@ struct LoadSpec {
     std::string place = {};               ///< for messages: FILE:line:column
 };
 
-struct SphereShape {
-    double radius = 0.0;
-};
-struct CapsuleShape {
-    Vec3 from, to;
-    double radius = 0.0;
-};
-struct BoxShape {
-    Vec3 size;  ///< edge lengths
-};
-
-/// Removes the elements whose centroid its shape covers. The shape is in the tool's frame;
-/// spheres and boxes are centred at its origin.
-struct Carver {
-    std::variant<SphereShape, CapsuleShape, BoxShape> shape;
-};
-
-enum class CutMode { split, separate };
+using cutting::Carver;
+using cutting::CutMode;
 
 /// Cuts along what its edge sweeps.
-struct Blade {
+struct BladeSpec {
     std::vector<Vec3> edge;       ///< polyline in the tool's frame, at least two points
-    std::optional<CutMode> mode;  ///< without: usual_mode of the mesh (tool.h)
+    std::optional<CutMode> mode;  ///< without: usual_mode of the mesh (tool_build.h)
     std::optional<double> snap;   ///< of splitting: see cutting::SplitOptions
 };
 
@@ -185,24 +163,17 @@ struct PlaneSpec {
 };
 
 /// Splits all at once, when its time comes, along a plane or the triangulated surface of a file.
-struct Cut {
+struct CutSpec {
     std::variant<PlaneSpec, std::filesystem::path> along;
     double scale = 1.0;  ///< all coordinates of the surface are multiplied by it
     std::optional<double> snap;
     std::string place = {};  ///< for messages, of the file's name
 };
 
-/// Where a tool's frame is: p -> at + R(axis, angle) p.
-struct Pose {
-    Vec3 at = Vec3::Zero();
-    Vec3 axis = Vec3::UnitZ();  ///< of unit length
-    double angle = 0.0;         ///< radians
-};
-
 /// A tool is there from the first to the last key of its path; a cut has one key, its time.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, Blade, Cut> kind;
+    std::variant<Carver, BladeSpec, CutSpec> kind;
     /// At least one key, for a blade two. Empty: not known.
     std::vector<TimeKey<Pose>> path;
     std::string place = {};  ///< for messages: FILE:line:column

@@ -28,12 +28,12 @@ constexpr Keys shape_box_keys[] = {"size"};
 Pose read_pose(const TableReader& row) {
     Pose pose;
     row.require("at", "where the tool's origin is, as in at = [0, 0, 0.1]");
-    pose.at = row.vector("at");
+    pose.position = row.vector("at");
     if (const auto rotation = row.table("rotate", {rotation_keys})) {
         rotation->require("axis", "its direction, as in axis = [1, 0, 0]");
         rotation->require("angle", "radians, as in angle = 0.2");
-        pose.axis = rotation->direction("axis", pose.axis);
-        pose.angle = rotation->number("angle", 0.0);
+        const Vec3 axis = rotation->direction("axis", Vec3::UnitZ());
+        pose.rotation = Eigen::AngleAxisd(rotation->number("angle", 0.0), axis);
     }
     return pose;
 }
@@ -48,25 +48,25 @@ Carver read_carver(const TableReader& tool) {
         return table.number("radius", 1.0, limits::positive);
     };
     if (const auto sphere = shape->table("sphere", {shape_sphere_keys}))
-        carver.shape = SphereShape{radius_of(*sphere)};
+        carver.shape = cutting::Sphere{radius_of(*sphere)};
     if (const auto capsule = shape->table("capsule", {capsule_keys})) {
         capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
         capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
         carver.shape =
-            CapsuleShape{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
+            cutting::Capsule{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
     }
     if (const auto box = shape->table("box", {shape_box_keys})) {
         box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
         const Vec3 size = box->vector("size", Vec3::Ones());
         if (!(size.minCoeff() > 0.0))
             box->error("size", "is not allowed: all three lengths must be above 0");
-        carver.shape = BoxShape{size};
+        carver.shape = cutting::Cuboid{size};
     }
     return carver;
 }
 
-Blade read_blade(const TableReader& tool, std::optional<double> snap) {
-    Blade blade;
+BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
+    BladeSpec blade;
     blade.edge = tool.vectors("edge");
     const bool knows_edge = tool.is_sound("edge");  // else points are left out
     if (tool.has("edge") && knows_edge && blade.edge.size() < 2)
@@ -83,9 +83,9 @@ Blade read_blade(const TableReader& tool, std::optional<double> snap) {
     return blade;
 }
 
-Cut read_cut(const TableReader& tool, std::optional<double> snap,
-             const std::filesystem::path& folder) {
-    Cut cut;
+CutSpec read_cut(const TableReader& tool, std::optional<double> snap,
+                 const std::filesystem::path& folder) {
+    CutSpec cut;
     if (const auto plane = tool.table("plane", {plane_keys})) {
         plane->require("point", "a point of the plane, as in point = [0, 0, 0]");
         plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
@@ -138,7 +138,7 @@ bool knows_where(const TableReader& tool, Keys kind) {
 }
 
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
-    if (std::holds_alternative<Blade>(spec.kind) && spec.path.size() == 1)
+    if (std::holds_alternative<BladeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
     if (end_time > 0.0 && !spec.path.empty() && spec.path.front().time > end_time)
         tool.warning(tool.has("time") ? "time" : "path",

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +18,7 @@
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "topology/error.h"
@@ -97,6 +100,21 @@ class ArchiveWriter {
         std::sort(keys.begin(), keys.end());
         put(keys);
     }
+    template <class Key, class T>
+    void put(const std::map<Key, T>& map) {
+        put(std::uint64_t{map.size()});
+        for (const auto& [key, value] : map) (*this)(key, value);
+    }
+    template <class T>
+    void put(const std::optional<T>& value) {
+        put(value.has_value());
+        if (value) put(*value);
+    }
+    template <class... T>
+    void put(const std::variant<T...>& value) {
+        put(static_cast<std::uint8_t>(value.index()));
+        std::visit([&](const auto& held) { put(held); }, value);
+    }
     template <Archivable<ArchiveWriter> T>
     void put(const T& value) {
         T::archive(*this, value);
@@ -173,6 +191,32 @@ class ArchiveReader {
     void get(std::unordered_set<Key>& set) {
         const auto keys = read<std::vector<Key>>();
         set = std::unordered_set<Key>(keys.begin(), keys.end());
+    }
+    template <class Key, class T>
+    void get(std::map<Key, T>& map) {
+        map.clear();
+        for (auto i = read<std::uint64_t>(); i > 0; --i) {
+            const Key key = read<Key>();
+            get(map[key]);
+        }
+    }
+    template <class T>
+    void get(std::optional<T>& value) {
+        value.reset();
+        if (read<bool>()) get(value.emplace());
+    }
+    template <class... T>
+    void get(std::variant<T...>& value) {
+        get_alternative<0>(value, read<std::uint8_t>());
+    }
+    template <std::size_t i, class... T>
+    void get_alternative(std::variant<T...>& value, std::size_t index) {
+        if constexpr (i == sizeof...(T)) {
+            throw InputError("there is no alternative " + std::to_string(index));
+        } else {
+            if (index != i) return get_alternative<i + 1>(value, index);
+            get(value.template emplace<i>());
+        }
     }
     template <Archivable<ArchiveReader> T>
     void get(T& value) {

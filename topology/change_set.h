@@ -63,9 +63,7 @@ struct Rewiring {
 struct FacePair {
     FaceId a, b;
     auto operator<=>(const FacePair&) const = default;
-    static void archive(auto& ar, auto& self) {
-        ar(self.a.element, self.a.face, self.b.element, self.b.face);
-    }
+    static void archive(auto& ar, auto& self) { ar(self.a, self.b); }
 };
 
 /// All lists are in ascending order of their ids. Faces of removed elements that were shared are

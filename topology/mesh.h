@@ -102,6 +102,7 @@ class Mesh {
     const CellMap& map() const { return map_; }
 
   private:
+    friend class MeshArchive;
     friend class MeshEdit;
     friend class MeshImport;
     friend class MeshReplay;

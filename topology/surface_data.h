@@ -15,6 +15,7 @@ namespace incise::topology {
 struct SurfaceData {
     std::vector<Vec3> points;                            ///< in the unit of the source
     std::vector<std::array<std::int64_t, 3>> triangles;  ///< point numbers, in the source's sense
+    static void archive(auto& ar, auto& self) { ar(self.points, self.triangles); }
 };
 
 }  // namespace incise::topology

@@ -43,6 +43,7 @@ struct FaceId {
 
     constexpr bool is_valid() const { return element.is_valid(); }
     constexpr auto operator<=>(const FaceId&) const = default;
+    static void archive(auto& ar, auto& self) { ar(self.element, self.face); }
 };
 
 }  // namespace incise::topology

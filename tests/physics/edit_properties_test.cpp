@@ -283,8 +283,8 @@ struct StepOf {
         model.integrate(now_time, short_step);
         state = state_of(model);
         for (std::size_t s = 0; s < model.num_supports(); ++s) {
-            reactions.push_back(model.reaction(s));
-            reactions.push_back(model.reaction_moment(s));
+            reactions.push_back(model.reactions()[s].force);
+            reactions.push_back(model.reactions()[s].moment);
         }
         set_state(model, before.state, now_time);
         model.set_history(before.history);

@@ -213,8 +213,8 @@ TEST(ImplicitEuler, RelaxesViscousStress) {
         integrator.step(body, time, 0.25);
         if (i < 2) continue;
         const double share = 0.6 + 0.4 * std::exp(-(time + 0.25 - 0.5 * begin) / tau);
-        EXPECT_NEAR(body.reaction(1).x(), share * elastic.reaction(1).x(),
-                    0.01 * elastic.reaction(1).x());
+        EXPECT_NEAR(body.reactions()[1].force.x(), share * elastic.reactions()[1].force.x(),
+                    0.01 * elastic.reactions()[1].force.x());
     }
 }
 

@@ -50,9 +50,9 @@ TEST(Supports, BearTheWeightInEquilibrium) {
     const double height_energy = model.totals().gravity_energy;
     double time = 0.0;
     while (time < 10.0) step(model, time, dt);
-    EXPECT_NEAR(model.reaction(0).z(), weight, 1e-9 * weight);
-    EXPECT_NEAR(model.reaction(0).x(), 0.0, 1e-9 * weight);
-    EXPECT_NEAR(model.reaction(0).y(), 0.0, 1e-9 * weight);
+    EXPECT_NEAR(model.reactions()[0].force.z(), weight, 1e-9 * weight);
+    EXPECT_NEAR(model.reactions()[0].force.x(), 0.0, 1e-9 * weight);
+    EXPECT_NEAR(model.reactions()[0].force.y(), 0.0, 1e-9 * weight);
     EXPECT_LT(model.totals().gravity_energy, height_energy);
     EXPECT_LT(model.totals().kinetic_energy, 1e-15 * model.totals().elastic_energy);
 }
@@ -102,8 +102,8 @@ TEST(Supports, LeaveOtherComponentsFree) {
         EXPECT_NEAR(model.velocities()[n].x(), 1.0 * time, 1e-12);
         EXPECT_NEAR(model.velocities()[n].z(), 3.0 * time, 1e-12);
     }
-    EXPECT_NEAR(model.reaction(0).y(), -2.0 * 1000.0 * bar_volume, 1e-12);
-    EXPECT_EQ(model.reaction(0).x(), 0.0);
+    EXPECT_NEAR(model.reactions()[0].force.y(), -2.0 * 1000.0 * bar_volume, 1e-12);
+    EXPECT_EQ(model.reactions()[0].force.x(), 0.0);
 }
 
 TEST(Supports, TakeInNodesBornBetweenTheirs) {

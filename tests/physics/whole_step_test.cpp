@@ -91,8 +91,8 @@ Outcome outcome_of_steps(Model& model) {
                     model.external_work(),
                     model.dissipated_energy()};
     for (std::size_t i = 0; i < model.num_supports(); ++i) {
-        outcome.reactions.push_back(model.reaction(i));
-        outcome.moments.push_back(model.reaction_moment(i));
+        outcome.reactions.push_back(model.reactions()[i].force);
+        outcome.moments.push_back(model.reactions()[i].moment);
     }
     return outcome;
 }

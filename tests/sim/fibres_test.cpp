@@ -62,7 +62,7 @@ TEST(FibredBody, IsStifferAlongItsFibresThanAcross) {
         Simulation simulation(folder.scenario(box_of_tissue + fibred_material +
                                               "fibre = " + direction + "\n" + pulled));
         run(simulation);
-        return simulation.model().reaction(1).z();
+        return simulation.model().reactions()[1].force.z();
     };
     const double along = reaction("[0, 0, 3]"), across = reaction("[1, 0, 0]");
     EXPECT_GT(across, 0.0);

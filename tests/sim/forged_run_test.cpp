@@ -41,12 +41,12 @@ class ForgedRun : public testing::Test {
         simulation.add_observer(writer);
         simulation.start();
         while (simulation.num_steps() < num_steps) simulation.step();
-        ASSERT_GE(simulation.ledger().edits().size(), 2u);
+        ASSERT_GE(simulation.edits().size(), 2u);
         writer.take_checkpoint(simulation, CheckpointKind::of_a_stop);
         for (const auto& entry : fs::directory_iterator(out_ / "checkpoints"))
             checkpoint_ = entry.path();
         good_ = io::read_checked_file(checkpoint_);
-        edits_ = simulation.ledger().edits();
+        edits_ = simulation.edits();
     }
 
     /// Goes on for a few steps from a checkpoint of these bytes, whose checksum is right.
@@ -225,9 +225,8 @@ TEST_F(ForgedRun, IsRefusedWhereItsBooksAreNotThoseOfItsEdits) {
                                Forge([](EditRecord& e) { e.nodes_removed += 1; }),
                                Forge([](EditRecord& e) { e.mass_removed += 1e-9; }),
                                Forge([](EditRecord& e) { e.after.nodes -= 1; }),
-                               Forge([](EditRecord& e) { e.after.elements -= 1; })})
-        EXPECT_NE(refusal(forge).find("its books are not of its edits"), std::string::npos);
-    for (const Forge& forge : {Forge([](EditRecord& e) { e.elements_split += 1; }),
+                               Forge([](EditRecord& e) { e.after.elements -= 1; }),
+                               Forge([](EditRecord& e) { e.elements_split += 1; }),
                                Forge([](EditRecord& e) { e.cut_area = -1.0; }),
                                Forge([](EditRecord& e) { e.tool[0] = '\xff'; })})
         EXPECT_NE(refusal(forge).find("edits.jsonl: its edits are not those of the checkpoint"),

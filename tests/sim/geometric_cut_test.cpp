@@ -6,7 +6,7 @@
 
 #include "cutting/plane.h"
 #include "cutting/tissue_motion.h"
-#include "sim/tool.h"
+#include "sim/tool_build.h"
 #include "support/mesh_families.h"
 #include "topology/error.h"
 #include "topology/validate.h"

@@ -60,7 +60,7 @@ path = [{ time = 0, at = [0.05, 0.05, 0.13] }, { time = 0.1, at = [0.05, 0.05, 0
     EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
     EXPECT_LE(simulation.ledger().energy_error(), 0.02);
     std::size_t removed = 0, opened = 0, split = 0;
-    for (const EditRecord& edit : simulation.ledger().edits()) {
+    for (const EditRecord& edit : simulation.edits()) {
         removed += edit.elements_removed;
         opened += edit.faces_opened;
         split += edit.elements_split;

@@ -172,7 +172,9 @@ edge = [[0, )"
     return text.str();
 }
 
-double pulling_force(const Simulation& simulation) { return simulation.model().reaction(1).z(); }
+double pulling_force(const Simulation& simulation) {
+    return simulation.model().reactions()[1].force.z();
+}
 
 /// Sum of the net forces on nodes between the ends, over the pulling force: no less than what the
 /// forces at the two ends may differ by.
@@ -246,7 +248,7 @@ Errors errors_of_cut_block(const Notch& notch, const Bricks& bricks, const std::
     come_to_rest(simulation, notch);
 
     EXPECT_EQ(topology::validate(simulation.mesh()), std::vector<std::string>{});
-    const auto& edits = simulation.ledger().edits();
+    const auto& edits = simulation.edits();
     EXPECT_GT(edits.size(), 5u);  // not at one go
     EXPECT_EQ(edits.back().after.components, 1);
     const auto openings = mouth(simulation);

@@ -70,7 +70,7 @@ void expect_resumable(const RunFolder& folder, const std::string& text,
         writer.finish(whole, {});
     }
     // After the first edits, in the middle of them, before and after the last one.
-    const auto& edits = whole.ledger().edits();
+    const auto& edits = whole.edits();
     ASSERT_GE(edits.size(), least_edits);
     if (!edits.empty())
         for (const std::uint64_t step :

@@ -76,7 +76,7 @@ TEST_F(RunFiles, HistoryHasItsColumnsAndARowForEachFrameAndEdit) {
               "angular_momentum_x,angular_momentum_y,angular_momentum_z,min_J,time_step,"
               "stable_step,reaction_floor_x,reaction_floor_y,reaction_floor_z,"
               "torque_floor_x,torque_floor_y,torque_floor_z");
-    const auto& edits = simulation_.ledger().edits();
+    const auto& edits = simulation_.edits();
     ASSERT_GT(edits.size(), 2u);
     EXPECT_EQ(lines.size(), 1 + 11 + edits.size());
     const auto names = split(lines[0]);
@@ -125,7 +125,7 @@ TEST_F(RunFiles, HistoryHasItsColumnsAndARowForEachFrameAndEdit) {
 
 TEST_F(RunFiles, EditsAreLinesOfJson) {
     const auto lines = lines_of(folder_ / "out/edits.jsonl");
-    const auto& edits = simulation_.ledger().edits();
+    const auto& edits = simulation_.edits();
     ASSERT_EQ(lines.size(), edits.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const json line = json::parse(lines[i]);
@@ -170,7 +170,7 @@ TEST_F(RunFiles, SummaryTellsHowItEnded) {
     // The last row of the history, and the totals.
     for (const auto& [name, value] : history_row(simulation_))
         EXPECT_EQ(summary.at(name).get<double>(), value) << name;
-    EXPECT_EQ(summary.at("edits"), simulation_.ledger().edits().size());
+    EXPECT_EQ(summary.at("edits"), simulation_.edits().size());
     EXPECT_TRUE(summary.at("elements").is_number_integer());
     EXPECT_EQ(summary.at("elements").get<std::size_t>() +
                   summary.at("elements_removed").get<std::size_t>(),
@@ -319,7 +319,7 @@ TEST_F(RunFiles, AFrameReadAsAMeshIsTheCutBodyAtRest) {
                          "0.4\n" +
                          dynamics(0.02));
     const Simulation again(next);
-    const auto &first = again.ledger().initial(), &last = simulation_.ledger().edits().back().after;
+    const auto &first = again.ledger().initial(), &last = simulation_.edits().back().after;
     EXPECT_EQ(first.nodes, last.nodes);
     EXPECT_EQ(first.elements, last.elements);
     EXPECT_EQ(first.components, last.components);
@@ -335,9 +335,9 @@ TEST(FrameBuilder, FinishesTheFrameOfTheMomentItBeganAt) {
     const auto& fields = simulation.scenario().output.fields;
     const io::Frame at_once = build_frame(simulation.model(), simulation.time(), fields);
     FrameBuilder builder(simulation.model(), simulation.time(), fields);
-    const auto num_edits = simulation.ledger().edits().size();
+    const auto num_edits = simulation.edits().size();
     while (!simulation.is_finished()) simulation.step();
-    EXPECT_GT(simulation.ledger().edits().size(), num_edits);
+    EXPECT_GT(simulation.edits().size(), num_edits);
     EXPECT_EQ(io::vtu_text(builder.finish()), io::vtu_text(at_once));
 }
 

@@ -345,7 +345,7 @@ TEST(Ledger, AccountsForEveryEdit) {
     Recorder recorder;
     simulation.add_observer(recorder);
     run(simulation);
-    const auto& edits = simulation.ledger().edits();
+    const auto& edits = simulation.edits();
     ASSERT_EQ(recorder.edits.size(), edits.size());
     EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
 

@@ -32,7 +32,7 @@ TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
     Simulation simulation(scenario_of(soft_cube + slanting_blade + dynamics(0.15, gravity)));
     run(simulation);
     EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-    const auto& edits = simulation.ledger().edits();
+    const auto& edits = simulation.edits();
     ASSERT_GT(edits.size(), 2u);
     EXPECT_EQ(edits.back().after.components, 2);
     EXPECT_LE(simulation.ledger().mass_error(), 1e-13);
@@ -101,7 +101,7 @@ poisson = 0.4
         return simulation;
     };
     const auto expected = run_on(1);
-    EXPECT_GT(expected->ledger().edits().size(), 2u);
+    EXPECT_GT(expected->edits().size(), 2u);
     constexpr std::array numbers_of_threads{5, 2, 16};
     for (const int num_threads : test::some_of(numbers_of_threads)) {
         SCOPED_TRACE(num_threads);
@@ -154,7 +154,7 @@ path = [{ time = 0.02, at = [0, -0.04, 0] }, { time = 0.13, at = [0, 0.14, 0] }]
     Simulation simulation(scenario_of(soft_cube + slanting_blade + upright_blade + dynamics(0.15)));
     run(simulation);
     EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-    EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+    EXPECT_EQ(simulation.edits().back().after.components, 4);
 }
 
 TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
@@ -175,7 +175,7 @@ TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
                 dynamics(0.12)));
             run(simulation);
             EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-            EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+            EXPECT_EQ(simulation.edits().back().after.components, 4);
         }
 }
 
@@ -200,7 +200,7 @@ plane = { point = [0, 0.047, 0], normal = [0.1, 1, 0.05] }
 snap = )" + snap + "\n"));
         run(simulation);
         EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-        EXPECT_EQ(simulation.ledger().edits().back().after.components, 4);
+        EXPECT_EQ(simulation.edits().back().after.components, 4);
     }
 }
 
@@ -217,7 +217,7 @@ path = [
 )"));
     run(simulation);
     EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-    EXPECT_EQ(simulation.ledger().edits().back().after.components, 2);
+    EXPECT_EQ(simulation.edits().back().after.components, 2);
 }
 
 /// What an exact blade opens of a cube that nothing moves but what `more` says, m2.
@@ -227,9 +227,9 @@ double opened_area(const std::string& edge, const std::string& path, const std::
                                       "\npath = [" + path + "]\n" + dynamics(0.08)));
     run(simulation);
     EXPECT_EQ(topology::validate(simulation.mesh()), no_violations);
-    EXPECT_EQ(simulation.ledger().edits().back().after.components, 1);
+    EXPECT_EQ(simulation.edits().back().after.components, 1);
     double area = 0.0;
-    for (const EditRecord& edit : simulation.ledger().edits()) area += edit.cut_area;
+    for (const EditRecord& edit : simulation.edits()) area += edit.cut_area;
     return area;
 }
 
@@ -285,8 +285,8 @@ snap = 0
 plane = { point = [0.05, 0.05, 0.052], normal = [0.1, -0.2, 1] }
 )"));
     run(simulation);
-    ASSERT_EQ(simulation.ledger().edits().size(), 1u);
-    const EditRecord& edit = simulation.ledger().edits()[0];
+    ASSERT_EQ(simulation.edits().size(), 1u);
+    const EditRecord& edit = simulation.edits()[0];
     EXPECT_GE(edit.time, 0.0234);
     EXPECT_LE(edit.time, 0.0334);
     EXPECT_EQ(edit.after.components, 2);
@@ -318,10 +318,10 @@ snap = 0
 )"));
     EXPECT_TRUE(simulation.warnings().empty());
     run(simulation);
-    ASSERT_EQ(simulation.ledger().edits().size(), 1u);
-    EXPECT_EQ(simulation.ledger().edits()[0].after.components, 2);
+    ASSERT_EQ(simulation.edits().size(), 1u);
+    EXPECT_EQ(simulation.edits()[0].after.components, 2);
     const double face = std::sqrt(3.0) / 2.0 * 0.0371 * 0.0371;
-    EXPECT_NEAR(simulation.ledger().edits()[0].cut_area, 8.0 * face, 0.03 * 8.0 * face);
+    EXPECT_NEAR(simulation.edits()[0].cut_area, 8.0 * face, 0.03 * 8.0 * face);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ snap = 0
 plane = { point = [0, 1e-7, 0], normal = [0, 1, 1] }
 )" + dynamics(1, statics)));
     run(simulation);
-    EXPECT_EQ(simulation.ledger().edits().size(), 2u);
+    EXPECT_EQ(simulation.edits().size(), 2u);
     EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
 }
 

@@ -55,7 +55,7 @@ std::map<std::string, std::string> files_of_run(const Scenario& scenario, int nu
     run(simulation);
     writer.finish(simulation, {});
     for (const ToolSpec& tool : scenario.tools) {
-        const auto& edits = simulation.ledger().edits();
+        const auto& edits = simulation.edits();
         EXPECT_GE(std::count_if(edits.begin(), edits.end(),
                                 [&](const EditRecord& edit) { return edit.tool == tool.name; }),
                   2)

@@ -1,35 +1,31 @@
 // Where a tool is when, and that nothing between its poses is missed.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/tool.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "run_folder.h"
+#include "sim/tool_build.h"
 
 namespace incise::sim {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Tool tool_on(std::vector<TimeKey<Pose>> path) {
-    ToolSpec spec;
-    spec.kind = Carver{SphereShape{0.1}};
-    spec.path = std::move(path);
-    std::vector<std::string> warnings;
-    return Tool(spec, warnings);
+/// p -> at + R(axis, angle) p.
+Pose pose_at(const Vec3& at, const Vec3& axis = Vec3::UnitZ(), double angle = 0.0) {
+    return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), at};
 }
 
-double angle_between(const cutting::Pose& pose, double angle, const Vec3& axis) {
+double angle_between(const Pose& pose, double angle, const Vec3& axis) {
     return pose.rotation.angularDistance(
         Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
 }
 
 TEST(Tool, IsAtItsKeysAndOnStraightLinesBetweenThem) {
-    const Tool tool = tool_on({{1.0, {{0, 0, 0}, Vec3::UnitZ(), 0.0}},
-                               {2.0, {{1, 2, -4}, Vec3::UnitZ(), 0.5 * pi}},
-                               {4.0, {{1, 0, 0}, Vec3::UnitX(), pi / 3}}});
+    const ToolPath tool({{1.0, pose_at({0, 0, 0})},
+                         {2.0, pose_at({1, 2, -4}, Vec3::UnitZ(), 0.5 * pi)},
+                         {4.0, pose_at({1, 0, 0}, Vec3::UnitX(), pi / 3)}});
     EXPECT_EQ(tool.pose(1.0).position, Vec3(0, 0, 0));
     EXPECT_EQ(tool.pose(1.25).position, Vec3(0.25, 0.5, -1));
     EXPECT_EQ(tool.pose(2.0).position, Vec3(1, 2, -4));
@@ -51,8 +47,7 @@ TEST(Tool, IsAtItsKeysAndOnStraightLinesBetweenThem) {
 }
 
 TEST(Tool, StaysAtItsEndsBeforeAndAfter) {
-    const Tool tool =
-        tool_on({{1.0, {{1, 0, 0}, Vec3::UnitZ(), 0.0}}, {2.0, {{5, 0, 0}, Vec3::UnitZ(), 1.0}}});
+    const ToolPath tool({{1.0, pose_at({1, 0, 0})}, {2.0, pose_at({5, 0, 0}, Vec3::UnitZ(), 1.0)}});
     EXPECT_EQ(tool.pose(-3.0).position, Vec3(1, 0, 0));
     EXPECT_EQ(tool.pose(0.5).position, Vec3(1, 0, 0));
     EXPECT_EQ(tool.pose(9.0).position, Vec3(5, 0, 0));
@@ -60,7 +55,7 @@ TEST(Tool, StaysAtItsEndsBeforeAndAfter) {
 }
 
 TEST(Tool, IsThereFromItsFirstToItsLastKey) {
-    const Tool tool = tool_on({{1.0, {}}, {2.0, {}}});
+    const ToolPath tool({{1.0, {}}, {2.0, {}}});
     EXPECT_FALSE(tool.is_present(0.0, 0.5));
     EXPECT_FALSE(tool.is_present(0.5, 1.0));
     EXPECT_TRUE(tool.is_present(0.9, 1.1));
@@ -81,15 +76,15 @@ ToolSpec spec_of(decltype(ToolSpec::kind) kind, std::vector<TimeKey<Pose>> path)
 
 bool may_meet_unit_box(const ToolSpec& spec) {
     std::vector<std::string> warnings;
-    return Tool(spec, warnings).may_meet({Vec3::Zero(), Vec3::Ones()});
+    return may_meet(build_tool(spec, warnings), {Vec3::Zero(), Vec3::Ones()});
 }
 
 TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
-    const auto at = [](double x) { return TimeKey<Pose>{0.0, {{x, 0.5, 0.5}}}; };
-    const auto there = [](double x) { return TimeKey<Pose>{1.0, {{x, 0.5, 0.5}}}; };
-    const Carver ball{SphereShape{0.25}};
-    const Carver rod{CapsuleShape{{0, 0, 0}, {0.5, 0, 0}, 0.25}};
-    const Carver block{BoxShape{{0.5, 4, 4}}};
+    const auto at = [](double x) { return TimeKey<Pose>{0.0, pose_at({x, 0.5, 0.5})}; };
+    const auto there = [](double x) { return TimeKey<Pose>{1.0, pose_at({x, 0.5, 0.5})}; };
+    const Carver ball{cutting::Sphere{0.25}};
+    const Carver rod{cutting::Capsule{{0, 0, 0}, {0.5, 0, 0}, 0.25}};
+    const Carver block{cutting::Cuboid{{0.5, 4, 4}}};
     EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(1.24)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(ball, {at(1.26)})));
     EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(-5), there(5)})));  // right through
@@ -98,10 +93,12 @@ TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
     EXPECT_FALSE(may_meet_unit_box(spec_of(rod, {at(-0.76)})));
     EXPECT_TRUE(may_meet_unit_box(spec_of(block, {at(1.24)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(block, {at(1.26)})));
-    const Blade blade{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
+    const BladeSpec blade{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
     EXPECT_TRUE(may_meet_unit_box(spec_of(blade, {at(3), there(0.99)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(blade, {at(3), there(1.01)})));
-    const auto cut_at = [](double x) { return Cut{PlaneSpec{{x, 0, 0}, Vec3::UnitX()}, 1.0, {}}; };
+    const auto cut_at = [](double x) {
+        return CutSpec{PlaneSpec{{x, 0, 0}, Vec3::UnitX()}, 1.0, {}};
+    };
     EXPECT_TRUE(may_meet_unit_box(spec_of(cut_at(0.9), {at(0)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
 }
@@ -109,16 +106,17 @@ TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
 TEST(Tool, MayMeetWhateverItComesToWhileItTurns) {
     // Between its keys the tip is farther out in x than at either of them.
     for (const double angle : {0.1, 0.5, 1.0, 0.99 * pi}) {
-        const Pose down{{0, 0, 0}, Vec3::UnitZ(), -angle / 2}, up{{0, 3, -2}, {0, 0, 1}, angle / 2};
-        ToolSpec spec =
-            spec_of(Blade{{{1, 0, 0}, {2, 0, 0}}, CutMode::split, {}}, {{0.0, down}, {1.0, up}});
+        const Pose down = pose_at({0, 0, 0}, Vec3::UnitZ(), -angle / 2),
+                   up = pose_at({0, 3, -2}, Vec3::UnitZ(), angle / 2);
+        ToolSpec spec = spec_of(BladeSpec{{{1, 0, 0}, {2, 0, 0}}, CutMode::split, {}},
+                                {{0.0, down}, {1.0, up}});
         std::vector<std::string> warnings;
-        const Tool tool(spec, warnings);
+        const ScriptedTool tool = build_tool(spec, warnings);
         for (int i = 0; i <= 1000; ++i) {
-            const Vec3 x = tool.pose(i / 1000.0).to_world({2, 0, 0});
-            EXPECT_TRUE(tool.may_meet(cutting::Box(x, x))) << angle << " " << i;
+            const Vec3 x = tool.path.pose(i / 1000.0).to_world({2, 0, 0});
+            EXPECT_TRUE(may_meet(tool, cutting::Box(x, x))) << angle << " " << i;
         }
-        EXPECT_FALSE(tool.may_meet(cutting::Box(Vec3(5, -9, -9), Vec3(6, 9, 9))));
+        EXPECT_FALSE(may_meet(tool, cutting::Box(Vec3(5, -9, -9), Vec3(6, 9, 9))));
     }
 }
 
@@ -141,7 +139,7 @@ path = [{ time = 0, at = [0.05, 0.05, )";
 
 TEST(Tool, WithOneKeyActsInExactlyOneStep) {
     for (const double time : {0.0, 0.1, 0.25, 0.3, 1.0}) {
-        const Tool tool = tool_on({{time, {}}});
+        const ToolPath tool(std::vector<TimeKey<Pose>>{{time, {}}});
         int num_steps = 0;
         for (int i = 0; i < 10; ++i) num_steps += tool.is_present(i / 10.0, (i + 1) / 10.0);
         EXPECT_EQ(num_steps, 1) << time;
@@ -156,8 +154,8 @@ kind = "carver"
 shape = { sphere = { radius = 0.03 } }
 path = [{ time = )" + time + ", at = [0.05, 0.05, 0.1] }]\n"));
         run(simulation);
-        ASSERT_EQ(simulation.ledger().edits().size(), 1u) << time;
-        const double at = simulation.ledger().edits()[0].time;
+        ASSERT_EQ(simulation.edits().size(), 1u) << time;
+        const double at = simulation.edits()[0].time;
         EXPECT_GE(at, std::stod(time));
         EXPECT_LE(at, std::stod(time) + 0.01);
     }
@@ -173,8 +171,8 @@ edge = [[0, -1, 0.052], [0, 1, 0.049]]
 path = [{ time = 0.0123, at = [-0.01, 0, 0] }, { time = 0.0671, at = [0.101, 0, 0] }]
 )"));
     run(simulation);
-    EXPECT_EQ(simulation.ledger().edits().back().after.components, 2);
-    EXPECT_GT(simulation.ledger().edits().size(), 2u);
+    EXPECT_EQ(simulation.edits().back().after.components, 2);
+    EXPECT_GT(simulation.edits().size(), 2u);
 }
 
 }  // namespace

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "sim/world.h"
+
+#include <cmath>
+#include <utility>
+
+#include "io/number_format.h"
+#include "sim/world_checks.h"
+#include "sim/world_parts.h"
+
+namespace incise::sim {
+
+using cutting::Blade;
+using cutting::CutMode;
+using topology::Mesh;
+using topology::NodeId;
+
+World::World(WorldDef def) : parts_(std::make_unique<Parts>(std::move(def))) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+const StepReport& World::step(double dt) {
+    if (!(dt > 0.0 && std::isfinite(dt)))
+        throw InputError("a step of " + io::format_number(dt) + " s: it must be above 0");
+    return step_to(parts_->time + dt);
+}
+
+const StepReport& World::step_to(double time) {
+    Parts& p = *parts_;
+    if (p.has_failed)
+        throw InputError("the world has failed in the step from " + io::format_number(p.time) +
+                         " s; restore a state that was saved before");
+    const double dt = time - p.time;
+    if (!(dt > 0.0 && std::isfinite(dt)))
+        throw InputError("a step from " + io::format_number(p.time) + " s to " +
+                         io::format_number(time) + " s: it must go forward");
+    // Steps that divide an interval evenly may be longer by rounding.
+    constexpr double rounding = 1e-8;
+    if (p.solver == Solver::semi_implicit_euler &&
+        !(dt <= (1.0 + rounding) * p.model.stable_step()))
+        throw InputError("a step of " + io::format_number(dt) + " s is above the stable step of " +
+                         io::format_number(p.model.stable_step()) + " s");
+    p.has_failed = true;
+    p.step_to(time);
+    p.has_failed = false;
+    return p.report;
+}
+
+const StepReport& World::report() const { return parts_->report; }
+bool World::has_failed() const { return parts_->has_failed; }
+double World::time() const { return parts_->time; }
+std::uint64_t World::num_steps() const { return parts_->num_steps; }
+double World::stable_step() const { return parts_->model.stable_step(); }
+
+World::Parts::Tool& World::Parts::tool_of(ToolId id) {
+    if (id.index >= tools.size())
+        throw InputError("there is no tool " + std::to_string(id.index) + ": the world has " +
+                         std::to_string(tools.size()));
+    return tools[id.index];
+}
+
+void World::Parts::require_sound_pose(ToolId id, const Pose& pose) const {
+    if (!pose.is_sound())
+        throw InputError("tool '" + tools[id.index].def.name +
+                         "': its pose must have a finite position, m, and a rotation of length 1");
+}
+
+ToolId World::add_tool(ToolDef def) {
+    require_sound(def);
+    Parts& p = *parts_;
+    Parts::Tool tool{std::move(def)};
+    tool.surface = cutting::cut_surface_of(tool.def.shape);
+    if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
+        if (blade->mode == CutMode::split) tool.cut = p.cutter.begin_cut(blade->snap);
+    p.tools.push_back(std::move(tool));
+    return {p.tools.size() - 1};
+}
+
+void World::place_tool(ToolId id, const Pose& pose) {
+    Parts::Tool& tool = parts_->tool_of(id);
+    parts_->require_sound_pose(id, pose);
+    if (tool.cut && parts_->cutter.is_in_tissue(*tool.cut))
+        throw InputError("tool '" + tool.def.name +
+                         "' is in the tissue: withdraw it before it is put elsewhere");
+    tool.is_present = true;
+    tool.pose = tool.target = pose;
+}
+
+void World::set_tool_pose(ToolId id, const Pose& pose) {
+    Parts::Tool& tool = parts_->tool_of(id);
+    parts_->require_sound_pose(id, pose);
+    if (!tool.is_present) tool.pose = pose;
+    tool.is_present = true;
+    tool.target = pose;
+}
+
+void World::withdraw_tool(ToolId id, const Pose* pose_before) {
+    Parts::Tool& tool = parts_->tool_of(id);
+    if (!tool.is_present)
+        throw InputError("tool '" + tool.def.name + "' is not there to be withdrawn");
+    tool.is_leaving = true;
+    tool.pose_before_end.reset();
+    if (pose_before) tool.pose_before_end = *pose_before;
+}
+
+bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present; }
+Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
+const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }
+std::size_t World::num_tools() const { return parts_->tools.size(); }
+
+ConstraintId World::add_constraint(physics::Support constraint) {
+    Parts& p = *parts_;
+    require_sound(constraint, p.mesh);
+    p.model.add_support(std::move(constraint));
+    return {p.constraints.add()};
+}
+
+ConstraintId World::grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose) {
+    Parts& p = *parts_;
+    for (const NodeId n : nodes)
+        if (!n.is_valid() || n.index() >= p.mesh.node_capacity())
+            throw InputError("grasp '" + name + "': there is no node " + std::to_string(n.value));
+    if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
+    const ConstraintId id = add_constraint(
+        physics::make_grip(std::move(name), std::move(nodes), p.model.positions(), pose));
+    p.grasps[id.index] = {pose, pose};
+    return id;
+}
+
+void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
+    Parts& p = *parts_;
+    const std::size_t place = p.constraints.place(grasp.index);
+    const std::string name = "constraint '" + p.model.support_name(place) + "'";
+    const auto found = p.grasps.find(grasp.index);
+    if (found == p.grasps.end()) throw InputError(name + " is no grasp");
+    if (!pose.is_sound()) throw InputError(name + ": its pose is none");
+    found->second.target = pose;
+}
+
+void World::release(ConstraintId constraint) {
+    Parts& p = *parts_;
+    p.model.remove_support(p.constraints.place(constraint.index));
+    p.constraints.remove(constraint.index);
+    p.grasps.erase(constraint.index);
+}
+
+const physics::Reaction& World::reaction(ConstraintId constraint) const {
+    return parts_->model.reactions()[parts_->constraints.place(constraint.index)];
+}
+
+LoadId World::add_load(physics::Load load) {
+    Parts& p = *parts_;
+    require_sound(load, p.mesh);
+    p.model.add_load(std::move(load));
+    p.loads_have_changed = true;
+    return {p.loads.add()};
+}
+
+void World::set_load_factor(LoadId load, double factor) {
+    Parts& p = *parts_;
+    const std::size_t place = p.loads.place(load.index);
+    if (!std::isfinite(factor))
+        throw InputError("load '" + p.model.loads().all()[place].name +
+                         "': its factor is not finite");
+    p.model.set_load_factor(place, physics::TimeCurve<double>({{p.time, factor}}));
+    p.loads_have_changed = true;
+}
+
+void World::remove_load(LoadId load) {
+    Parts& p = *parts_;
+    p.model.remove_load(p.loads.place(load.index));
+    p.loads.remove(load.index);
+    p.loads_have_changed = true;
+}
+
+topology::BoundarySurface& World::surface() {
+    Parts& p = *parts_;
+    if (!p.surface) p.surface.emplace(p.mesh);
+    return *p.surface;
+}
+
+void World::set_num_threads(int n) { parts_->model.set_num_threads(n); }
+
+const Mesh& World::mesh() const { return parts_->mesh; }
+const physics::Model& World::model() const { return parts_->model; }
+const cutting::Cutter& World::cutter() const { return parts_->cutter; }
+const Ledger& World::ledger() const { return parts_->ledger; }
+
+}  // namespace incise::sim

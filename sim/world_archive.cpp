@@ -1,0 +1,103 @@
+// A world as bytes, and back.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+#include <utility>
+
+#include "io/number_format.h"
+#include "sim/world_checks.h"
+#include "sim/world_parts.h"
+#include "topology/mesh_archive.h"
+
+namespace incise::sim {
+
+namespace {
+
+double read_time(topology::ArchiveReader& ar) {
+    const auto time = ar.read<double>();
+    if (!(time >= 0.0 && std::isfinite(time)))
+        throw InputError("its time is " + io::format_number(time) + " s");
+    return time;
+}
+
+}  // namespace
+
+World::Parts::Parts(const Parts& former, topology::ArchiveReader& ar)
+    : mesh(topology::load_mesh(ar)),
+      time(read_time(ar)),
+      model(mesh, former.model.elements().materials(), ar, time),
+      integrator(make_integrator(former.solver)),
+      solver(former.solver),
+      ledger(model),
+      cutter(mesh, model.positions()) {
+    integrator->restore(ar, model);
+    ledger.restore(ar);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved);
+    if (!ar.is_at_end()) throw InputError("there are data beyond the end of the world");
+    prepare_tools();
+    require_sound_grasps();
+    model.set_num_threads(former.model.num_threads());
+}
+
+void World::Parts::require_sound_grasps() const {
+    const bool fits = constraints.fits(model.num_supports()) &&
+                      loads.fits(model.loads().all().size()) &&
+                      std::ranges::all_of(grasps, [&](const auto& row) {
+                          const std::size_t place = constraints.place(row.first);
+                          return row.second.pose.is_sound() && row.second.target.is_sound() &&
+                                 !model.supports().all()[place].grip.is_empty();
+                      });
+    if (!fits) throw InputError("its constraints and loads are those of another world");
+}
+
+void World::Parts::save(topology::ArchiveWriter& ar) const {
+    topology::save(mesh, ar);
+    ar(time);
+    model.save(ar);
+    integrator->save(ar);
+    ledger.save(ar);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved);
+}
+
+/// What an archive does not hold of tools, or holds wrongly.
+void World::Parts::prepare_tools() {
+    if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+        Tool& tool = tools[i];
+        require_sound(tool.def);
+        require_sound_pose({i}, tool.pose);
+        require_sound_pose({i}, tool.target);
+        const auto* blade = std::get_if<Blade>(&tool.def.shape);
+        const bool splits = blade && blade->mode == CutMode::split;
+        if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))
+            throw InputError("the cut of a tool is not there");
+        tool.surface = cutting::cut_surface_of(tool.def.shape);
+    }
+}
+
+namespace {
+
+/// To be changed with what save() lists and with the bits that a world computes.
+constexpr std::uint32_t state_format = 1;
+constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
+
+}  // namespace
+
+std::string World::save() const {
+    topology::ArchiveWriter ar;
+    ar(state_mark, state_format);
+    parts_->save(ar);
+    return ar.bytes();
+}
+
+void World::restore(std::string_view bytes) {
+    topology::ArchiveReader ar(bytes);
+    const auto mark = ar.read<std::uint32_t>();
+    const auto format = ar.read<std::uint32_t>();
+    if (mark != state_mark) throw InputError("this is no saved world");
+    if (format != state_format)
+        throw InputError("the world was saved in format " + std::to_string(format) +
+                         ", and this version reads " + std::to_string(state_format));
+    parts_ = std::make_unique<Parts>(*parts_, ar);
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,18 @@
+// What is at fault with what a world is given.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "physics/loads.h"
+#include "physics/supports.h"
+#include "sim/world.h"
+
+namespace incise::sim {
+
+/// Throws InputError for a shape that is none.
+void require_sound(const ToolDef& def);
+/// Throws InputError for nodes that are not there, or for none.
+void require_sound(const physics::Support& constraint, const topology::Mesh& mesh);
+/// Throws InputError unless a load acts on something that is there, with a finite value.
+void require_sound(const physics::Load& load, const topology::Mesh& mesh);
+
+}  // namespace incise::sim

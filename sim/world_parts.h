@@ -1,0 +1,82 @@
+// What a world consists of. Internal to sim.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "physics/integrator.h"
+#include "sim/numbering.h"
+#include "sim/world.h"
+#include "topology/archive.h"
+
+namespace incise::sim {
+
+std::unique_ptr<physics::Integrator> make_integrator(Solver solver);
+
+// A body that can be cut, in the order in which its parts refer to each other.
+struct World::Parts {
+    /// A tool in its world.
+    struct Tool {
+        ToolDef def;
+        std::optional<cutting::CutId> cut = {};                   // of a blade that splits
+        std::shared_ptr<const cutting::CutSurface> surface = {};  // of a cut at once
+        bool is_present = false;
+        Pose pose = {};    // now
+        Pose target = {};  // at the end of the next step
+        bool is_leaving = false;
+        std::optional<Pose> pose_before_end = {};
+        std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // of a blade
+
+        static void archive(auto& ar, auto& self) {
+            ar(self.def.name, self.def.shape, self.cut, self.is_present, self.pose, self.target,
+               self.is_leaving, self.pose_before_end, self.edge_after, self.motion);
+        }
+    };
+
+    /// Where the frame of a grasp is, and where it is to be at the end of the next step.
+    struct Grasp {
+        Pose pose, target;
+        static void archive(auto& ar, auto& self) { ar(self.pose, self.target); }
+    };
+
+    explicit Parts(WorldDef def);
+    /// What save() wrote of a world that was made as `former` was.
+    Parts(const Parts& former, topology::ArchiveReader& ar);
+    void save(topology::ArchiveWriter& ar) const;
+    void prepare_tools();
+    void require_sound_grasps() const;
+
+    void step_to(double end);
+    void cut_with(ToolId id, double end);
+    cutting::Split split_with(Tool& tool);
+    void follow(ToolId id, cutting::Split done, double end);
+    Tool& tool_of(ToolId id);
+    void require_sound_pose(ToolId id, const Pose& pose) const;
+    bool is_any_tool_present() const {
+        return std::ranges::any_of(tools, [](const Tool& tool) { return tool.is_present; });
+    }
+
+    Mesh mesh;
+    double time = 0.0;
+    physics::Model model;
+    std::unique_ptr<physics::Integrator> integrator;
+    Solver solver;
+    Ledger ledger;
+    cutting::Cutter cutter;
+    std::vector<Tool> tools;
+    Numbering constraints{"constraint"};
+    std::map<std::size_t, Grasp> grasps;  // by the number of the constraint
+    Numbering loads{"load"};
+    bool loads_have_changed = false;  // since forces were computed
+    std::optional<topology::BoundarySurface> surface;
+    StepReport report;
+    std::uint64_t num_steps = 0;
+    bool has_moved = true;  // since the last edit
+    bool has_failed = false;
+};
+
+}  // namespace incise::sim

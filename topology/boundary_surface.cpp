@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/boundary_surface.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "topology/error.h"
+
+namespace incise::topology {
+
+namespace {
+
+template <class T>
+void sort_and_make_unique(std::vector<T>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/// The elements whose faces may be others now, dead ones too.
+std::vector<ElementId> elements_with_other_faces(const ChangeSet& changes) {
+    std::vector<ElementId> touched;
+    for (const auto* records : {&changes.elements_added, &changes.elements_removed})
+        for (const ElementRecord& record : *records) {
+            touched.push_back(record.id);
+            if (record.parent.is_valid()) touched.push_back(record.parent);
+        }
+    for (const Rewiring& rewiring : changes.rewired) touched.push_back(rewiring.element);
+    for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
+        for (const FacePair& pair : *pairs) {
+            touched.push_back(pair.a.element);
+            touched.push_back(pair.b.element);
+        }
+    sort_and_make_unique(touched);
+    return touched;
+}
+
+}  // namespace
+
+BoundarySurface::BoundarySurface(const Mesh& mesh) : epoch_(mesh.epoch()) {
+    for (const ElementId e : mesh.elements()) add_faces(mesh, e);
+}
+
+void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
+    for (int f = 0; f < mesh.num_faces(e); ++f) {
+        const FaceId face{e, f};
+        if (mesh.neighbor(face).is_valid()) continue;
+        for (int p = 2; p < mesh.face_size(face); ++p) {
+            places_[e].push_back(triangles_.size());
+            changed_.push_back(triangles_.size());
+            triangles_.push_back({mesh.face_corner(face, 0), mesh.face_corner(face, p - 1),
+                                  mesh.face_corner(face, p)});
+            faces_.push_back(face);
+            is_cut_.push_back(mesh.was_inside(face) ? 1 : 0);
+        }
+    }
+}
+
+/// The last triangle of the list takes the place of one that goes.
+void BoundarySurface::remove_faces(ElementId e) {
+    const auto row = places_.find(e);
+    if (row == places_.end()) return;
+    std::vector<std::size_t> places = std::move(row->second);
+    places_.erase(row);
+    std::sort(places.rbegin(), places.rend());
+    for (const std::size_t place : places) {
+        const std::size_t last = triangles_.size() - 1;
+        if (place != last) {
+            triangles_[place] = triangles_[last];
+            faces_[place] = faces_[last];
+            is_cut_[place] = is_cut_[last];
+            std::ranges::replace(places_.at(faces_[place].element), last, place);
+        }
+        changed_.push_back(place);
+        changed_.push_back(last);
+        triangles_.pop_back();
+        faces_.pop_back();
+        is_cut_.pop_back();
+    }
+}
+
+void BoundarySurface::apply(const Mesh& mesh, const ChangeSet& changes) {
+    if (changes.is_empty()) return;
+    if (changes.epoch_before != epoch_ || changes.epoch_after != mesh.epoch())
+        throw InputError("surface: an edit out of turn: it leads from epoch " +
+                         std::to_string(changes.epoch_before) + " to " +
+                         std::to_string(changes.epoch_after) + ", the surface is at " +
+                         std::to_string(epoch_) + " and the mesh at " +
+                         std::to_string(mesh.epoch()));
+    epoch_ = changes.epoch_after;
+    const auto touched = elements_with_other_faces(changes);
+    for (const ElementId e : touched) remove_faces(e);
+    for (const ElementId e : touched)
+        if (e.index() < mesh.element_capacity() && mesh.is_alive(e)) add_faces(mesh, e);
+    // Nobody may ever take them.
+    if (changed_.size() > 2 * triangles_.size() + 1024) sort_and_make_unique(changed_);
+}
+
+std::vector<std::size_t> BoundarySurface::take_changes() {
+    std::vector<std::size_t> changes = std::exchange(changed_, {});
+    sort_and_make_unique(changes);
+    return changes;
+}
+
+}  // namespace incise::topology

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "topology/mesh_archive.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "topology/validate.h"
+
+namespace incise::topology {
+
+/// Lists what a mesh consists of. What follows from that is made anew: rows by their kinds, and the
+/// map.
+class MeshArchive {
+  public:
+    static void list(auto& ar, auto& m) {
+        ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.anchors_, m.kinds_,
+           m.alive_, m.regions_, m.corners_, m.neighbors_, m.was_inside_, m.node_labels_,
+           m.element_labels_, m.label_nodes_, m.pinched_);
+    }
+
+    static Mesh load(ArchiveReader& ar) {
+        Mesh mesh;
+        list(ar, mesh);
+        MeshArchive(mesh).restore_rows();
+        MeshArchive(mesh).require_ids();
+        MeshArchive(mesh).restore_map();
+        if (const auto faults = validate(mesh); !faults.empty())
+            throw InputError("it is no sound mesh: " + faults.front());
+        return mesh;
+    }
+
+  private:
+    explicit MeshArchive(Mesh& mesh) : mesh_(mesh) {}
+
+    static void require(bool holds, const char* text) {
+        if (!holds) throw InputError(std::string("it is no sound mesh: ") + text);
+    }
+
+    void restore_rows() {
+        for (const CellKind kind : mesh_.kinds_) {
+            require(static_cast<std::size_t>(kind) < num_cell_kinds, "an unknown kind of element");
+            const CellTraits& t = traits(kind);
+            mesh_.corner_begin_.push_back(mesh_.corner_begin_.back() +
+                                          static_cast<std::size_t>(t.num_corners));
+            mesh_.face_begin_.push_back(mesh_.face_begin_.back() +
+                                        static_cast<std::size_t>(t.num_faces));
+        }
+        const std::size_t num_elements = mesh_.kinds_.size();
+        require(mesh_.alive_.size() == num_elements && mesh_.regions_.size() == num_elements &&
+                    mesh_.corners_.size() == mesh_.corner_begin_.back() &&
+                    mesh_.neighbors_.size() == mesh_.face_begin_.back() &&
+                    mesh_.was_inside_.size() == mesh_.face_begin_.back() &&
+                    mesh_.anchors_.size() == mesh_.rest_positions_.size() &&
+                    mesh_.element_labels_.size() <= num_elements &&
+                    mesh_.node_labels_.size() <= mesh_.anchors_.size(),
+                "its lists are of different lengths");
+    }
+
+    void require_ids() const {
+        const auto is_node = [&](NodeId n) {
+            return n.is_valid() && n.index() < mesh_.node_capacity();
+        };
+        const auto is_element_or_none = [&](ElementId e) {
+            return !e.is_valid() || e.index() < mesh_.element_capacity();
+        };
+        const auto is_face_or_none = [&](FaceId f) {
+            return !f.is_valid() || (is_element_or_none(f.element) && f.face >= 0 &&
+                                     f.face < mesh_.num_faces(f.element));
+        };
+        const auto is_labelled = [&](NodeId n) {
+            return !n.is_valid() || n.index() < mesh_.node_labels_.size();
+        };
+        require(std::ranges::all_of(mesh_.rest_positions_,
+                                    [](const Vec3& x) { return x.allFinite(); }) &&
+                    std::ranges::all_of(mesh_.corners_, is_node) &&
+                    std::ranges::all_of(mesh_.anchors_, is_element_or_none) &&
+                    std::ranges::all_of(mesh_.neighbors_, is_face_or_none) &&
+                    std::ranges::all_of(mesh_.label_nodes_, is_labelled) &&
+                    std::ranges::all_of(mesh_.pinched_,
+                                        [&](const auto& row) { return is_node(row.second); }),
+                "a node or an element that it names is not there");
+    }
+
+    void restore_map() {
+        for (std::size_t i = 0; i < mesh_.element_capacity(); ++i) {
+            const ElementId e(i);
+            mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions_);
+            if (!mesh_.is_alive(e)) mesh_.map_.remove_element(e);
+        }
+        for (const ElementId e : mesh_.elements())
+            for (int f = 0; f < mesh_.num_faces(e); ++f) {
+                const FaceId face{e, f}, other = mesh_.neighbor(face);
+                if (!other.is_valid()) continue;
+                require(mesh_.is_alive(other.element) && other.element != e &&
+                            mesh_.neighbor(other) == face,
+                        "neighbours do not know each other");
+                const int shift = matching_shift(mesh_, face, other);
+                require(shift >= 0, "neighbours disagree on their face");
+                if (face < other) mesh_.map_.glue(face, other, shift);
+            }
+        // Elements that came and went have taken the darts by which CGAL finds vertices with them.
+        for (const NodeId n : mesh_.nodes()) {
+            const ElementId anchor = mesh_.anchor(n);
+            const int corner = mesh_.is_alive(anchor) ? mesh_.corner_of(anchor, n) : -1;
+            require(corner >= 0, "a node has no element");
+            mesh_.map_.set_anchor(n, anchor, corner);
+        }
+    }
+
+    Mesh& mesh_;
+};
+
+void save(const Mesh& mesh, ArchiveWriter& ar) { MeshArchive::list(ar, mesh); }
+
+Mesh load_mesh(ArchiveReader& ar) { return MeshArchive::load(ar); }
+
+}  // namespace incise::topology

@@ -1,0 +1,36 @@
+// Where a rigid thing is.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "topology/types.h"
+
+namespace incise {
+
+/// Rigid placement of a frame: x = rotation * local + position.
+struct Pose {
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+    Vec3 position = Vec3::Zero();  ///< m
+
+    Vec3 to_world(const Vec3& local) const { return rotation * local + position; }
+    Vec3 to_tool(const Vec3& world) const { return rotation.conjugate() * (world - position); }
+
+    /// True for a finite position and a rotation of unit length, to rounding.
+    bool is_sound() const {
+        return position.allFinite() && std::abs(rotation.squaredNorm() - 1.0) < 1e-6;
+    }
+
+    static void archive(auto& ar, auto& self) {
+        auto& q = self.rotation.coeffs();
+        ar(q.x(), q.y(), q.z(), q.w(), self.position);
+    }
+};
+
+/// Between a (s = 0) and b (s = 1): position linear, orientation along the shortest turn.
+inline Pose interpolate(const Pose& a, const Pose& b, double s) {
+    return {a.rotation.slerp(s, b.rotation), a.position + s * (b.position - a.position)};
+}
+
+}  // namespace incise
