@@ -31,9 +31,8 @@ int convert(const ConvertOptions& options) {
     const std::string prefix = options.in.string() + ": ";
     for (const auto& warning : file.warnings) print_warning(prefix + warning);
     std::string report;
-    if (options.weld)
-        report = "; " + weld(file.mesh, prefix);
-    else if (const auto warning = topology::coincidence_warning(file.mesh))
+    if (options.weld) report = "; " + weld(file.mesh, prefix);
+    if (const auto warning = topology::coincidence_warning(file.mesh))  // after welding, of gaps
         print_warning(prefix + *warning);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "

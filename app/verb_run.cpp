@@ -53,31 +53,23 @@ class ProgressObserver : public sim::Observer {
     Progress progress_;
 };
 
-/// Warns of each edit after which steps are ten times as short as at the start, or as at the
-/// warning before.
-class ShortStepObserver : public sim::Observer {
+/// Prints the warnings that the simulation adds while it goes on.
+class WarningObserver : public sim::Observer {
   public:
-    void on_edit(const sim::Simulation& simulation, const sim::EditRecord& edit) override {
-        constexpr double much_shorter = 0.1;
-        const sim::DynamicsSpec& dynamics = simulation.scenario().dynamics;
-        const double known = last_told_.value_or(simulation.ledger().initial().stable_step),
-                     now = edit.after.stable_step;
-        if (dynamics.mode == sim::Mode::statics ||
-            dynamics.integrator != sim::TimeIntegrator::semi_implicit_euler ||
-            !(now < much_shorter * known))
-            return;
-        last_told_ = now;
-        std::ostringstream text;
-        text.precision(3);
-        text << "tool '" << edit.tool << "', at t = " << edit.time
-             << " s: its cut has left elements so thin that the stable step fell from " << known
-             << " to " << now << " s: the run takes " << known / now
-             << " times as long from here on; use a larger tool.snap";
-        print_warning(text.str());
+    explicit WarningObserver(const sim::Simulation& simulation)
+        : num_told_(simulation.warnings().size()) {}
+
+    void on_edit(const sim::Simulation& simulation, const sim::EditRecord&) override {
+        tell(simulation);
+    }
+    /// Those of the last step are of the state at the end, and come behind the progress.
+    void tell(const sim::Simulation& simulation) {
+        for (; num_told_ < simulation.warnings().size(); ++num_told_)
+            print_warning(simulation.warnings()[num_told_]);
     }
 
   private:
-    std::optional<double> last_told_;  // stable step, s
+    std::size_t num_told_;
 };
 
 int num_threads(const RunOptions& options) {
@@ -185,12 +177,11 @@ int tell_expectations(const sim::Scenario& scenario, const sim::Quantities& quan
 int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptions& options,
              const StopSignals& signals) {
     const sim::Scenario& scenario = simulation.scenario();
-    const std::size_t num_told = simulation.warnings().size();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
     simulation.add_observer(progress);
-    ShortStepObserver short_steps;
-    simulation.add_observer(short_steps);
+    WarningObserver warnings(simulation);
+    simulation.add_observer(warnings);
 
     const Stopwatch watch;
     const auto finish = [&](sim::Outcome outcome) {
@@ -227,8 +218,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         return 128 + signals.noted();
     }
     finish({});
-    for (std::size_t i = num_told; i < simulation.warnings().size(); ++i)  // what it has shown
-        print_warning(simulation.warnings()[i]);
+    warnings.tell(simulation);
     warn_of_idle_tools(simulation);
 
     if (!options.quiet)

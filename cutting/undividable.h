@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "cutting/cut_surface.h"
@@ -25,5 +27,22 @@ struct UndividableElement : InputError {
 /// and that the surface may meet a look at their edges.
 std::optional<topology::ElementId> first_undividable(const topology::Mesh& mesh,
                                                      const CutSurface& surface);
+
+/// Elements that surfaces do not cross at rest and that are not tetrahedra, but that they come near
+/// to.
+struct NearMisses {
+    std::set<topology::ElementId> elements;
+    topology::ElementId nearest;                                ///< one of them, if there are any
+    double distance = std::numeric_limits<double>::infinity();  ///< of the nearest, m
+
+    bool is_empty() const { return elements.empty(); }
+};
+
+/// Adds the elements that the surface comes nearer to than `margin` times the mean length of their
+/// edges, where the mesh is at rest.
+/// @pre  first_undividable() finds none
+/// Cost: as first_undividable().
+void add_near_misses(const topology::Mesh& mesh, const CutSurface& surface, double margin,
+                     NearMisses& found);
 
 }  // namespace incise::cutting

@@ -28,6 +28,23 @@ std::vector<std::string> files_of_series(const InputFile& file) {
     return names;
 }
 
+void refuse_series(const InputFile& file) {
+    const auto json = nlohmann::json::parse(file.bytes, nullptr, false);
+    if (!json.is_object())
+        throw InputError(file.name() +
+                         ": is no readable series of frames, which is an object in JSON with a "
+                         "list of \"files\"; give one of the frames, which are .vtu files");
+    const auto files = files_of_series(file);
+    if (files.empty()) refuse_empty_index(file);
+    refuse_index(file, files);
+}
+
+void refuse_empty_index(const InputFile& index) {
+    throw InputError(index.name() +
+                     ": is an index of other files and names none; give a file with a mesh, such "
+                     "as a .vtu");
+}
+
 void refuse_index(const InputFile& index, const std::vector<std::string>& names, bool are_parts) {
     const auto first = beside(index, names.front()), last = beside(index, names.back());
     const bool is_one = names.size() == 1;

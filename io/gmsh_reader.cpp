@@ -95,12 +95,17 @@ class GmshReader {
             scanner_.fail("is a Gmsh file of version 1; save it as version 4.1 or 2.2");
         if (name == "MeshFormat") {
             read_format();
-        } else if (is_version_2_ && name == "ParametricNodes") {
-            read_nodes_2(true);
-        } else if (name == "Nodes" || name == "Elements" || name == "Entities" ||
-                   name == "PartitionedEntities") {
+        } else if (name == "Nodes" || name == "ParametricNodes" || name == "Elements" ||
+                   name == "Entities" || name == "PartitionedEntities") {
             if (!has_format_) scanner_.fail("$" + std::string(name) + " comes before $MeshFormat");
             if (name == "Nodes") is_version_2_ ? read_nodes_2(false) : read_nodes_4();
+            if (name == "ParametricNodes") {
+                if (!is_version_2_)
+                    scanner_.fail(
+                        "$ParametricNodes belongs to version 2; save the mesh anew as "
+                        "Gmsh version 4.1 or 2.2");
+                read_nodes_2(true);
+            }
             if (name == "Elements") is_version_2_ ? read_elements_2() : read_elements_4();
             if (name == "Entities") read_entities(false);
             if (name == "PartitionedEntities") read_entities(true);
@@ -114,8 +119,17 @@ class GmshReader {
             return;
         }
         const auto end = "$End" + std::string(name);
+        if (scanner_.at_end()) fail_unclosed(name, "the end of the file");
         const auto found = scanner_.token(end);
-        if (found != end) scanner_.fail_expected(end, found);
+        if (found == end) return;
+        if (found.starts_with('$')) fail_unclosed(name, in_quotes(found));
+        scanner_.fail_expected(end, found);
+    }
+
+    [[noreturn]] void fail_unclosed(std::string_view name, const std::string& before) const {
+        const auto end = "$End" + std::string(name);
+        scanner_.fail("section " + in_quotes(name) + " has no " + in_quotes(end) + " before " +
+                      before + "; the file is damaged: save the mesh anew, or add that line");
     }
 
     void read_format() {

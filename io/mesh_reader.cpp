@@ -3,6 +3,7 @@
 #include "io/mesh_reader.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <string_view>
 
 #include "io/abaqus_reader.h"
@@ -12,6 +13,7 @@
 #include "io/legacy_vtk_reader.h"
 #include "io/medit_reader.h"
 #include "io/mesh_text.h"
+#include "io/number_text.h"
 #include "io/scanner.h"
 #include "io/tetgen_reader.h"
 #include "io/vtu_reader.h"
@@ -94,6 +96,20 @@ std::string_view behind_blanks(std::string_view text) {
     return {std::find_if_not(text.begin(), text.end(), is_blank), text.end()};
 }
 
+/// Whether the text begins as meshes of FreeFEM do: with a line of three counts, of points, cells
+/// and boundary elements. Other formats begin so too: the suffix must tell as well.
+bool begins_like_freefem(std::string_view text) {
+    text = trimmed(text.substr(0, text.find('\n')));
+    int num_counts = 0;
+    while (!text.empty()) {
+        const auto end = std::find_if(text.begin(), text.end(), is_blank);
+        if (!parse_number<std::uint64_t>({text.begin(), end})) return false;
+        text = behind_blanks({end, text.end()});
+        ++num_counts;
+    }
+    return num_counts == 3;
+}
+
 /// Null if it is not known. Throws InputError for an index of other files or a mesh of another
 /// program.
 const ReadFormat* read_format_of(const InputFile& file) {
@@ -111,8 +127,16 @@ const ReadFormat* read_format_of(const InputFile& file) {
         if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
-    if (const auto files = files_of_series(file); !files.empty()) refuse_index(file, files);
     const auto suffix = lower_case(file.path.extension().string());
+    if (suffix == ".series")
+        refuse_series(file);
+    else if (const auto files = files_of_series(file); !files.empty())
+        refuse_index(file, files);
+    if (suffix == ".msh" && begins_like_freefem(text))
+        throw InputError(file.name() +
+                         ": begins with three counts and has no $MeshFormat, so it is a mesh of "
+                         "FreeFEM and not of Gmsh; FreeFEM writes MEDIT, which can be read, where "
+                         "the name ends so: savemesh(Th, \"NAME.mesh\")");
     for (const auto& format : read_formats)
         if (format.magic.empty() && suffix == format.suffix) return &format;
     return nullptr;
@@ -124,10 +148,11 @@ void finish(const InputFile& file, MeshFile& result) {
     if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
         std::string_view::npos)
         result.mesh.points_may_coincide = true;
-    if (topology::turn_inverted_cells(result.mesh)) {
-        const auto num_cells = result.mesh.num_cells();
+    if (const auto num_inverted = topology::turn_inverted_cells(result.mesh)) {
+        const auto num_cells = result.mesh.num_cells(), num_flat = num_cells - num_inverted;
         result.warnings.push_back(
             (num_cells == 1 ? "the only cell has"
+             : num_flat > 0 ? "all cells but " + std::to_string(num_flat) + " without volume have"
                             : "all " + std::to_string(num_cells) + " cells have") +
             std::string(" negative volume by VTK's order of corners: the order was reversed; make "
                         "sure that the body is not the mirror image of what is meant"));

@@ -69,6 +69,7 @@ class VtuReader {
             for (const auto& found : root.select_nodes(".//@file | .//@Source"))
                 files.emplace_back(found.attribute().value());
             if (!files.empty()) refuse_index(file_, files, type == "PUnstructuredGrid");
+            if (type == "Collection" || type == "PUnstructuredGrid") refuse_empty_index(file_);
             throw InputError(file_.name() + ": holds a VTK dataset of type " + in_quotes(type) +
                              "; only UnstructuredGrid holds volume cells");
         }

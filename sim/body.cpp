@@ -419,7 +419,11 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
         const auto* cut = std::get_if<CutSpec>(&spec.kind);
         problems.try_to(cut ? cut->place : spec.place, [&] {
             tools.push_back(build_tool(spec, warnings));
-            if (suits_mesh) require_divisible(tools.back(), *mesh, end_time);
+            if (suits_mesh) {
+                require_divisible(tools.back(), *mesh, end_time);
+                if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
+                    warnings.push_back(placed(spec.place, *near));
+            }
             if (mesh && !spec.path.empty() && !may_meet(tools.back(), body))
                 idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
         });

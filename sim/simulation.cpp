@@ -45,7 +45,8 @@ Simulation::Simulation(const Scenario& scenario, Body body)
       warnings_(std::move(body.warnings)),
       world_(make_world(scenario, std::move(body.mesh), std::move(body.materials),
                         std::move(body.surroundings))),
-      fingerprint_(fingerprint_of(model(), scenario.tools)) {
+      fingerprint_(fingerprint_of(model(), scenario.tools)),
+      warned_step_(ledger().initial().stable_step) {
     for (ScriptedTool& tool : body.tools) {
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
         paths_.push_back(std::move(tool.path));
@@ -100,6 +101,7 @@ void Simulation::move_tools(Interval step) {
 void Simulation::tell_edits() {
     for (const Edit& edit : world_.report().edits) {
         edits_.push_back(edit.record);
+        warn_of_short_steps(edit.record);
         for (Observer* observer : observers_) observer->on_edit(*this, edits_.back());
     }
 }
@@ -115,9 +117,33 @@ void Simulation::restore(topology::ArchiveReader& ar) {
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
     if (world_.num_tools() != paths_.size()) throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits()) throw InputError("its books are not of its edits");
+    for (const EditRecord& edit : edits_) warn_of_short_steps(edit);
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
+}
+
+/// Of edits after which steps are ten times as short as at the start, or as at the warning before.
+void Simulation::warn_of_short_steps(const EditRecord& edit) {
+    constexpr double much_shorter = 0.1;
+    const DynamicsSpec& dynamics = scenario_.dynamics;
+    const double now = edit.after.stable_step;
+    if (dynamics.mode == Mode::statics ||
+        dynamics.integrator != TimeIntegrator::semi_implicit_euler ||
+        !(now < much_shorter * warned_step_))
+        return;
+    const cutting::ToolShape* shape = nullptr;
+    for (std::size_t i = 0; i < world_.num_tools(); ++i)
+        if (const ToolDef& tool = world_.tool({i}); tool.name == edit.tool) shape = &tool.shape;
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left "
+         << (shape && !divides(*shape) ? "stiff elements with so little mass" : "elements so thin")
+         << " that the stable step fell from " << warned_step_ << " to " << now
+         << " s: the run takes " << warned_step_ / now << " times as long from here on";
+    if (shape) text << "; " << for_longer_steps(*shape);
+    warnings_.push_back(text.str());
+    warned_step_ = now;
 }
 
 void Simulation::warn_of_lost_elements() {

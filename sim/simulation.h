@@ -74,6 +74,7 @@ class Simulation {
     double time_step() const;                      ///< s, of the last step, or of the first
     std::uint64_t num_steps() const { return world_.num_steps(); }
     std::uint64_t num_frames() const { return num_frames_; }
+    /// Those of before the start, and what the run has added up to now.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
@@ -86,6 +87,7 @@ class Simulation {
     double step_limit() const;
     void move_tools(Interval step);
     void tell_edits();
+    void warn_of_short_steps(const EditRecord& edit);
     void warn_of_lost_elements();
     void tell_frame();
     void tell_pause();
@@ -98,6 +100,7 @@ class Simulation {
     std::uint64_t fingerprint_;
     std::vector<EditRecord> edits_;
     double last_step_ = 0.0;
+    double warned_step_;  // s, the stable step of the last warning of it, or of the start
     std::uint64_t num_frames_ = 0;
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <sstream>
 #include <utility>
 
 #include "cutting/surface_check.h"
@@ -116,22 +118,15 @@ bool may_meet(const ScriptedTool& tool, const cutting::Box& box) {
     return box.intersects(cutting::Box(swept.min() - margin, swept.max() + margin));
 }
 
-void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time) {
-    const auto require = [&](const cutting::CutSurface& surface) {
-        const auto e = cutting::first_undividable(mesh, surface);
-        if (!e) return;
-        try {
-            cutting::refuse_to_divide(mesh, *e);
-        } catch (const cutting::UndividableElement& error) {
-            throw InputError("tool '" + tool.name + "' meets what it cannot divide: " +
-                             error.what() + "; " + instead_of_dividing(tool.shape));
-        }
-    };
+namespace {
+
+/// Calls look(surface) for each surface that the tool divides elements along up to `end_time`, s.
+void for_each_surface(const ScriptedTool& tool, double end_time,
+                      const std::function<void(const cutting::CutSurface&)>& look) {
     const auto& keys = tool.path.keys();
-    if (keys.empty() || keys.front().time > end_time) return;
-    if (tool.surface) return require(*tool.surface);
-    const auto* blade = std::get_if<cutting::Blade>(&tool.shape);
-    if (!blade || blade->mode != CutMode::split) return;
+    if (keys.empty() || keys.front().time > end_time || !divides(tool.shape)) return;
+    if (tool.surface) return look(*tool.surface);
+    const auto& blade = std::get<cutting::Blade>(tool.shape);
     // Between keys that turn the edge, its points go on arcs: in short pieces.
     constexpr double longest_turn = 0.05;
     for (std::size_t key = 1; key < keys.size(); ++key) {
@@ -143,12 +138,53 @@ void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, dou
             const double at =
                 part == num_parts ? to.time : from.time + part * (to.time - from.time) / num_parts;
             std::vector<Vec3> points;
-            cutting::place_edge(*blade, tool.path.pose(std::min(at, end_time)), points);
+            cutting::place_edge(blade, tool.path.pose(std::min(at, end_time)), points);
             return points;
         };
         for (int part = 0; part < num_parts; ++part)
-            require(cutting::SweptEdge(edge(part), edge(part + 1)));
+            look(cutting::SweptEdge(edge(part), edge(part + 1)));
     }
+}
+
+}  // namespace
+
+void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time) {
+    for_each_surface(tool, end_time, [&](const cutting::CutSurface& surface) {
+        const auto e = cutting::first_undividable(mesh, surface);
+        if (!e) return;
+        try {
+            cutting::refuse_to_divide(mesh, *e);
+        } catch (const cutting::UndividableElement& error) {
+            throw InputError("tool '" + tool.name + "' meets what it cannot divide: " +
+                             error.what() + "; " + instead_of_dividing(tool.shape));
+        }
+    });
+}
+
+std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
+                                                  const topology::Mesh& mesh, double end_time) {
+    constexpr double margin = 0.05;  // of an element's mean edge: it takes little motion
+    cutting::NearMisses found;
+    for_each_surface(tool, end_time, [&](const cutting::CutSurface& surface) {
+        cutting::add_near_misses(mesh, surface, margin, found);
+    });
+    if (found.is_empty()) return std::nullopt;
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << tool.name << "' passes ";
+    if (found.distance > 0.0)
+        text << "only " << found.distance << " m from";
+    else
+        text << "along a side of";
+    text << " element " << mesh.label(found.nearest) << ", a "
+         << topology::traits(mesh.kind(found.nearest)).name
+         << " that it cannot divide, where the body rests";
+    const std::size_t num_others = found.elements.size() - 1;
+    if (num_others > 0)
+        text << " (and near " << num_others << (num_others == 1 ? " other)" : " others)");
+    text << ": the run stops if the tissue moves into it; keep it farther from there, or "
+         << instead_of_dividing(tool.shape);
+    return text.str();
 }
 
 std::string instead_of_dividing(const cutting::ToolShape& shape) {
@@ -156,6 +192,20 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
         return "use mode = \"separate\", which opens the faces nearest to it";
     return "use a blade with mode = \"separate\", which opens the faces nearest to it, or keep "
            "the cut to tetrahedra";
+}
+
+bool divides(const cutting::ToolShape& shape) {
+    if (const auto* blade = std::get_if<cutting::Blade>(&shape))
+        return blade->mode == CutMode::split;
+    return !std::holds_alternative<Carver>(shape);
+}
+
+std::string for_longer_steps(const cutting::ToolShape& shape) {
+    if (divides(shape)) return "use a larger tool.snap";
+    const std::string extent = std::holds_alternative<Carver>(shape) ? "shape" : "edge";
+    return "change tool." + extent +
+           " or tool.path, so that it takes those as well or leaves "
+           "them more of what they hang on";
 }
 
 }  // namespace incise::sim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,16 @@ bool may_meet(const ScriptedTool& tool, const cutting::Box& box);
 /// divide, where the body rests: a run would stop there. Its path after `end_time`, s, is not
 /// looked at. Cost: O(#elements) for each key.
 void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time);
+/// A warning of elements that it cannot divide and comes near to at rest, if it is to divide and
+/// there are any: tissue that moves may come into its way.
+/// @pre  require_divisible() throws nothing
+/// Cost: as there.
+std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
+                                                  const topology::Mesh& mesh, double end_time);
+/// True if the tool divides elements: a cut, or a blade in the mode "split".
+bool divides(const cutting::ToolShape& shape);
+/// What to do where the edits of a tool leave a stable step that is too short.
+std::string for_longer_steps(const cutting::ToolShape& shape);
 /// What to do about such an element.
 std::string instead_of_dividing(const cutting::ToolShape& shape);
 

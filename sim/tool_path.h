@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "topology/pose.h"
 #include "sim/time_key.h"
+#include "topology/pose.h"
 
 namespace incise::sim {
 

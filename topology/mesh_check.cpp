@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "topology/flat_cell.h"
 #include "topology/geometry.h"
 #include "topology/mesh_repair.h"
 
@@ -75,6 +76,12 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     if (!std::isfinite(volume)) {
         complaints.add("cells of no finite volume", data.cell_name(c),
                        " has no finite volume; its coordinates are too large: scale the mesh");
+        return;
+    }
+    if (volume < 0.0 && is_flat_to_rounding(kind, {x.data(), corners.size()}, volume)) {
+        complaints.add("cells without positive volume", data.cell_name(c),
+                       " is flat: its volume of ", volume,
+                       " is nothing but rounding; remove it or remesh");
         return;
     }
     if (!(volume > 0.0)) {

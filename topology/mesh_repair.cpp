@@ -6,11 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "topology/flat_cell.h"
 #include "topology/geometry.h"
+#include "topology/weld_outlook.h"
 
 namespace incise::topology {
 
@@ -45,20 +48,22 @@ std::vector<std::int64_t> used_points(const MeshData& data) {
     return used;
 }
 
-/// Of each point the lowest one at its position. Points that no cell uses stand for themselves.
-/// A sweep along one direction compares few points with each other: the direction is that of no
-/// plane in which meshes have many of their points.
-std::vector<std::int64_t> lowest_at_position(const MeshData& data) {
+/// Of each point the lowest one at its position: nearer than `part` of the shortest edge.
+/// Points that no cell uses stand for themselves.
+/// A sweep along one direction compares few points with each other, and most of those along a
+/// second one only: the directions are those of no plane in which meshes have many of their points.
+std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) {
     struct Leader {
-        double at;
+        double at, across;
         std::int64_t point;
     };
-    static const Vec3 direction = Vec3(1.0, std::sqrt(2.0), std::sqrt(3.0)) / std::sqrt(6.0);
-    const double tolerance = weld_tolerance * shortest_edge(data);
+    static const Vec3 direction = Vec3(1.0, std::sqrt(2.0), std::sqrt(3.0)) / std::sqrt(6.0),
+                      second = Vec3(std::sqrt(5.0), -1.0, std::sqrt(7.0)) / std::sqrt(13.0);
+    const double tolerance = part * shortest_edge(data);
 
     std::vector<Leader> order;
     for (const std::int64_t p : used_points(data))
-        order.push_back({direction.dot(position_of(data, p)), p});
+        order.push_back({direction.dot(position_of(data, p)), second.dot(position_of(data, p)), p});
     std::sort(order.begin(), order.end(), [](const Leader& a, const Leader& b) {
         return std::pair(a.at, a.point) < std::pair(b.at, b.point);
     });
@@ -67,16 +72,17 @@ std::vector<std::int64_t> lowest_at_position(const MeshData& data) {
     std::iota(leader_of.begin(), leader_of.end(), 0);
     std::vector<Leader> leaders;
     std::size_t begin = 0;  // of the leaders that later points may be near to
-    for (const auto& [at, point] : order) {
+    for (const auto& [at, across, point] : order) {
         while (begin < leaders.size() && leaders[begin].at < at - 2.0 * tolerance) ++begin;
         const Vec3& here = position_of(data, point);
         const auto found = std::find_if(
             leaders.begin() + static_cast<std::ptrdiff_t>(begin), leaders.end(),
             [&](const Leader& leader) {
-                return (position_of(data, leader.point) - here).stableNorm() <= tolerance;
+                return !(std::abs(leader.across - across) > 2.0 * tolerance) &&
+                       (position_of(data, leader.point) - here).stableNorm() <= tolerance;
             });
         if (found == leaders.end())
-            leaders.push_back({at, point});
+            leaders.push_back({at, across, point});
         else
             leader_of[static_cast<std::size_t>(point)] = found->point;
     }
@@ -106,37 +112,97 @@ std::string corner_name(const MeshData& data, std::size_t point) {
     return data.point_name(point) + " of " + data.cell_name(c);
 }
 
+/// Why to weld the points or why not, and how.
+std::string remedy_for_coincidence(const MeshData& data) {
+    const std::string apart =
+        "if they are meant to be apart, as the faces of a cut are, say 'weld = false' ";
+    const std::string or_apart = ", or, " + apart + "in [mesh] of a scenario";
+    const WeldOutlook outlook = outlook_of_weld(data);
+    if (outlook.error)
+        return "welding them leaves no sound mesh (" + *outlook.error + "): remesh" + or_apart;
+    const bool is_of_use = outlook.num_idle < outlook.num_joined;
+    std::string obstacle = "no faces there have the same corners";
+    if (const auto& unlike = outlook.unlike_faces)
+        obstacle += ", such as the quadrilateral of " + data.cell_name(unlike->first) +
+                    " and the triangles on it, one of " + data.cell_name(unlike->second);
+    if (!is_of_use)
+        return "welding does not join the cells, since " + obstacle + ": " +
+               (outlook.unlike_faces ? "use one kind of element"
+                                     : "let the meshes match where they meet") +
+               or_apart;
+    std::string text =
+        "join them with 'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a "
+        "scenario";
+    if (outlook.num_idle > 0)
+        text += ", which joins no cells at " + std::to_string(outlook.num_idle) +
+                " of them, since " + obstacle;
+    return text + "; " + apart + "there";
+}
+
+/// About points that are near to others, but not at one position.
+std::optional<std::string> nearness_warning(const MeshData& data,
+                                            const std::vector<std::int64_t>& lowest) {
+    const auto is_on_boundary = points_of_boundary(data);
+    std::size_t num_near = 0, example = 0;
+    for (const std::size_t p : doubles(lowest)) {
+        if (!is_on_boundary[p] || !is_on_boundary[static_cast<std::size_t>(lowest[p])]) continue;
+        if (num_near++ == 0) example = p;
+    }
+    if (num_near == 0) return std::nullopt;
+    const auto other = static_cast<std::size_t>(lowest[example]);
+    std::ostringstream text;
+    text << num_near << (num_near == 1 ? " point is" : " points are") << " within "
+         << near_tolerance << " of the shortest edge of " << (num_near == 1 ? "another" : "others")
+         << " and not joined, so the cells do not hang together there: " << corner_name(data, other)
+         << " and " << corner_name(data, example) << " are "
+         << (data.points[example] - data.points[other]).norm()
+         << " apart; move them onto each other where the mesh is made, since welding joins only "
+            "points within "
+         << weld_tolerance
+         << " of it, or, if the gap is meant, say 'weld = false' in [mesh] of a scenario";
+    return text.str();
+}
+
 }  // namespace
 
 std::optional<std::string> coincidence_warning(const MeshData& data) {
     if (data.points_may_coincide) return std::nullopt;
-    const auto lowest = lowest_at_position(data);
+    const auto near = lowest_at_position(data, near_tolerance);
+    if (doubles(near).empty()) return std::nullopt;
+    const auto lowest = lowest_at_position(data, weld_tolerance);
     const auto found = doubles(lowest);
-    if (found.empty()) return std::nullopt;
+    // Those of a welded mesh are apart but for rounding.
+    if (found.empty() || !data.welded_to.empty()) return nearness_warning(data, near);
     const std::size_t example = found.front();
     const Vec3& x = data.points[example];
     std::ostringstream text;
-    text
-        << found.size()
-        << (found.size() == 1 ? " point is not joined to another"
-                              : " points are not joined to others")
-        << " at the same position, so the cells do not hang together there: "
-        << corner_name(data, static_cast<std::size_t>(lowest[example])) << " and "
-        << corner_name(data, example) << " are both at (" << x.x() << ", " << x.y() << ", " << x.z()
-        << "); join them with 'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a "
-           "scenario; if they are meant to be apart, as the faces of a cut are, say 'weld = false' "
-           "there";
+    text << found.size()
+         << (found.size() == 1 ? " point is not joined to another"
+                               : " points are not joined to others")
+         << " at the same position, so the cells do not hang together there: "
+         << corner_name(data, static_cast<std::size_t>(lowest[example])) << " and "
+         << corner_name(data, example) << " are both at (" << x.x() << ", " << x.y() << ", "
+         << x.z() << "); " << remedy_for_coincidence(data);
     return text.str();
 }
 
+// Again and again: the points that stand for others, and the shortest edge, are not quite those of
+// before. What is left at last is apart for whoever looks again.
 std::size_t weld(MeshData& data) {
-    auto lowest = lowest_at_position(data);
-    const std::size_t num_joined = doubles(lowest).size();
-    if (num_joined == 0) return 0;
-    for (std::int64_t& corner : data.corners) corner = lowest[static_cast<std::size_t>(corner)];
-    data.welded_to = std::move(lowest);
-    data.points_may_coincide = false;
-    return num_joined;
+    std::size_t num_joined = 0;
+    while (true) {
+        const auto lowest = lowest_at_position(data, weld_tolerance);
+        const std::size_t num_found = doubles(lowest).size();
+        if (num_found == 0) return num_joined;
+        num_joined += num_found;
+        for (std::int64_t& corner : data.corners) corner = lowest[static_cast<std::size_t>(corner)];
+        if (data.welded_to.empty()) {
+            data.welded_to = lowest;
+        } else {
+            for (std::int64_t& p : data.welded_to) p = lowest[static_cast<std::size_t>(p)];
+        }
+        data.points_may_coincide = false;
+    }
 }
 
 std::string weld_report(std::size_t num_joined) {
@@ -162,13 +228,19 @@ void drop_welded_points(MeshData& data) {
     data.welded_to.clear();
 }
 
-bool turn_inverted_cells(MeshData& data) {
+std::size_t turn_inverted_cells(MeshData& data) {
     std::array<Vec3, max_corners> x;
+    std::size_t num_inverted = 0;
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         const auto corners = data.cell(c);
         for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
-        if (!(signed_volume(data.kinds[c], {x.data(), corners.size()}) < 0.0)) return false;
+        const std::span<const Vec3> cell{x.data(), corners.size()};
+        const double volume = signed_volume(data.kinds[c], cell);
+        if (is_flat_to_rounding(data.kinds[c], cell, volume)) continue;
+        if (!(volume < 0.0)) return 0;
+        ++num_inverted;
     }
+    if (num_inverted == 0) return 0;
     std::array<std::int64_t, max_corners> old{};
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         std::ranges::copy(data.cell(c), old.begin());
@@ -176,7 +248,7 @@ bool turn_inverted_cells(MeshData& data) {
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
             data.corners[data.offsets[c] + k] = old[static_cast<std::size_t>(mirrored[k])];
     }
-    return data.num_cells() > 0;
+    return num_inverted;
 }
 
 }  // namespace incise::topology

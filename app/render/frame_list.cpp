@@ -57,7 +57,10 @@ std::vector<FrameFile> read_index(const fs::path& path) {
         frames.push_back(
             {path.parent_path() / file, time ? io::parse_number<double>(time) : std::nullopt});
     }
-    if (frames.empty()) throw InputError(path.string() + ": lists no frames");
+    if (frames.empty())
+        throw InputError(path.string() +
+                         ": lists no frames; give a .vtu file, or run again with "
+                         "output.interval above 0");
     return frames;
 }
 

@@ -88,6 +88,18 @@ TEST_F(FaultyMesh, IsWeldedOnConversion) {
               "joined\n");
 }
 
+TEST_F(FaultyMesh, IsToldOfWhereAGapIsTooWideToWeld) {
+    write("gap.msh", soup({first, "1.001 0 0  0.001 1 0  0.001 0 1  1 1 1"}));
+    for (const auto* arguments : {"check gap.msh", "convert gap.msh gap.vtu",
+                                  "convert --weld gap.msh gap.vtu", "check gap.vtu"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << arguments;
+        EXPECT_EQ(count_of(outcome.err, "3 points are within 0.01 of the shortest edge of others"),
+                  1u)
+            << arguments << ": " << outcome.err;
+    }
+}
+
 TEST_F(FaultyMesh, IsNotWeldedToAnUnsoundOne) {
     write("three.msh", soup({first, second, "1 0 0  0 1 0  0 0 1  2 2 2"}));
     write("three.toml", "[mesh]\nfile = \"three.msh\"\nweld = true\n" + rest_of_scenario);
@@ -127,6 +139,18 @@ TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
     EXPECT_NE(outcome.out.find("volume           0.5\n"), std::string::npos) << outcome.out;
     EXPECT_EQ(run("convert --weld two.msh one.vtu").status, 0);
     EXPECT_EQ(run("info one.vtu").err, "");
+    write("flat.msh", soup({"0 0 0  0 1 0  1 0 0  0 0 1", "0 1 0  1 0 0  0 0 1  1 1 1",
+                            "5 0 0  6 0 0  5 1 0  6 1 0"}));
+    const auto flat = run("check flat.msh");
+    EXPECT_EQ(flat.status, 2);
+    EXPECT_EQ(count_of(flat.err, "\n"), 2u) << flat.err;
+    EXPECT_NE(flat.err.find("all cells but 1 without volume have negative volume"),
+              std::string::npos)
+        << flat.err;
+    EXPECT_NE(flat.err.find("flat.msh: cell 2 (tetrahedron, number 3 in the file) has zero volume; "
+                            "remove it or remesh\n"),
+              std::string::npos)
+        << flat.err;
     write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
     EXPECT_EQ(run("info some.msh").status, 2);
 }

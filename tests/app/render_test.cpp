@@ -167,12 +167,14 @@ TEST(Render, SaysWhatIsWrongWithTheInput) {
     io::write_file(folder / "forged.vtu", forged);
     io::write_file(folder / "mesh.stl", "solid");
     io::write_file(folder / "bad.pvd", "<VTKFile><Collection>");
+    io::write_file(folder / "empty.pvd", "<VTKFile type=\"Collection\"><Collection/></VTKFile>");
 
     const std::pair<const char*, const char*> cases[] = {
         {"missing", "missing: no such file or folder"},
         {"nothing", "nothing: holds no .pvd file"},
         {"mesh.stl", "no .vtu file"},
         {"bad.pvd", "bad.pvd: is no readable .pvd file"},
+        {"empty.pvd", "empty.pvd: lists no frames; give a .vtu file, or run again"},
         {"cut.vtu", "cut.vtu: is cut short"},
         {"forged.vtu", "is more than the file can hold"},
         {"run --frame 2", "has no frame 2; there are 2, numbered 0 to 1"},

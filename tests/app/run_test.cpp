@@ -225,6 +225,10 @@ snap = )" + snap + "\n");
               std::string::npos)
         << exact.err;
     EXPECT_NE(exact.err.find("use a larger tool.snap\n"), std::string::npos) << exact.err;
+    ASSERT_EQ(summary().at("warnings").size(), 1u);
+    EXPECT_EQ("incise: warning: " + summary().at("warnings")[0].get<std::string>() + "\n",
+              exact.err.substr(exact.err.find("incise: warning: tool 'saw'"),
+                               summary().at("warnings")[0].get<std::string>().size() + 18));
     EXPECT_EQ(cut("0.1").err.find("tool.snap"), std::string::npos);
     // A later cut that makes them much shorter once more is told of as well.
     const auto again = cut(R"(0

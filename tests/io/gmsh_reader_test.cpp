@@ -127,6 +127,23 @@ TEST(GmshReader, RefusesParametersThatDoNotSuitTheEntity) {
                 StartsWith("liver.msh:11: expected a parameter of a node, found '$EndParametri"));
 }
 
+TEST(GmshReader, NamesSectionsThatAreNotClosed) {
+    EXPECT_EQ(refusal("liver.msh", replaced(parametric, "$EndParametricNodes\n", "")),
+              "liver.msh:11: section 'ParametricNodes' has no '$EndParametricNodes' before "
+              "'$Elements'; the file is damaged: save the mesh anew, or add that line");
+    EXPECT_THAT(refusal_2("$EndElements\n", ""),
+                StartsWith("liver.msh:16: section 'Elements' has no '$EndElements' before the end "
+                           "of the file; "));
+    EXPECT_THAT(refusal_4("$EndEntities\n", ""), HasSubstr("no '$EndEntities' before '$Nodes'"));
+}
+
+TEST(GmshReader, RefusesParametricNodesWhereTheyDoNotBelong) {
+    EXPECT_THAT(refusal("liver.msh", parametric.substr(parametric.find("$ParametricNodes"))),
+                StartsWith("liver.msh:1: $ParametricNodes comes before $MeshFormat"));
+    EXPECT_THAT(refusal("liver.msh", replaced(parametric, "2.2 0 8", "4.1 0 8")),
+                StartsWith("liver.msh:4: $ParametricNodes belongs to version 2; save the mesh "));
+}
+
 TEST(GmshReader, RefusesUnknownNodes) {
     EXPECT_EQ(refusal_2("10 20 50 40", "10 20 50 927"),
               "liver.msh:16: element 3: node tag 927 is not one of the 5 nodes");

@@ -258,9 +258,33 @@ TEST(MeshReader, NamesTheFilesOfAnIndex) {
                                                            "as one .vtu"
                                                          : "; give one of them"));
         EXPECT_THAT(refusal_of({"a.vtu"}), testing::EndsWith("/a.vtu; give that one"));
-        EXPECT_THAT(refusal_of({}), HasSubstr(suffix == ".series" ? "begins like no mesh format"
-                                                                  : "holds a VTK dataset of type"));
+        EXPECT_THAT(refusal_of({}),
+                    StartsWith("liver" + suffix + ": is an index of other files and names none; "));
     }
+}
+
+TEST(MeshReader, SaysWhatAnUnreadableSeriesShouldBe) {
+    for (const char* text : {"{\"files\": [", "[]", "3", "Dear diary"})
+        EXPECT_THAT(refusal("liver.vtu.series", text),
+                    StartsWith("liver.vtu.series: is no readable series of frames, which is an "
+                               "object in JSON with a list of \"files\"; "))
+            << text;
+    for (const char* text : {"{}", "{\"files\": 3}", "{\"files\": [{\"time\": 0}]}"})
+        EXPECT_THAT(refusal("liver.vtu.series", text), HasSubstr("names none")) << text;
+}
+
+TEST(MeshReader, NamesMeshesOfFreeFemThatEndLikeThoseOfGmsh) {
+    const std::string mesh = "0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 2 3 4 1\n";
+    for (const std::string header : {"4 1 0\n", "  4\t1 0 \r\n"})
+        EXPECT_THAT(refusal("liver.msh", header + mesh),
+                    AllOf(StartsWith("liver.msh: begins with three counts and has no $MeshFormat, "
+                                     "so it is a mesh of FreeFEM"),
+                          HasSubstr("savemesh(Th, \"NAME.mesh\")")))
+            << header;
+    for (const std::string header : {"4 1\n", "4 1 0 0\n", "4 1 x\n", "4 1 -1\n", "4 1 0.5\n"})
+        EXPECT_THAT(refusal("liver.msh", header + mesh), HasSubstr("no mesh format known"))
+            << header;
+    EXPECT_THAT(refusal("liver.txt", "4 1 0\n" + mesh), HasSubstr("no mesh format known"));
 }
 
 /// The message about a path that names no file to read.

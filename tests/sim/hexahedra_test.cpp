@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "run_folder.h"
+#include "sim/body.h"
 #include "support/mesh_families.h"
 #include "topology/box_mesh.h"
 #include "topology/error.h"
@@ -88,6 +89,42 @@ TEST(HexahedralBody, IsNotSplit) {
         }
 }
 
+/// Of the body below: 27 hexahedra between 0 and 0.1 along each axis.
+void expect_warnings_near_hexahedra(const RunFolder& folder, const std::string& body) {
+    const auto warnings_of = [&](const std::string& saw) {
+        return build_body(folder.scenario(body + "[[tool]]\nname = \"saw\"\n" + saw)).warnings;
+    };
+    const auto plane = [](const std::string& x) {
+        return "kind = \"cut\"\ntime = 0.1\nplane = { point = [" + x +
+               ", 0, 0], normal = [-1, 0, 0] }\n";
+    };
+    const auto blade = [](const std::string& x, const std::string& mode = "split") {
+        return "kind = \"blade\"\nmode = \"" + mode + "\"\nedge = [[" + x + ", -1, 0], [" + x +
+               ", 1, 0]]\npath = [{ time = 0, at = [0, 0, -1] }, { time = 0.15, at = [0, 0, 1] "
+               "}]\n";
+    };
+    for (const auto& [saw, distance] :
+         {std::pair(plane("0.1005"), "passes only 0.0005 m from"),
+          std::pair(blade("0.101"), "passes only 0.001 m from"),
+          std::pair(plane("0.1000000000000001"), "passes along a side of")}) {
+        SCOPED_TRACE(saw);
+        const auto warnings = warnings_of(saw);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_NE(warnings[0].find(std::string(": tool 'saw' ") + distance + " element "),
+                  std::string::npos)
+            << warnings[0];
+        EXPECT_NE(
+            warnings[0].find(", a hexahedron that it cannot divide, where the body rests (and "
+                             "near 8 others): the run stops if the tissue moves into it; keep "
+                             "it farther from there, or use "),
+            std::string::npos)
+            << warnings[0];
+    }
+    for (const auto& saw :
+         {plane("0.102"), blade("0.102"), blade("0.101", "separate"), blade("0.15")})
+        EXPECT_TRUE(warnings_of(saw).empty()) << saw;
+}
+
 // One file with a body of hexahedra, that falls on nothing, and one of tetrahedra beside it.
 TEST(HexahedralBody, MovesBesideOneOfTetrahedra) {
     const RunFolder folder;
@@ -160,6 +197,8 @@ fix = "xyz"
         scenario.dynamics.end_time = 0.005;
         EXPECT_NO_THROW(Simulation{scenario}) << saw;
     }
+
+    expect_warnings_near_hexahedra(folder, head + materials);
 
     try {
         Simulation other(folder.scenario(head + "[[material]]\n" + soft));

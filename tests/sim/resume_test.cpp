@@ -26,6 +26,7 @@ using support::read_text;
 std::string state_of(const Simulation& simulation) {
     topology::ArchiveWriter ar;
     simulation.save(ar);
+    for (const std::string& warning : simulation.warnings()) ar(warning);
     return ar.bytes();
 }
 
@@ -116,6 +117,21 @@ TEST(ResumedRun, EqualsOneNeverStoppedAmongCutsOfABladeThatSplits) {
                      soft_cube + pulled_lid + splitting_blade + three_loads + output +
                          dynamics(0.1, "gravity = [0, 0, -9.81]\ndamping = 2\nsafety = 0.2\n"),
                      4);
+}
+
+TEST(ResumedRun, RemembersWarningsOfShortSteps) {
+    const RunFolder folder;
+    const std::string saw = R"([[tool]]
+kind = "cut"
+time = 0.01
+plane = { point = [0, 0, 0.0334], normal = [0, 0, 1] }
+snap = 0
+)";
+    const std::string text = soft_cube + saw + dynamics(0.04) + output;
+    Simulation whole(folder.scenario(text));
+    run(whole);
+    ASSERT_EQ(whole.warnings().size(), 1u);
+    expect_resumable(folder, text, 1);
 }
 
 TEST(ResumedRun, EqualsOneNeverStoppedWithSeveralTools) {

@@ -235,6 +235,67 @@ TEST(Simulation, RefusesAFixedStepThatAnEditMakesTooLarge) {
     EXPECT_LT(simulation.time(), 0.11);
 }
 
+/// A light layer between heavy ones, of which a tool takes the upper one away or opens it up.
+std::vector<std::string> warnings_of_lost_mass(const std::string& tool) {
+    const RunFolder folder;
+    auto layers = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                     Vec3::Constant(0.1), {2, 2, 3});
+    for (std::size_t c = 0; c < layers.num_cells(); ++c) {
+        double height = 0.0;
+        for (const auto p : layers.cell(c))
+            height += layers.points[static_cast<std::size_t>(p)].z();
+        layers.regions[c] = std::abs(height / 4 - 0.05) < 0.1 / 6 ? 1 : 2;
+    }
+    io::write_mesh(folder / "layers.vtu", layers);
+    Simulation simulation(folder.scenario(R"([mesh]
+file = "layers.vtu"
+[[material]]
+regions = 1
+density = 1
+young = 1000
+poisson = 0.3
+[[material]]
+regions = 2
+density = 1e6
+young = 1000
+poisson = 0.3
+[[constraint]]
+where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
+fix = "xyz"
+)" + dynamics(0.01) + tool));
+    run(simulation);
+    return simulation.warnings();
+}
+
+TEST(Simulation, WarnsOfShortStepsWithKeysThatTheToolHas) {
+    for (const auto& [tool, remedy] : {std::pair(R"([[tool]]
+name = "saw"
+kind = "carver"
+shape = { box = { size = [1, 1, 0.034] } }
+path = [{ time = 0.005, at = [0.05, 0.05, 0.0835] }]
+)",
+                                                 "change tool.shape or tool.path"),
+                                       std::pair(R"([[tool]]
+name = "saw"
+kind = "blade"
+mode = "separate"
+edge = [[0, -1, 0.067], [0, 1, 0.067]]
+path = [{ time = 0, at = [-0.1, 0, 0] }, { time = 0.005, at = [0.2, 0, 0] }]
+)",
+                                                 "change tool.edge or tool.path")}) {
+        SCOPED_TRACE(tool);
+        const auto warnings = warnings_of_lost_mass(tool);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_TRUE(warnings[0].starts_with("tool 'saw', at t = ")) << warnings[0];
+        EXPECT_NE(warnings[0].find("has left stiff elements with so little mass that the stable "
+                                   "step fell from "),
+                  std::string::npos)
+            << warnings[0];
+        EXPECT_NE(warnings[0].find(remedy), std::string::npos) << warnings[0];
+        EXPECT_EQ(warnings[0].find("snap"), std::string::npos) << warnings[0];
+    }
+}
+
 TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
     const RunFolder folder;
     const Scenario scenario =

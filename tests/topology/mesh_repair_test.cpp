@@ -59,6 +59,122 @@ TEST(Coincidence, NamesPointsPositionCellsAndRemedies) {
               "they are meant to be apart, as the faces of a cut are, say 'weld = false' there");
 }
 
+/// The cells of both, each with its own points.
+MeshData beside(MeshData data, const MeshData& other) {
+    const auto offset = static_cast<std::int64_t>(data.points.size());
+    data.points.insert(data.points.end(), other.points.begin(), other.points.end());
+    for (std::size_t c = 0; c < other.num_cells(); ++c) {
+        std::vector<std::int64_t> corners(other.cell(c).begin(), other.cell(c).end());
+        for (auto& corner : corners) corner += offset;
+        data.add_cell(other.kinds[c], corners);
+    }
+    return data;
+}
+
+/// A box from `origin` on, of size 1, 2 and 2, with `cells` bricks along y and along z.
+MeshData brick_box(CellKind kind, const Vec3& origin, int cells) {
+    return box_mesh(kind, origin, {1, 2, 2}, {1, cells, cells});
+}
+
+std::string tail_of_warning(const MeshData& data) {
+    const auto warning = coincidence_warning(data);
+    if (!warning) return "no warning";
+    return warning->substr(warning->find("); ") + 3);
+}
+
+const std::string or_apart =
+    ", or, if they are meant to be apart, as the faces of a cut are, say 'weld = false' in [mesh] "
+    "of a scenario";
+
+TEST(Coincidence, OffersNoWeldingOfUnlikeFaces) {
+    const auto both = beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2),
+                             brick_box(CellKind::tetrahedron, {1, 0, 0}, 2));
+    const auto text = tail_of_warning(both);
+    EXPECT_TRUE(
+        text.starts_with("welding does not join the cells, since no faces there have the "
+                         "same corners, such as the quadrilateral of cell "))
+        << text;
+    EXPECT_NE(text.find(" (hexahedron) and the triangles on it, one of cell "), std::string::npos)
+        << text;
+    EXPECT_TRUE(text.ends_with(" (tetrahedron): use one kind of element" + or_apart)) << text;
+}
+
+TEST(Coincidence, OffersNoWeldingOfGridsThatDoNotMatch) {
+    for (const auto kind : {CellKind::hexahedron, CellKind::tetrahedron})
+        EXPECT_EQ(
+            tail_of_warning(beside(brick_box(kind, {0, 0, 0}, 2), brick_box(kind, {1, 0, 0}, 1))),
+            "welding does not join the cells, since no faces there have the same corners: let the "
+            "meshes match where they meet" +
+                or_apart);
+}
+
+TEST(Coincidence, TellsHowManyPointsWeldingLeavesLoose) {
+    // Of two boxes at one face, and of a third at another whose grid is finer.
+    const auto three = beside(beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 1),
+                                     brick_box(CellKind::hexahedron, {1, 0, 0}, 1)),
+                              brick_box(CellKind::hexahedron, {-1, 0, 0}, 2));
+    const auto text = tail_of_warning(three);
+    EXPECT_TRUE(
+        text.starts_with("join them with 'incise convert --weld IN OUT' or with 'weld = "
+                         "true' in [mesh] of a scenario, which joins no cells at 4 of them, "
+                         "since no faces there have the same corners; if they "))
+        << text;
+}
+
+TEST(Coincidence, OffersNoWeldingThatLeavesNoSoundMesh) {
+    MeshData data = test::mesh_families()[1].data;
+    data.points.emplace_back(2, 2, 2);
+    data.add_cell(CellKind::tetrahedron, std::vector<std::int64_t>{3, 1, 2, 5});
+    EXPECT_EQ(
+        tail_of_warning(test::soup_of(data)),
+        "welding them leaves no sound mesh (cells 0, 1 and 2 all share one face; a face joins "
+        "two cells at the most: remove the others): remesh" +
+            or_apart);
+}
+
+TEST(Coincidence, IsToldOfGapsThatAreHardlyMeant) {
+    for (const double gap : {1e-3, 5e-3}) {
+        SCOPED_TRACE(gap);
+        for (const auto kind : {CellKind::hexahedron, CellKind::tetrahedron}) {
+            auto both =
+                beside(brick_box(kind, {0, 0, 0}, 2), brick_box(kind, {1.0 + gap, 0, 0}, 2));
+            const auto warnings = check(both).warnings;
+            ASSERT_EQ(warnings.size(), 1u);
+            EXPECT_TRUE(warnings[0].starts_with(
+                "9 points are within 0.01 of the shortest edge of others and not joined, so the "
+                "cells do not hang together there: point "))
+                << warnings[0];
+            EXPECT_NE(warnings[0].find(" apart; move them onto each other where the mesh is made, "
+                                       "since welding joins only points within 0.0001 of it, or, "
+                                       "if the gap is meant, say 'weld = false'"),
+                      std::string::npos)
+                << warnings[0];
+            both.points_may_coincide = true;
+            EXPECT_TRUE(check(both).warnings.empty());
+        }
+    }
+    const auto wide = beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2),
+                             brick_box(CellKind::hexahedron, {1.02, 0, 0}, 2));
+    EXPECT_TRUE(check(wide).warnings.empty());
+}
+
+TEST(Coincidence, IsNoMatterOfThinCellsThatHangTogether) {
+    // Two flat tetrahedra on both sides of a face, whose tips are near each other.
+    MeshData data;
+    data.points = {{0, 0, 0},         {1, 0, 0},     {0, 1, 0},     {0.3, 0.3, 1e-3},
+                   {0.3, 0.3, -1e-3}, {0.3, 0.3, 1}, {0.3, 0.3, -1}};
+    const auto add = [&](std::vector<std::int64_t> corners) {
+        data.add_cell(CellKind::tetrahedron, corners);
+    };
+    add({0, 1, 2, 3});
+    add({0, 2, 1, 4});
+    for (const auto& [tip, top] : {std::pair(3, 5), std::pair(4, 6)})
+        for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0)})
+            tip == 3 ? add({a, b, tip, top}) : add({b, a, tip, top});
+    ASSERT_TRUE(check(data).errors.empty()) << check(data).errors[0];
+    EXPECT_EQ(check(data).warnings, std::vector<std::string>{});
+}
+
 TEST(Coincidence, IsNoMatterWhereItIsMeant) {
     MeshData soup = two_apart();
     soup.points_may_coincide = true;
@@ -127,6 +243,35 @@ TEST(Weld, JoinsWhatRoundingAloneHasParted) {
             EXPECT_EQ(num_left, cube.points.size());
         else
             EXPECT_GT(num_left, cube.points.size());
+    }
+}
+
+TEST(Weld, LeavesNothingToWeldAgain) {
+    // Chains of points, each within reach of the next one and of no other.
+    for (const double step : {0.4, 0.6, 0.95, 1.05}) {
+        SCOPED_TRACE(step);
+        MeshData data;
+        for (const int order : {3, 0, 4, 1, 2}) {
+            const double x = order * step * weld_tolerance;
+            const auto first = static_cast<std::int64_t>(data.points.size());
+            const double side = order % 2 == 0 ? 1.0 : -1.0;
+            for (const Vec3& corner : {Vec3(x, 0, 0), Vec3(side, 2.0 * order + 2, 0),
+                                       Vec3(0, 2.0 * order + 2, side), Vec3(0, 0, 9.0 + order)})
+                data.points.push_back(corner);
+            data.add_cell(CellKind::tetrahedron,
+                          std::vector<std::int64_t>{first, first + 1, first + 2, first + 3});
+        }
+        const auto num_points = num_points_used(data);
+        const auto num_joined = weld(data);
+        EXPECT_EQ(num_points_used(data), num_points - num_joined);
+        for (std::size_t p = 0; p < data.points.size(); ++p)
+            EXPECT_EQ(data.welded_to.empty() || !data.is_welded(p),
+                      std::ranges::find(data.corners, static_cast<std::int64_t>(p)) !=
+                          data.corners.end());
+        drop_welded_points(data);
+        EXPECT_EQ(weld(data), 0u);
+        const auto warning = coincidence_warning(data);
+        EXPECT_TRUE(!warning || warning->find("within 0.01") != std::string::npos) << *warning;
     }
 }
 
@@ -211,10 +356,10 @@ TEST(TurnedCells, MakeEveryMirrorImageSound) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         MeshData data = family.data;
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
         data = mirrored(data);
         ASSERT_FALSE(check(data).errors.empty());
-        EXPECT_TRUE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), data.num_cells());
         EXPECT_TRUE(check(data).errors.empty());
         EXPECT_EQ(check(data).shared_faces.size(), check(family.data).shared_faces.size());
         EXPECT_EQ(data.regions, family.data.regions);
@@ -224,7 +369,25 @@ TEST(TurnedCells, MakeEveryMirrorImageSound) {
                 before(family.data.cell(c).begin(), family.data.cell(c).end());
             EXPECT_TRUE(std::ranges::is_permutation(now, before));
         }
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
+    }
+}
+
+TEST(TurnedCells, LeaveTheFlatOneToTheCheck) {
+    const MeshData sound = box_mesh(CellKind::tetrahedron, {5, 6, 7}, {3, 3, 3}, {2, 2, 2});
+    for (const double height : {0.0, 1e-16}) {
+        SCOPED_TRACE(height);
+        MeshData data = mirrored(sound);
+        const auto first = static_cast<std::int64_t>(data.points.size());
+        for (const Vec3& x : {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 2, 0), Vec3(2, 2, height)})
+            data.points.push_back(x);
+        data.add_cell(CellKind::tetrahedron,
+                      std::vector<std::int64_t>{first, first + 1, first + 2, first + 3});
+        EXPECT_EQ(turn_inverted_cells(data), sound.num_cells());
+        const auto errors = check(data).errors;
+        ASSERT_EQ(errors.size(), 1u);
+        EXPECT_TRUE(errors[0].starts_with("cell 48 (tetrahedron) ")) << errors[0];
+        EXPECT_TRUE(errors[0].ends_with("; remove it or remesh")) << errors[0];
     }
 }
 
@@ -241,7 +404,7 @@ TEST(TurnedCells, AreNoneWhereSomeAreSound) {
             data.corners[data.offsets[data.num_cells() - 1] + k] =
                 old[static_cast<std::size_t>(order[k])];
         const auto corners = data.corners;
-        EXPECT_FALSE(turn_inverted_cells(data));
+        EXPECT_EQ(turn_inverted_cells(data), 0u);
         EXPECT_EQ(data.corners, corners);
     }
 }

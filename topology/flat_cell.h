@@ -1,0 +1,31 @@
+// Cells without volume, as far as numbers can tell.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "topology/cell_kind.h"
+#include "topology/types.h"
+
+namespace incise::topology {
+
+/// Whether rounding of the coordinates alone may have given the cell this signed volume.
+inline bool is_flat_to_rounding(CellKind kind, std::span<const Vec3> corners, double volume) {
+    double reach = 0.0, longest = 0.0;
+    for (const Vec3& x : corners) reach = std::max(reach, x.cwiseAbs().maxCoeff());
+    const CellTraits& t = traits(kind);
+    for (int k = 0; k < t.num_edges; ++k) {
+        const auto [a, b] = t.edges[static_cast<std::size_t>(k)];
+        longest = std::max(
+            longest,
+            (corners[static_cast<std::size_t>(b)] - corners[static_cast<std::size_t>(a)]).norm());
+    }
+    constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+    return std::abs(volume) <= rounding * reach * longest * longest;
+}
+
+}  // namespace incise::topology
