@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/command_line.h"
+#include "incise/app/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,13 +7,13 @@
 #include <memory>
 #include <string_view>
 
-#include "app/cut_tools.h"
-#include "app/help_formatter.h"
-#include "app/verbs.h"
-#include "io/mesh_writer.h"
-#include "io/number_format.h"
-#include "sim/table_reader.h"
-#include "topology/error.h"
+#include "incise/app/cut_tools.h"
+#include "incise/app/help_formatter.h"
+#include "incise/app/verbs.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/table_reader.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

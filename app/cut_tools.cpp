@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/cut_tools.h"
+#include "incise/app/cut_tools.h"
 
 #include <array>
 
-#include "app/messages.h"
-#include "app/number_list.h"
-#include "cutting/surface_check.h"
-#include "io/surface_reader.h"
-#include "sim/diagnostics.h"
-#include "topology/error.h"
+#include "incise/app/messages.h"
+#include "incise/app/number_list.h"
+#include "incise/cutting/surface_check.h"
+#include "incise/io/surface_reader.h"
+#include "incise/sim/diagnostics.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/verbs.h"
-#include "sim/geometric_cut.h"
+#include "incise/app/verbs.h"
+#include "incise/sim/geometric_cut.h"
 
 namespace incise::app {
 

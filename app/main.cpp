@@ -13,11 +13,11 @@
 #include <string>
 #include <system_error>
 
-#include "app/command_line.h"
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "physics/workers.h"
-#include "topology/error.h"
+#include "incise/app/command_line.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/physics/workers.h"
+#include "incise/topology/error.h"
 
 namespace {
 

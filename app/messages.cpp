@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/messages.h"
+#include "incise/app/messages.h"
 
 #include <iostream>
 #include <new>
 #include <utility>
 
-#include "sim/body.h"
-#include "sim/scenario_reader.h"
-#include "topology/error.h"
+#include "incise/sim/body.h"
+#include "incise/sim/scenario_reader.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

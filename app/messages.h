@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/scenario.h"
+#include "incise/sim/scenario.h"
 
 namespace incise::app {
 

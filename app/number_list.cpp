@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/number_list.h"
+#include "incise/app/number_list.h"
 
 #include <cmath>
 
-#include "io/number_format.h"
-#include "io/number_text.h"
-#include "sim/diagnostics.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/io/number_text.h"
+#include "incise/sim/diagnostics.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/progress.h"
+#include "incise/app/progress.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

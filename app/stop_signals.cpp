@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/stop_signals.h"
+#include "incise/app/stop_signals.h"
 
 #include <unistd.h>
 
 #include <csignal>
 #include <cstddef>
 
-#include "app/messages.h"
+#include "incise/app/messages.h"
 
 namespace incise::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/stopped_run.h"
+#include "incise/app/stopped_run.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/messages.h"
-#include "io/number_format.h"
-#include "topology/error.h"
+#include "incise/app/messages.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <string>
 
-#include "app/verbs.h"
-#include "io/output_folder.h"
-#include "sim/checkpoint.h"
-#include "sim/scenario.h"
+#include "incise/app/verbs.h"
+#include "incise/io/output_folder.h"
+#include "incise/sim/checkpoint.h"
+#include "incise/sim/scenario.h"
 
 namespace incise::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/throughput.h"
+#include "incise/app/throughput.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,15 +10,15 @@
 #include <random>
 #include <span>
 
-#include "cutting/cutter.h"
-#include "physics/heml_lanes.h"
-#include "physics/hybmss_lanes.h"
-#include "physics/machine_speed.h"
-#include "physics/model.h"
-#include "sim/elastic_constants.h"
-#include "sim/tissue_catalog.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_edit.h"
+#include "incise/cutting/cutter.h"
+#include "incise/physics/heml_lanes.h"
+#include "incise/physics/hybmss_lanes.h"
+#include "incise/physics/machine_speed.h"
+#include "incise/physics/model.h"
+#include "incise/sim/elastic_constants.h"
+#include "incise/sim/tissue_catalog.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::app {
 

@@ -4,10 +4,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "app/progress.h"
-#include "app/throughput.h"
-#include "app/verbs.h"
-#include "io/atomic_file.h"
+#include "incise/app/progress.h"
+#include "incise/app/throughput.h"
+#include "incise/app/verbs.h"
+#include "incise/io/atomic_file.h"
 
 namespace incise::app {
 

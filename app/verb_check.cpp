@@ -5,14 +5,14 @@
 #include <new>
 #include <set>
 
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "io/mesh_reader.h"
-#include "io/number_format.h"
-#include "sim/scenario_reader.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
-#include "topology/mesh_check.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/scenario_reader.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_check.h"
 
 namespace incise::app {
 

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <iostream>
 
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "io/mesh_reader.h"
-#include "io/mesh_writer.h"
-#include "topology/error.h"
-#include "topology/mesh_check.h"
-#include "topology/mesh_repair.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_check.h"
+#include "incise/topology/mesh_repair.h"
 
 namespace incise::app {
 

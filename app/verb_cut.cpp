@@ -6,20 +6,20 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "app/cut_tools.h"
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "cutting/undividable.h"
-#include "io/atomic_file.h"
-#include "io/mesh_reader.h"
-#include "io/mesh_writer.h"
-#include "io/number_format.h"
-#include "io/number_text.h"
-#include "sim/diagnostics.h"
-#include "sim/geometric_cut.h"
-#include "sim/table_reader.h"
-#include "sim/tool_build.h"
-#include "topology/error.h"
+#include "incise/app/cut_tools.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/cutting/undividable.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/io/number_format.h"
+#include "incise/io/number_text.h"
+#include "incise/sim/diagnostics.h"
+#include "incise/sim/geometric_cut.h"
+#include "incise/sim/table_reader.h"
+#include "incise/sim/tool_build.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

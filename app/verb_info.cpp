@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "io/mesh_reader.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
-#include "topology/mesh_metrics.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::app {
 

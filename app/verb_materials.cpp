@@ -4,12 +4,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "app/verbs.h"
-#include "io/number_format.h"
-#include "sim/material_catalog.h"
-#include "sim/table_reader.h"
-#include "sim/tissue_catalog.h"
-#include "topology/error.h"
+#include "incise/app/verbs.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/material_catalog.h"
+#include "incise/sim/table_reader.h"
+#include "incise/sim/tissue_catalog.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

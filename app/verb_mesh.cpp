@@ -7,14 +7,14 @@
 #include <map>
 #include <set>
 
-#include "app/messages.h"
-#include "app/verbs.h"
-#include "io/label_mesh.h"
-#include "io/mesh_writer.h"
-#include "io/number_text.h"
-#include "sim/table_reader.h"
-#include "topology/error.h"
-#include "topology/geometry.h"
+#include "incise/app/messages.h"
+#include "incise/app/verbs.h"
+#include "incise/io/label_mesh.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/io/number_text.h"
+#include "incise/sim/table_reader.h"
+#include "incise/topology/error.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::app {
 

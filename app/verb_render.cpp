@@ -6,8 +6,8 @@
 #include <cstring>
 #include <iostream>
 
-#include "app/verbs.h"
-#include "topology/error.h"
+#include "incise/app/verbs.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

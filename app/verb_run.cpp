@@ -9,18 +9,18 @@
 #include <sstream>
 #include <utility>
 
-#include "app/messages.h"
-#include "app/progress.h"
-#include "app/stop_signals.h"
-#include "app/stopped_run.h"
-#include "app/verbs.h"
-#include "io/atomic_file.h"
-#include "io/number_format.h"
-#include "physics/workers.h"
-#include "sim/body_problems.h"
-#include "sim/run_writer.h"
-#include "sim/simulation.h"
-#include "topology/error.h"
+#include "incise/app/messages.h"
+#include "incise/app/progress.h"
+#include "incise/app/stop_signals.h"
+#include "incise/app/stopped_run.h"
+#include "incise/app/verbs.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/number_format.h"
+#include "incise/physics/workers.h"
+#include "incise/sim/body_problems.h"
+#include "incise/sim/run_writer.h"
+#include "incise/sim/simulation.h"
+#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -14,8 +14,8 @@
 #include "bench/comparators/mjed.h"
 #include "bench/comparators/tled.h"
 #include "bodies.h"
-#include "io/mesh_reader.h"
-#include "physics/heml_kernel.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/physics/heml_kernel.h"
 
 namespace incise::bench {
 namespace {

@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bodies.h"
-#include "cutting/cutter.h"
-#include "topology/mesh_edit.h"
+#include "incise/cutting/cutter.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::bench {
 namespace {

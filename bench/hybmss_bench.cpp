@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "physics/model.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh.h"
+#include "incise/physics/model.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::bench {
 namespace {

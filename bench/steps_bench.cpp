@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bodies.h"
-#include "physics/integrator.h"
+#include "incise/physics/integrator.h"
 
 namespace incise::bench {
 namespace {

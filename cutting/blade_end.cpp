@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/blade_end.h"
+#include "incise/cutting/blade_end.h"
 
 #include <algorithm>
 #include <limits>

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "cutting/swept_edge.h"
-#include "topology/types.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/carver.h"
+#include "incise/cutting/carver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/tissue_motion.h"
-#include "topology/pose.h"
-#include "topology/types.h"
+#include "incise/cutting/tissue_motion.h"
+#include "incise/topology/pose.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

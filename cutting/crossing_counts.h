@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "cutting/cut_front.h"
-#include "cutting/edge_list.h"
-#include "cutting/resting_blade.h"
-#include "cutting/scars.h"
-#include "topology/types.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/edge_list.h"
+#include "incise/cutting/resting_blade.h"
+#include "incise/cutting/scars.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

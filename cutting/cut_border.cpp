@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/cut_border.h"
+#include "incise/cutting/cut_border.h"
 
 #include <algorithm>
 #include <array>

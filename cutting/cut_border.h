@@ -4,9 +4,9 @@
 
 #include <functional>
 
-#include "cutting/cut_front.h"
-#include "cutting/cut_surface.h"
-#include "topology/mesh.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "cutting/blade_end.h"
-#include "cutting/cut_border.h"
-#include "cutting/edge_list.h"
-#include "cutting/passages.h"
-#include "topology/mesh.h"
+#include "incise/cutting/blade_end.h"
+#include "incise/cutting/cut_border.h"
+#include "incise/cutting/edge_list.h"
+#include "incise/cutting/passages.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/mesh_edit.h"
-#include "topology/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/cut_plan.h"
+#include "incise/cutting/cut_plan.h"
 
-#include "topology/mesh_edit.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
 

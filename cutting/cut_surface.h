@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "cutting/space_time.h"
-#include "cutting/tissue_motion.h"
-#include "topology/types.h"
+#include "incise/cutting/space_time.h"
+#include "incise/cutting/tissue_motion.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

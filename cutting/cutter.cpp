@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/cutter.h"
+#include "incise/cutting/cutter.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "cutting/cut_plan.h"
-#include "cutting/separator.h"
-#include "cutting/swept_edge.h"
-#include "topology/error.h"
+#include "incise/cutting/cut_plan.h"
+#include "incise/cutting/separator.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/topology/error.h"
 
 namespace incise::cutting {
 

@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "cutting/carver.h"
-#include "cutting/element_boxes.h"
-#include "cutting/scars.h"
-#include "cutting/splitter.h"
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/cutting/carver.h"
+#include "incise/cutting/element_boxes.h"
+#include "incise/cutting/scars.h"
+#include "incise/cutting/splitter.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

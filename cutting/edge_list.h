@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/element_boxes.h"
+#include "incise/cutting/element_boxes.h"
 
 namespace incise::cutting {
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

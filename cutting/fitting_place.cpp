@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/fitting_place.h"
+#include "incise/cutting/fitting_place.h"
 
 #include <algorithm>
 #include <array>

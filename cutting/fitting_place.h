@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "cutting/passages.h"
-#include "cutting/step_length.h"
-#include "topology/mesh.h"
+#include "incise/cutting/passages.h"
+#include "incise/cutting/step_length.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/folds.h"
+#include "incise/cutting/folds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "cutting/cut_surface.h"
-#include "cutting/edge_list.h"
-#include "cutting/scars.h"
-#include "cutting/tissue_motion.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/cutting/edge_list.h"
+#include "incise/cutting/scars.h"
+#include "incise/cutting/tissue_motion.h"
 
 namespace incise::cutting {
 

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

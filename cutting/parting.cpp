@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/parting.h"
+#include "incise/cutting/parting.h"
 
 #include <algorithm>
 #include <cassert>
@@ -11,7 +11,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "cutting/space_time.h"
+#include "incise/cutting/space_time.h"
 
 namespace incise::cutting {
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "cutting/cut_front.h"
-#include "cutting/scars.h"
-#include "cutting/sides.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/scars.h"
+#include "incise/cutting/sides.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

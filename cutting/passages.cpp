@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/passages.h"
+#include "incise/cutting/passages.h"
 
 #include <algorithm>
 #include <cmath>

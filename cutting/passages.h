@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "cutting/cut_surface.h"
-#include "topology/mesh.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

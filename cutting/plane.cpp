@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/plane.h"
+#include "incise/cutting/plane.h"
 
 #include <CGAL/Mpzf.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "cutting/cut_surface.h"
+#include "incise/cutting/cut_surface.h"
 
 namespace incise::cutting {
 

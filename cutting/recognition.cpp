@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/recognition.h"
+#include "incise/cutting/recognition.h"
 
 #include <algorithm>
 #include <cstdint>

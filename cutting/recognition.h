@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "cutting/cut_front.h"
-#include "cutting/cut_surface.h"
-#include "cutting/edge_list.h"
-#include "cutting/scars.h"
-#include "cutting/tissue_motion.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/cutting/edge_list.h"
+#include "incise/cutting/scars.h"
+#include "incise/cutting/tissue_motion.h"
 
 namespace incise::cutting {
 

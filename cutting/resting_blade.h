@@ -5,8 +5,8 @@
 #include <array>
 #include <optional>
 
-#include "cutting/cut_front.h"
-#include "cutting/swept_edge.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/swept_edge.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/scars.h"
+#include "incise/cutting/scars.h"
 
 #include <algorithm>
 #include <cmath>

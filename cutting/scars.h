@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "cutting/cut_surface.h"
-#include "topology/change_set.h"
-#include "topology/types.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

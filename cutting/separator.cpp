@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/separator.h"
+#include "incise/cutting/separator.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
-#include "cutting/space_time.h"
+#include "incise/cutting/space_time.h"
 
 namespace incise::cutting {
 

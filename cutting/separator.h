@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "cutting/tissue_motion.h"
-#include "topology/types.h"
+#include "incise/cutting/tissue_motion.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/sides.h"
+#include "incise/cutting/sides.h"
 
 #include <algorithm>
 #include <iterator>

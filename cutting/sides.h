@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "cutting/cut_front.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/space_time.h"
+#include "incise/cutting/space_time.h"
 
 #include <optional>
 
-#include "cutting/shifted_sign.h"
+#include "incise/cutting/shifted_sign.h"
 
 namespace incise::cutting {
 

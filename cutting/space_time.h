@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

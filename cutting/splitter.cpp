@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/splitter.h"
+#include "incise/cutting/splitter.h"
 
 #include <algorithm>
 #include <array>
@@ -12,18 +12,18 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cutting/crossing_counts.h"
-#include "cutting/cut_border.h"
-#include "cutting/cut_end.h"
-#include "cutting/edge_list.h"
-#include "cutting/fitting_place.h"
-#include "cutting/folds.h"
-#include "cutting/near_nodes.h"
-#include "cutting/parting.h"
-#include "cutting/passages.h"
-#include "cutting/recognition.h"
-#include "cutting/undividable.h"
-#include "topology/mesh_edit.h"
+#include "incise/cutting/crossing_counts.h"
+#include "incise/cutting/cut_border.h"
+#include "incise/cutting/cut_end.h"
+#include "incise/cutting/edge_list.h"
+#include "incise/cutting/fitting_place.h"
+#include "incise/cutting/folds.h"
+#include "incise/cutting/near_nodes.h"
+#include "incise/cutting/parting.h"
+#include "incise/cutting/passages.h"
+#include "incise/cutting/recognition.h"
+#include "incise/cutting/undividable.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
 

@@ -5,15 +5,15 @@
 #include <cstddef>
 #include <span>
 
-#include "cutting/blade_end.h"
-#include "cutting/cut_front.h"
-#include "cutting/cut_surface.h"
-#include "cutting/resting_blade.h"
-#include "cutting/scars.h"
-#include "cutting/step_length.h"
-#include "cutting/tissue_motion.h"
-#include "topology/change_set.h"
-#include "topology/mesh.h"
+#include "incise/cutting/blade_end.h"
+#include "incise/cutting/cut_front.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/cutting/resting_blade.h"
+#include "incise/cutting/scars.h"
+#include "incise/cutting/step_length.h"
+#include "incise/cutting/tissue_motion.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/step_length.h"
+#include "incise/cutting/step_length.h"
 
 #include <algorithm>
 #include <cmath>

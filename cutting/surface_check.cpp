@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/surface_check.h"
+#include "incise/cutting/surface_check.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <unsupported/Eigen/BVH>
 #include <utility>
 
-#include "cutting/cut_surface.h"
+#include "incise/cutting/cut_surface.h"
 
 namespace incise::cutting {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/surface_data.h"
+#include "incise/topology/surface_data.h"
 
 namespace incise::cutting {
 

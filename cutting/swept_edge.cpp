@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/swept_edge.h"
+#include "incise/cutting/swept_edge.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cutting/cut_surface.h"
+#include "incise/cutting/cut_surface.h"
 
 namespace incise::cutting {
 

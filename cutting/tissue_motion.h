@@ -5,9 +5,9 @@
 #include <Eigen/Geometry>
 #include <span>
 
-#include "cutting/element_boxes.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/cutting/element_boxes.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

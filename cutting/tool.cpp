@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/tool.h"
+#include "incise/cutting/tool.h"
 
 #include <algorithm>
 #include <iterator>
 
-#include "cutting/plane.h"
-#include "cutting/triangle_surface.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/triangle_surface.h"
 
 namespace incise::cutting {
 

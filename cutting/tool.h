@@ -6,11 +6,11 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/carver.h"
-#include "cutting/cut_surface.h"
-#include "cutting/splitter.h"
-#include "topology/surface_data.h"
-#include "topology/types.h"
+#include "incise/cutting/carver.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/cutting/splitter.h"
+#include "incise/topology/surface_data.h"
+#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

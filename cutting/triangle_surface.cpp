@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/triangle_surface.h"
+#include "incise/cutting/triangle_surface.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/BVH>
 #include <utility>
 
-#include "cutting/shifted_sign.h"
+#include "incise/cutting/shifted_sign.h"
 
 namespace incise::cutting {
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "cutting/cut_surface.h"
-#include "topology/surface_data.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/topology/surface_data.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/undividable.h"
+#include "incise/cutting/undividable.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cutting/edge_list.h"
+#include "incise/cutting/edge_list.h"
 
 namespace incise::cutting {
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <string>
 
-#include "cutting/cut_surface.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
+#include "incise/cutting/cut_surface.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/abaqus_element.h"
+#include "incise/io/abaqus_element.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "io/cell_form.h"
+#include "incise/io/cell_form.h"
 
 namespace incise::io {
 

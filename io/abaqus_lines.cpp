@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/abaqus_lines.h"
+#include "incise/io/abaqus_lines.h"
 
 #include <cmath>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/scanner.h"
+#include "incise/io/scanner.h"
 
 namespace incise::io {
 

@@ -2,7 +2,7 @@
 // Source: Abaqus 6.14 Analysis User's Guide, 1.2.1 "Input syntax rules" and 2.1 to 2.2 on nodes,
 // elements and sets; CalculiX CrunchiX 2.20 user's manual, chapter 7.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/abaqus_reader.h"
+#include "incise/io/abaqus_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "io/abaqus_element.h"
-#include "io/abaqus_lines.h"
-#include "io/cell_form.h"
-#include "io/element_sets.h"
-#include "io/node_tags.h"
-#include "topology/error.h"
+#include "incise/io/abaqus_element.h"
+#include "incise/io/abaqus_lines.h"
+#include "incise/io/cell_form.h"
+#include "incise/io/element_sets.h"
+#include "incise/io/node_tags.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/mesh_text.h"
-#include "io/number_format.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_format.h"
 
 namespace incise::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/atomic_file.h"
+#include "incise/io/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,9 +14,9 @@
 #include <system_error>
 #include <vector>
 
-#include "io/file_descriptor.h"
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/file_descriptor.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/base64.h"
+#include "incise/io/base64.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "io/number_text.h"
+#include "incise/io/number_text.h"
 
 namespace incise::io {
 

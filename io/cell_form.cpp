@@ -1,8 +1,8 @@
 // What a file format calls its kinds of cells, and what becomes of each.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/cell_form.h"
+#include "incise/io/cell_form.h"
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

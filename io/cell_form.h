@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

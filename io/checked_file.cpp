@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/checked_file.h"
+#include "incise/io/checked_file.h"
 
 #include <lzma.h>
 
-#include "io/atomic_file.h"
-#include "io/input_file.h"
-#include "topology/archive.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/input_file.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // The compressions of VTK's XML files: zlib, LZ4 blocks, and LZMA in xz containers.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/compression.h"
+#include "incise/io/compression.h"
 
 #include <lz4.h>
 #include <lzma.h>

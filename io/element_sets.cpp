@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/element_sets.h"
+#include "incise/io/element_sets.h"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
 
-#include "io/input_file.h"
-#include "io/number_text.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_text.h"
 
 namespace incise::io {
 

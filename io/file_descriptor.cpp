@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/file_descriptor.h"
+#include "incise/io/file_descriptor.h"
 
 #include <fcntl.h>
 #include <unistd.h>

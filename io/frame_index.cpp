@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/frame_index.h"
+#include "incise/io/frame_index.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

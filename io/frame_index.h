@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/input_file.h"
+#include "incise/io/input_file.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Meshes of Gmsh (.msh), versions 2.x and 4.1.
 // Source: Gmsh reference manual, "Gmsh file formats" (4.8): MSH 4.1, MSH 2 (legacy).
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/gmsh_reader.h"
+#include "incise/io/gmsh_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
-#include "io/cell_form.h"
-#include "io/node_tags.h"
-#include "io/scanner.h"
-#include "topology/error.h"
+#include "incise/io/cell_form.h"
+#include "incise/io/node_tags.h"
+#include "incise/io/scanner.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Gmsh files (.msh), as text: version 2.2, which Gmsh still writes and every reader knows.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/mesh_text.h"
-#include "io/number_format.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_format.h"
 
 namespace incise::io {
 

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/input_file.h"
-#include "io/scalar_type.h"
-#include "topology/types.h"
+#include "incise/io/input_file.h"
+#include "incise/io/scalar_type.h"
+#include "incise/topology/types.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // A user's file as bytes in memory, read with checks.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/input_file.h"
+#include "incise/io/input_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

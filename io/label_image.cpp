@@ -3,19 +3,19 @@
 // cut short or its data are missing, and drops the directions; its NRRD reader takes the first of
 // three axes for components.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/label_image.h"
+#include "incise/io/label_image.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "io/image_header.h"
-#include "io/memory.h"
-#include "io/number_text.h"
-#include "io/scanner.h"
-#include "io/unpack.h"
-#include "topology/error.h"
+#include "incise/io/image_header.h"
+#include "incise/io/memory.h"
+#include "incise/io/number_text.h"
+#include "incise/io/scanner.h"
+#include "incise/io/unpack.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/label_mesh.h"
+#include "incise/io/label_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "io/memory.h"
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/memory.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "io/label_image.h"
-#include "topology/mesh_data.h"
+#include "incise/io/label_image.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

@@ -2,7 +2,7 @@
 // Source: "VTK File Formats", VTK User's Guide; the behaviour of VTK 9.1's writer, which splits
 // CELLS in offsets and connectivity from version 5 on.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/legacy_vtk_reader.h"
+#include "incise/io/legacy_vtk_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/scanner.h"
-#include "io/vtk_cells.h"
-#include "topology/error.h"
+#include "incise/io/scanner.h"
+#include "incise/io/vtk_cells.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Legacy VTK files (.vtk), as text: version 3.0, which every reader of the format knows.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/mesh_text.h"
-#include "io/number_format.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_format.h"
 
 namespace incise::io {
 

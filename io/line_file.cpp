@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/line_file.h"
+#include "incise/io/line_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "io/atomic_file.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

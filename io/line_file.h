@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/file_descriptor.h"
-#include "io/written_bytes.h"
+#include "incise/io/file_descriptor.h"
+#include "incise/io/written_bytes.h"
 
 namespace incise::io {
 

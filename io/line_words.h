@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/number_text.h"
+#include "incise/io/number_text.h"
 
 namespace incise::io {
 

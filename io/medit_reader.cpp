@@ -2,7 +2,7 @@
 // Source: P. Frey, "MEDIT: an interactive mesh visualization software" (INRIA RT-0253, 2001),
 // appendix; the keywords of libMeshb 7.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/medit_reader.h"
+#include "incise/io/medit_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/cell_form.h"
-#include "io/scanner.h"
-#include "topology/error.h"
+#include "incise/io/cell_form.h"
+#include "incise/io/scanner.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "io/mesh_text.h"
-#include "io/number_format.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_format.h"
 
 namespace incise::io {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/memory.h"
+#include "incise/io/memory.h"
 
 #include <unistd.h>
 
 #include <cmath>
 
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

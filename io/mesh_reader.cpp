@@ -1,24 +1,24 @@
 // Reading of volume meshes from files. A further format is one more file and one more row here.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/mesh_reader.h"
+#include "incise/io/mesh_reader.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
 
-#include "io/abaqus_reader.h"
-#include "io/frame_index.h"
-#include "io/gmsh_reader.h"
-#include "io/input_file.h"
-#include "io/legacy_vtk_reader.h"
-#include "io/medit_reader.h"
-#include "io/mesh_text.h"
-#include "io/number_text.h"
-#include "io/scanner.h"
-#include "io/tetgen_reader.h"
-#include "io/vtu_reader.h"
-#include "topology/error.h"
-#include "topology/mesh_repair.h"
+#include "incise/io/abaqus_reader.h"
+#include "incise/io/frame_index.h"
+#include "incise/io/gmsh_reader.h"
+#include "incise/io/input_file.h"
+#include "incise/io/legacy_vtk_reader.h"
+#include "incise/io/medit_reader.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_text.h"
+#include "incise/io/scanner.h"
+#include "incise/io/tetgen_reader.h"
+#include "incise/io/vtu_reader.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_repair.h"
 
 namespace incise::io {
 

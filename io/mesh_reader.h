@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "topology/error.h"
-#include "topology/mesh_data.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

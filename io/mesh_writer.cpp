@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/mesh_writer.h"
+#include "incise/io/mesh_writer.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
-#include "io/atomic_file.h"
-#include "io/mesh_text.h"
-#include "io/number_format.h"
-#include "io/vtu_writer.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/mesh_text.h"
+#include "incise/io/number_format.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -5,11 +5,11 @@
 #include <bit>
 #include <map>
 
-#include "io/image_header.h"
-#include "io/line_words.h"
-#include "io/number_text.h"
-#include "io/scanner.h"
-#include "topology/error.h"
+#include "incise/io/image_header.h"
+#include "incise/io/line_words.h"
+#include "incise/io/number_text.h"
+#include "incise/io/scanner.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -3,10 +3,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>
 
-#include "io/image_header.h"
-#include "io/number_text.h"
-#include "io/unpack.h"
-#include "topology/error.h"
+#include "incise/io/image_header.h"
+#include "incise/io/number_text.h"
+#include "incise/io/unpack.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Surfaces in Wavefront OBJ (.obj).
 // Source: Wavefront, "Advanced Visualizer Manual", appendix B1, "Object Files".
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/obj_reader.h"
+#include "incise/io/obj_reader.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "io/line_words.h"
-#include "io/scanner.h"
-#include "io/surface_collector.h"
-#include "topology/error.h"
+#include "incise/io/line_words.h"
+#include "incise/io/scanner.h"
+#include "incise/io/surface_collector.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

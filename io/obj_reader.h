@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "io/input_file.h"
-#include "io/surface_reader.h"
+#include "incise/io/input_file.h"
+#include "incise/io/surface_reader.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Surfaces in the Object File Format (.off).
 // Source: Geomview manual, "OFF Files".
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/off_reader.h"
+#include "incise/io/off_reader.h"
 
 #include <cstdint>
 #include <span>
@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/line_words.h"
-#include "io/scanner.h"
-#include "io/surface_collector.h"
+#include "incise/io/line_words.h"
+#include "incise/io/scanner.h"
+#include "incise/io/surface_collector.h"
 
 namespace incise::io {
 

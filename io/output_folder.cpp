@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/output_folder.h"
+#include "incise/io/output_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "io/atomic_file.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

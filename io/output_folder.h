@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "io/file_descriptor.h"
+#include "incise/io/file_descriptor.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Surfaces in the Polygon File Format (.ply).
 // Source: Turk, "The PLY Polygon File Format" (1994).
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/ply_reader.h"
+#include "incise/io/ply_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/line_words.h"
-#include "io/scanner.h"
-#include "io/surface_collector.h"
+#include "incise/io/line_words.h"
+#include "incise/io/scanner.h"
+#include "incise/io/surface_collector.h"
 
 namespace incise::io {
 

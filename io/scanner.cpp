@@ -1,11 +1,11 @@
 // Walks through a file of words and numbers, as text or binary.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/scanner.h"
+#include "incise/io/scanner.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/input_file.h"
-#include "io/number_text.h"
-#include "io/scalar_type.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_text.h"
+#include "incise/io/scalar_type.h"
 
 namespace incise::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/series.h"
+#include "incise/io/series.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
-#include "io/atomic_file.h"
-#include "io/input_file.h"
-#include "io/number_format.h"
-#include "io/number_text.h"
-#include "io/vtu_writer.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_format.h"
+#include "incise/io/number_text.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

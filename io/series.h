@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/frame.h"
-#include "io/packed_blocks.h"
-#include "io/written_bytes.h"
+#include "incise/io/frame.h"
+#include "incise/io/packed_blocks.h"
+#include "incise/io/written_bytes.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Surfaces in STL (.stl), ascii and binary.
 // Source: 3D Systems, "StereoLithography Interface Specification" (1989).
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/stl_reader.h"
+#include "incise/io/stl_reader.h"
 
 #include <array>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/scalar_type.h"
-#include "io/scanner.h"
-#include "io/surface_collector.h"
+#include "incise/io/scalar_type.h"
+#include "incise/io/scanner.h"
+#include "incise/io/surface_collector.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // Collects the points and polygons of a surface file, checked, as triangles.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/surface_collector.h"
+#include "incise/io/surface_collector.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
-#include "io/scanner.h"
-#include "io/surface_reader.h"
+#include "incise/io/scanner.h"
+#include "incise/io/surface_reader.h"
 
 namespace incise::io {
 

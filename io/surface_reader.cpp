@@ -1,17 +1,17 @@
 // Reading of surfaces from files. A further format is one more file and one more row here.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/surface_reader.h"
+#include "incise/io/surface_reader.h"
 
 #include <algorithm>
 #include <string_view>
 
-#include "io/input_file.h"
-#include "io/obj_reader.h"
-#include "io/off_reader.h"
-#include "io/ply_reader.h"
-#include "io/scanner.h"
-#include "io/stl_reader.h"
-#include "topology/error.h"
+#include "incise/io/input_file.h"
+#include "incise/io/obj_reader.h"
+#include "incise/io/off_reader.h"
+#include "incise/io/ply_reader.h"
+#include "incise/io/scanner.h"
+#include "incise/io/stl_reader.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/surface_data.h"
+#include "incise/topology/surface_data.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Meshes of TetGen (.node and .ele).
 // Source: H. Si, "TetGen: a quality tetrahedral mesh generator", user's manual 1.5, section 5.2.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/tetgen_reader.h"
+#include "incise/io/tetgen_reader.h"
 
 #include <array>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "io/cell_form.h"
-#include "io/line_words.h"
-#include "io/node_tags.h"
-#include "io/scanner.h"
-#include "topology/error.h"
+#include "incise/io/cell_form.h"
+#include "incise/io/line_words.h"
+#include "incise/io/node_tags.h"
+#include "incise/io/scanner.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

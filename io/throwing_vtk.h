@@ -22,8 +22,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/base64.h"
-#include "io/packed_blocks.h"
+#include "incise/io/base64.h"
+#include "incise/io/packed_blocks.h"
 
 namespace incise::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/unpack.h"
+#include "incise/io/unpack.h"
 
 #include <zlib.h>
 
@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "io/compression.h"
+#include "incise/io/compression.h"
 
 namespace incise::io {
 

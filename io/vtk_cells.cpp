@@ -1,10 +1,10 @@
 // The cells of VTK's unstructured grids, in XML or legacy files, turned into a mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/vtk_cells.h"
+#include "incise/io/vtk_cells.h"
 
-#include "io/input_file.h"
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "io/cell_form.h"
-#include "io/mesh_reader.h"
-#include "topology/mesh_data.h"
+#include "incise/io/cell_form.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // The DataArray elements of VTK's XML files, in every encoding.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/vtk_xml_array.h"
+#include "incise/io/vtk_xml_array.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "io/base64.h"
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/base64.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

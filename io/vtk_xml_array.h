@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "io/compression.h"
-#include "io/input_file.h"
-#include "io/scalar_type.h"
+#include "incise/io/compression.h"
+#include "incise/io/input_file.h"
+#include "incise/io/scalar_type.h"
 
 namespace incise::io {
 

@@ -1,7 +1,7 @@
 // Unstructured grids in VTK's XML format (.vtu).
 // Source: "VTK XML Formats", VTK wiki.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/vtu_reader.h"
+#include "incise/io/vtu_reader.h"
 
 #include <bit>
 #include <iterator>
@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "io/frame_index.h"
-#include "io/number_text.h"
-#include "io/vtk_cells.h"
-#include "io/vtk_xml_array.h"
-#include "topology/error.h"
+#include "incise/io/frame_index.h"
+#include "incise/io/number_text.h"
+#include "incise/io/vtk_cells.h"
+#include "incise/io/vtk_xml_array.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/vtu_writer.h"
+#include "incise/io/vtu_writer.h"
 
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCellArray.h>
@@ -26,8 +26,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "io/atomic_file.h"
-#include "io/throwing_vtk.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/throwing_vtk.h"
 
 namespace incise::io {
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/frame.h"
-#include "io/packed_blocks.h"
+#include "incise/io/frame.h"
+#include "incise/io/packed_blocks.h"
 
 namespace incise::io {
 

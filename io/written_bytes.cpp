@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/written_bytes.h"
+#include "incise/io/written_bytes.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
-#include "io/checked_file.h"
-#include "topology/error.h"
+#include "incise/io/checked_file.h"
+#include "incise/topology/error.h"
 
 namespace incise::io {
 

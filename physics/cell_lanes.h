@@ -6,8 +6,8 @@
 #include <array>
 #include <cstddef>
 
-#include "physics/hybmss_kernel.h"
-#include "physics/lanes.h"
+#include "incise/physics/hybmss_kernel.h"
+#include "incise/physics/lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

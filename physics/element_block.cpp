@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_block.h"
+#include "incise/physics/element_block.h"
 
 namespace incise::physics {
 

@@ -11,12 +11,12 @@
 #include <span>
 #include <vector>
 
-#include "physics/element_result.h"
-#include "physics/element_states.h"
-#include "physics/local_nodes.h"
-#include "physics/sum.h"
-#include "physics/viscous_history.h"
-#include "topology/types.h"
+#include "incise/physics/element_result.h"
+#include "incise/physics/element_states.h"
+#include "incise/physics/local_nodes.h"
+#include "incise/physics/sum.h"
+#include "incise/physics/viscous_history.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

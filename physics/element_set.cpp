@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_set.h"
+#include "incise/physics/element_set.h"
 
 #include <algorithm>
 #include <map>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_snapshot.h"
+#include "incise/physics/element_snapshot.h"
 
 #include <algorithm>
 #include <cassert>

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/element_block.h"
-#include "physics/model.h"
+#include "incise/physics/element_block.h"
+#include "incise/physics/model.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_states.h"
+#include "incise/physics/element_states.h"
 
 #include <algorithm>
 #include <array>

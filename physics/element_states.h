@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/element_result.h"
-#include "physics/sum.h"
+#include "incise/physics/element_result.h"
+#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

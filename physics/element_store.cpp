@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_store.h"
+#include "incise/physics/element_store.h"
 
 #include <algorithm>
 #include <cassert>
@@ -7,9 +7,9 @@
 #include <iterator>
 #include <numeric>
 
-#include "physics/inheritance.h"
-#include "physics/kernel_block.h"
-#include "topology/error.h"
+#include "incise/physics/inheritance.h"
+#include "incise/physics/kernel_block.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

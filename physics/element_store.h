@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "physics/element_block.h"
-#include "physics/material.h"
-#include "physics/precision.h"
-#include "physics/sum.h"
-#include "physics/workers.h"
-#include "topology/change_set.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
+#include "incise/physics/element_block.h"
+#include "incise/physics/material.h"
+#include "incise/physics/precision.h"
+#include "incise/physics/sum.h"
+#include "incise/physics/workers.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_tangent.h"
+#include "incise/physics/element_tangent.h"
 
-#include "physics/spectrum.h"
+#include "incise/physics/spectrum.h"
 
 namespace incise::physics {
 

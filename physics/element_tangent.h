@@ -7,11 +7,11 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "physics/heml_kernel.h"
-#include "physics/hybmss_kernel.h"
-#include "physics/mass_spring_kernel.h"
-#include "physics/nodal_viscous_kernel.h"
-#include "physics/viscous_kernel.h"
+#include "incise/physics/heml_kernel.h"
+#include "incise/physics/hybmss_kernel.h"
+#include "incise/physics/mass_spring_kernel.h"
+#include "incise/physics/nodal_viscous_kernel.h"
+#include "incise/physics/viscous_kernel.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/free_pieces.h"
+#include "incise/physics/free_pieces.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "physics/spectrum.h"
-#include "topology/error.h"
+#include "incise/physics/spectrum.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/supports.h"
-#include "topology/mesh.h"
+#include "incise/physics/supports.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

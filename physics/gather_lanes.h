@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "physics/lanes.h"
-#include "physics/local_nodes.h"
+#include "incise/physics/lanes.h"
+#include "incise/physics/local_nodes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

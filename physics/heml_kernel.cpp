@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/heml_kernel.h"
+#include "incise/physics/heml_kernel.h"
 
 #include <Eigen/LU>
 
-#include "topology/geometry.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::physics {
 

@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "physics/heml_lanes.h"
-#include "physics/law.h"
-#include "physics/precision.h"
-#include "topology/types.h"
+#include "incise/physics/heml_lanes.h"
+#include "incise/physics/law.h"
+#include "incise/physics/precision.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

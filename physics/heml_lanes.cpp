@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/heml_lanes.h"
+#include "incise/physics/heml_lanes.h"
 
 #include <algorithm>
 
-#include "physics/heml_kernel.h"
+#include "incise/physics/heml_kernel.h"
 
 namespace incise::physics {
 

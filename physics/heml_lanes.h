@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "physics/element_states.h"
-#include "physics/law.h"
-#include "physics/local_nodes.h"
-#include "physics/processor.h"
-#include "physics/sum.h"
+#include "incise/physics/element_states.h"
+#include "incise/physics/law.h"
+#include "incise/physics/local_nodes.h"
+#include "incise/physics/processor.h"
+#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

@@ -4,7 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "physics/law_response.h"
+#include "incise/physics/law_response.h"
 
 namespace incise::physics {
 

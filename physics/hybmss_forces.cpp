@@ -1,7 +1,7 @@
 // Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/cell_lanes.h"
-#include "physics/gather_lanes.h"
+#include "incise/physics/cell_lanes.h"
+#include "incise/physics/gather_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

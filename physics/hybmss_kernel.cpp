@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/hybmss_kernel.h"
+#include "incise/physics/hybmss_kernel.h"
 
 #include <limits>
 #include <sstream>

@@ -11,10 +11,10 @@
 #include <optional>
 #include <string>
 
-#include "physics/hybmss_lanes.h"
-#include "physics/material.h"
-#include "physics/precision.h"
-#include "topology/types.h"
+#include "incise/physics/hybmss_lanes.h"
+#include "incise/physics/material.h"
+#include "incise/physics/precision.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

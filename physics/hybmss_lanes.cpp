@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/hybmss_lanes.h"
+#include "incise/physics/hybmss_lanes.h"
 
 #include <algorithm>
 
-#include "physics/hybmss_kernel.h"
+#include "incise/physics/hybmss_kernel.h"
 
 namespace incise::physics {
 

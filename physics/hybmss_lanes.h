@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "physics/element_states.h"
-#include "physics/local_nodes.h"
-#include "physics/processor.h"
+#include "incise/physics/element_states.h"
+#include "incise/physics/local_nodes.h"
+#include "incise/physics/processor.h"
 
 namespace incise::physics {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <sstream>
 
-#include "physics/integrator.h"
-#include "topology/error.h"
+#include "incise/physics/integrator.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

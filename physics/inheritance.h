@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "topology/change_set.h"
+#include "incise/topology/change_set.h"
 
 namespace incise::physics {
 

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "physics/model.h"
-#include "physics/newton.h"
+#include "incise/physics/model.h"
+#include "incise/physics/newton.h"
 
 namespace incise::physics {
 

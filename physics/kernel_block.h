@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "physics/element_block.h"
-#include "physics/element_tangent.h"
-#include "physics/sum.h"
+#include "incise/physics/element_block.h"
+#include "incise/physics/element_tangent.h"
+#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/law.h"
+#include "incise/physics/law.h"
 
 namespace incise::physics {
 

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <variant>
 
-#include "physics/holzapfel_gasser_ogden.h"
-#include "physics/law_response.h"
-#include "physics/ogden.h"
+#include "incise/physics/holzapfel_gasser_ogden.h"
+#include "incise/physics/law_response.h"
+#include "incise/physics/ogden.h"
 
 namespace incise::physics {
 

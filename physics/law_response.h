@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/dual.h"
+#include "incise/physics/dual.h"
 
 namespace incise::physics {
 

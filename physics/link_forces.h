@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "physics/heml_lanes.h"
-#include "physics/lanes.h"
+#include "incise/physics/heml_lanes.h"
+#include "incise/physics/lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/loads.h"
+#include "incise/physics/loads.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <map>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

@@ -9,11 +9,11 @@
 #include <variant>
 #include <vector>
 
-#include "physics/element_set.h"
-#include "physics/element_store.h"
-#include "physics/node_set.h"
-#include "physics/time_curve.h"
-#include "topology/mesh.h"
+#include "incise/physics/element_set.h"
+#include "incise/physics/element_store.h"
+#include "incise/physics/node_set.h"
+#include "incise/physics/time_curve.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/machine_speed.h"
+#include "incise/physics/machine_speed.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "physics/heml_kernel.h"
-#include "physics/peak_loops.h"
+#include "incise/physics/heml_kernel.h"
+#include "incise/physics/peak_loops.h"
 
 namespace incise::physics {
 

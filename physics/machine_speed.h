@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "physics/law.h"
-#include "physics/processor.h"
+#include "incise/physics/law.h"
+#include "incise/physics/processor.h"
 
 namespace incise::physics {
 

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "physics/law.h"
+#include "incise/physics/law.h"
 
 namespace incise::physics {
 

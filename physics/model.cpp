@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/model.h"
+#include "incise/physics/model.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "physics/element_store.h"
-#include "physics/loads.h"
-#include "physics/node_lanes.h"
-#include "physics/node_sums.h"
-#include "physics/stable_step.h"
-#include "physics/supports.h"
-#include "physics/viscous_history.h"
-#include "topology/archive.h"
-#include "topology/change_set.h"
-#include "topology/mesh.h"
+#include "incise/physics/element_store.h"
+#include "incise/physics/loads.h"
+#include "incise/physics/node_lanes.h"
+#include "incise/physics/node_sums.h"
+#include "incise/physics/stable_step.h"
+#include "incise/physics/supports.h"
+#include "incise/physics/viscous_history.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "physics/model.h"
-#include "physics/sum.h"
+#include "incise/physics/model.h"
+#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/newton.h"
+#include "incise/physics/newton.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "physics/sum.h"
-#include "topology/error.h"
+#include "incise/physics/sum.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

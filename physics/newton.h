@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "physics/free_pieces.h"
-#include "physics/model.h"
-#include "physics/tangent_matrix.h"
+#include "incise/physics/free_pieces.h"
+#include "incise/physics/model.h"
+#include "incise/physics/tangent_matrix.h"
 
 namespace incise::physics {
 

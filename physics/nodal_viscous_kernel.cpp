@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/nodal_viscous_kernel.h"
+#include "incise/physics/nodal_viscous_kernel.h"
 
 #include <utility>
 

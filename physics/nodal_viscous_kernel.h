@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/heml_kernel.h"
-#include "physics/material.h"
+#include "incise/physics/heml_kernel.h"
+#include "incise/physics/material.h"
 
 namespace incise::physics {
 

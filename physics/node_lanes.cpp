@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/node_lanes.h"
+#include "incise/physics/node_lanes.h"
 
 namespace incise::physics {
 

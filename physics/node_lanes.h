@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "physics/processor.h"
-#include "topology/types.h"
+#include "incise/physics/processor.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstring>
 
-#include "physics/lanes.h"
-#include "physics/node_lanes.h"
+#include "incise/physics/lanes.h"
+#include "incise/physics/node_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/node_set.h"
+#include "incise/physics/node_set.h"
 
 #include <algorithm>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 
@@ -24,7 +24,7 @@ class NodeSet {
     };
 
     NodeSet() = default;
-    explicit NodeSet(std::vector<topology::NodeId> nodes);
+    NodeSet(std::vector<topology::NodeId> nodes);
 
     /// In ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "physics/sum.h"
-#include "physics/workers.h"
+#include "incise/physics/sum.h"
+#include "incise/physics/workers.h"
 
 namespace incise::physics {
 

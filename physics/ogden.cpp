@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/ogden.h"
+#include "incise/physics/ogden.h"
 
 #include <algorithm>
 
-#include "physics/power_differences.h"
+#include "incise/physics/power_differences.h"
 
 namespace incise::physics {
 

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "physics/law_response.h"
-#include "physics/squared_stretches.h"
+#include "incise/physics/law_response.h"
+#include "incise/physics/squared_stretches.h"
 
 namespace incise::physics {
 

@@ -1,10 +1,10 @@
 // What machine_speed.cpp times. Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/peak_loops.h"
+#include "incise/physics/peak_loops.h"
 
 #include <cstddef>
 
-#include "physics/link_forces.h"
+#include "incise/physics/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/power_differences.h"
+#include "incise/physics/power_differences.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/processor.h"
+#include "incise/physics/processor.h"
 
 namespace incise::physics {
 

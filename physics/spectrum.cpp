@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/spectrum.h"
+#include "incise/physics/spectrum.h"
 
 #include <Eigen/Eigenvalues>
 

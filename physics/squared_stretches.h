@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "physics/law_response.h"
+#include "incise/physics/law_response.h"
 
 namespace incise::physics {
 

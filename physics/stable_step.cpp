@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/stable_step.h"
+#include "incise/physics/stable_step.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstring>
 
-#include "physics/element_states.h"
-#include "physics/lanes.h"
+#include "incise/physics/element_states.h"
+#include "incise/physics/lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

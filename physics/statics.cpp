@@ -3,8 +3,8 @@
 #include <limits>
 #include <sstream>
 
-#include "physics/integrator.h"
-#include "topology/error.h"
+#include "incise/physics/integrator.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

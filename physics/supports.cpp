@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/supports.h"
+#include "incise/physics/supports.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 

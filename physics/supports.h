@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "physics/node_set.h"
-#include "physics/time_curve.h"
-#include "topology/mesh.h"
-#include "topology/pose.h"
-#include "topology/types.h"
+#include "incise/physics/node_set.h"
+#include "incise/physics/time_curve.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/pose.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

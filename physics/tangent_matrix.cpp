@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/tangent_matrix.h"
+#include "incise/physics/tangent_matrix.h"
 
 #include <algorithm>
 #include <utility>

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/element_block.h"
-#include "topology/mesh.h"
+#include "incise/physics/element_block.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -1,7 +1,7 @@
 // What ViscousKernel does, on lanes. Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/gather_lanes.h"
-#include "physics/viscous_lanes.h"
+#include "incise/physics/gather_lanes.h"
+#include "incise/physics/viscous_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

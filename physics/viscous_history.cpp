@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/viscous_history.h"
+#include "incise/physics/viscous_history.h"
 
 #include <algorithm>
 
-#include "physics/inheritance.h"
+#include "incise/physics/inheritance.h"
 
 namespace incise::physics {
 

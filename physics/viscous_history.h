@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/types.h"
 
 namespace incise::physics {
 

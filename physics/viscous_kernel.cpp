@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/viscous_kernel.h"
+#include "incise/physics/viscous_kernel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "physics/heml_kernel.h"
-#include "physics/material.h"
-#include "physics/viscous_lanes.h"
+#include "incise/physics/heml_kernel.h"
+#include "incise/physics/material.h"
+#include "incise/physics/viscous_lanes.h"
 
 namespace incise::physics {
 

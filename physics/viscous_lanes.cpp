@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/viscous_lanes.h"
+#include "incise/physics/viscous_lanes.h"
 
 #include <algorithm>
 
-#include "physics/viscous_kernel.h"
+#include "incise/physics/viscous_kernel.h"
 
 namespace incise::physics {
 

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "physics/function_ref.h"
-#include "physics/law.h"
-#include "physics/local_nodes.h"
-#include "physics/processor.h"
-#include "physics/viscous_history.h"
+#include "incise/physics/function_ref.h"
+#include "incise/physics/law.h"
+#include "incise/physics/local_nodes.h"
+#include "incise/physics/processor.h"
+#include "incise/physics/viscous_history.h"
 
 namespace incise::physics {
 

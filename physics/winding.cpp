@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/winding.h"
+#include "incise/physics/winding.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "topology/geometry.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::physics {
 

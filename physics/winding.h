@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/workers.h"
+#include "incise/physics/workers.h"
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>

@@ -8,7 +8,7 @@
 #include <exception>
 #include <memory>
 
-#include "physics/function_ref.h"
+#include "incise/physics/function_ref.h"
 
 namespace incise::physics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/body.h"
+#include "incise/sim/body.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +9,18 @@
 #include <span>
 #include <sstream>
 
-#include "io/memory.h"
-#include "io/mesh_reader.h"
-#include "io/number_format.h"
-#include "sim/body_problems.h"
-#include "sim/elastic_constants.h"
-#include "sim/selection.h"
-#include "sim/single_precision.h"
-#include "sim/step_limit.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_check.h"
-#include "topology/mesh_repair.h"
+#include "incise/io/memory.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/body_problems.h"
+#include "incise/sim/elastic_constants.h"
+#include "incise/sim/selection.h"
+#include "incise/sim/single_precision.h"
+#include "incise/sim/step_limit.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_check.h"
+#include "incise/topology/mesh_repair.h"
 
 namespace incise::sim {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "physics/model.h"
-#include "sim/scenario.h"
-#include "sim/tool_build.h"
-#include "sim/world.h"
-#include "topology/mesh.h"
+#include "incise/physics/model.h"
+#include "incise/sim/scenario.h"
+#include "incise/sim/tool_build.h"
+#include "incise/sim/world.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::sim {
 

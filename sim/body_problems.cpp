@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/body_problems.h"
+#include "incise/sim/body_problems.h"
 
 #include <sstream>
 #include <utility>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

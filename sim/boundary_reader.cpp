@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "sim/scenario_sections.h"
+#include "incise/sim/scenario_sections.h"
 
 namespace incise::sim {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/checkpoint.h"
+#include "incise/sim/checkpoint.h"
 
 #include <algorithm>
 #include <iterator>
 #include <optional>
 #include <system_error>
 
-#include "io/atomic_file.h"
-#include "io/checked_file.h"
-#include "io/input_file.h"
-#include "io/number_text.h"
-#include "sim/measured_quantities.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/checked_file.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_text.h"
+#include "incise/sim/measured_quantities.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

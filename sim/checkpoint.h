@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "io/series.h"
-#include "io/written_bytes.h"
-#include "sim/simulation.h"
-#include "topology/archive.h"
+#include "incise/io/series.h"
+#include "incise/io/written_bytes.h"
+#include "incise/sim/simulation.h"
+#include "incise/topology/archive.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/diagnostics.h"
+#include "incise/sim/diagnostics.h"
 
 #include <algorithm>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/document.h"
+#include "incise/sim/document.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/document.h"
+#include "incise/sim/document.h"
 
 #include <toml++/toml.h>
 
@@ -9,10 +9,10 @@
 #include <fstream>
 #include <optional>
 
-#include "io/mesh_reader.h"
-#include "io/number_format.h"
-#include "sim/diagnostics.h"
-#include "topology/error.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/diagnostics.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

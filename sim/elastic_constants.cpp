@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/elastic_constants.h"
+#include "incise/sim/elastic_constants.h"
 
 #include <algorithm>
 
-#include "io/number_format.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "sim/material_catalog.h"
+#include "incise/sim/material_catalog.h"
 
 namespace incise::sim {
 

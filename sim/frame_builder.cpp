@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/frame_builder.h"
+#include "incise/sim/frame_builder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "io/frame.h"
-#include "physics/element_snapshot.h"
-#include "physics/model.h"
-#include "sim/scenario.h"
+#include "incise/io/frame.h"
+#include "incise/physics/element_snapshot.h"
+#include "incise/physics/model.h"
+#include "incise/sim/scenario.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/geometric_cut.h"
+#include "incise/sim/geometric_cut.h"
 
 #include <algorithm>
 #include <array>
@@ -10,16 +10,16 @@
 #include <set>
 #include <sstream>
 
-#include "cutting/cut_plan.h"
-#include "cutting/cutter.h"
-#include "cutting/plane.h"
-#include "cutting/separator.h"
-#include "cutting/step_length.h"
-#include "cutting/triangle_surface.h"
-#include "cutting/undividable.h"
-#include "topology/error.h"
-#include "topology/geometry.h"
-#include "topology/mesh_metrics.h"
+#include "incise/cutting/cut_plan.h"
+#include "incise/cutting/cutter.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/separator.h"
+#include "incise/cutting/step_length.h"
+#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/undividable.h"
+#include "incise/topology/error.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {
 

@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/carver.h"
-#include "cutting/splitter.h"
-#include "cutting/tool.h"
-#include "topology/mesh.h"
-#include "topology/surface_data.h"
-#include "topology/types.h"
+#include "incise/cutting/carver.h"
+#include "incise/cutting/splitter.h"
+#include "incise/cutting/tool.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/surface_data.h"
+#include "incise/topology/types.h"
 
 namespace incise::sim {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/ledger.h"
+#include "incise/sim/ledger.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <vector>
 
-#include "topology/geometry.h"
-#include "topology/mesh_metrics.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {
 

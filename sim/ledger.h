@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cutting/splitter.h"
-#include "physics/model.h"
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/piece_count.h"
+#include "incise/cutting/splitter.h"
+#include "incise/physics/model.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/piece_count.h"
 
 namespace incise::sim {
 

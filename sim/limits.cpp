@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/limits.h"
+#include "incise/sim/limits.h"
 
 #include <cmath>
 
-#include "io/number_format.h"
+#include "incise/io/number_format.h"
 
 namespace incise::sim {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/material_catalog.h"
+#include "incise/sim/material_catalog.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/number_format.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

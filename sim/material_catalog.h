@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "physics/law.h"
-#include "sim/limits.h"
+#include "incise/physics/law.h"
+#include "incise/sim/limits.h"
 
 namespace incise::sim {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/number_format.h"
-#include "sim/elastic_constants.h"
-#include "sim/scenario_sections.h"
-#include "sim/tissue_catalog.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/elastic_constants.h"
+#include "incise/sim/scenario_sections.h"
+#include "incise/sim/tissue_catalog.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/measured_quantities.h"
+#include "incise/sim/measured_quantities.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "io/input_file.h"
-#include "io/number_format.h"
-#include "sim/quantities.h"
-#include "topology/error.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/quantities.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/scenario.h"
-#include "sim/simulation.h"
+#include "incise/sim/scenario.h"
+#include "incise/sim/simulation.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/quantities.h"
+#include "incise/sim/quantities.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/run_writer.h"
+#include "incise/sim/run_writer.h"
 
 #include <chrono>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "io/atomic_file.h"
-#include "io/number_format.h"
-#include "topology/error.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

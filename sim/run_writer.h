@@ -9,13 +9,13 @@
 #include <string>
 #include <utility>
 
-#include "io/line_file.h"
-#include "io/output_folder.h"
-#include "io/series.h"
-#include "sim/checkpoint.h"
-#include "sim/frame_builder.h"
-#include "sim/measured_quantities.h"
-#include "sim/simulation.h"
+#include "incise/io/line_file.h"
+#include "incise/io/output_folder.h"
+#include "incise/io/series.h"
+#include "incise/sim/checkpoint.h"
+#include "incise/sim/frame_builder.h"
+#include "incise/sim/measured_quantities.h"
+#include "incise/sim/simulation.h"
 
 namespace incise::sim {
 

@@ -13,14 +13,15 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/tool.h"
-#include "io/frame.h"
-#include "physics/material.h"
-#include "physics/precision.h"
-#include "sim/material_catalog.h"
-#include "sim/time_key.h"
-#include "topology/cell_kind.h"
-#include "topology/types.h"
+#include "incise/cutting/tool.h"
+#include "incise/io/frame.h"
+#include "incise/physics/material.h"
+#include "incise/physics/precision.h"
+#include "incise/sim/material_catalog.h"
+#include "incise/sim/selection.h"
+#include "incise/sim/time_key.h"
+#include "incise/topology/cell_kind.h"
+#include "incise/topology/types.h"
 
 namespace incise::sim {
 
@@ -82,33 +83,6 @@ struct DynamicsSpec {
     /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
     physics::Precision precision = physics::Precision::double_precision;
     std::string end_time_place = {}, time_step_place = {}, precision_place = {};  ///< for messages
-};
-
-/// A place and an extent along the axes.
-struct BoxRegion {
-    Vec3 min, max;
-};
-struct SphereRegion {
-    Vec3 center;
-    double radius = 0.0;
-};
-/// The points x with (x - point) . normal >= 0.
-struct HalfSpaceRegion {
-    Vec3 point, normal;  ///< the normal is of unit length
-};
-
-/// Nodes or faces for which everything given holds, at rest. Nothing given: all.
-struct Selection {
-    std::optional<BoxRegion> box;  ///< closed
-    std::optional<SphereRegion> sphere;
-    std::optional<HalfSpaceRegion> half_space;
-    std::optional<std::vector<std::int64_t>> nodes;  ///< numbers in the source, from 0; ascending
-    std::optional<std::vector<int>> regions;         ///< in an element of one of these; ascending
-    bool surface = false;                            ///< on the boundary
-
-    bool selects_all() const {
-        return !box && !sphere && !half_space && !nodes && !regions && !surface;
-    }
 };
 
 /// Nodes that are held or led: their positions along the fixed axes are those of

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/scenario_reader.h"
+#include "incise/sim/scenario_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
-#include "io/number_format.h"
-#include "io/series.h"
-#include "sim/quantities.h"
-#include "sim/scenario_sections.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/io/series.h"
+#include "incise/sim/quantities.h"
+#include "incise/sim/scenario_sections.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

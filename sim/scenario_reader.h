@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario.h"
+#include "incise/sim/scenario.h"
 
 namespace incise::sim {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario.h"
-#include "sim/table_reader.h"
+#include "incise/sim/scenario.h"
+#include "incise/sim/table_reader.h"
 
 namespace incise::sim {
 

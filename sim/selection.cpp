@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/selection.h"
+#include "incise/sim/selection.h"
 
 #include <algorithm>
 #include <sstream>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

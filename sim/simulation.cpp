@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/simulation.h"
+#include "incise/sim/simulation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "io/checked_file.h"
-#include "io/input_file.h"
-#include "io/number_format.h"
-#include "physics/winding.h"
-#include "sim/body.h"
-#include "sim/step_limit.h"
-#include "topology/error.h"
+#include "incise/io/checked_file.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_format.h"
+#include "incise/physics/winding.h"
+#include "incise/sim/body.h"
+#include "incise/sim/step_limit.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

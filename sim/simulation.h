@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/ledger.h"
-#include "sim/scenario.h"
-#include "sim/tool_build.h"
-#include "sim/world.h"
-#include "topology/archive.h"
-#include "topology/mesh.h"
+#include "incise/sim/ledger.h"
+#include "incise/sim/scenario.h"
+#include "incise/sim/tool_build.h"
+#include "incise/sim/world.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::sim {
 

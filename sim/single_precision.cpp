@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/single_precision.h"
+#include "incise/sim/single_precision.h"
 
 #include <algorithm>
 #include <array>
 
-#include "io/number_format.h"
-#include "topology/mesh_metrics.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::sim {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/step_limit.h"
+#include "incise/sim/step_limit.h"
 
 #include <sstream>
 
-#include "sim/body_problems.h"
-#include "topology/error.h"
+#include "incise/sim/body_problems.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "physics/model.h"
-#include "sim/scenario.h"
+#include "incise/physics/model.h"
+#include "incise/sim/scenario.h"
 
 namespace incise::sim {
 

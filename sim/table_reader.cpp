@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/table_reader.h"
+#include "incise/sim/table_reader.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "io/number_format.h"
+#include "incise/io/number_format.h"
 
 namespace incise::sim {
 

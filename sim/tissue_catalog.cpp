@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/tissue_catalog.h"
+#include "incise/sim/tissue_catalog.h"
 
 #include <algorithm>
 #include <initializer_list>
 #include <utility>
 
-#include "io/number_format.h"
+#include "incise/io/number_format.h"
 
 namespace incise::sim {
 

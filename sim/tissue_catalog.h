@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "physics/material.h"
-#include "sim/material_catalog.h"
+#include "incise/physics/material.h"
+#include "incise/sim/material_catalog.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/tool_build.h"
+#include "incise/sim/tool_build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <sstream>
 #include <utility>
 
-#include "cutting/surface_check.h"
-#include "cutting/swept_edge.h"
-#include "cutting/undividable.h"
-#include "io/surface_reader.h"
-#include "topology/error.h"
+#include "incise/cutting/surface_check.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/undividable.h"
+#include "incise/io/surface_reader.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

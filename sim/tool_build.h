@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cutting/element_boxes.h"
-#include "cutting/tool.h"
-#include "sim/scenario.h"
-#include "sim/tool_path.h"
-#include "topology/mesh.h"
+#include "incise/cutting/element_boxes.h"
+#include "incise/cutting/tool.h"
+#include "incise/sim/scenario.h"
+#include "incise/sim/tool_path.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/tool_path.h"
+#include "incise/sim/tool_path.h"
 
 #include <algorithm>
 

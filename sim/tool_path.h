@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "sim/time_key.h"
-#include "topology/pose.h"
+#include "incise/sim/time_key.h"
+#include "incise/topology/pose.h"
 
 namespace incise::sim {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "io/number_format.h"
-#include "sim/scenario_sections.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/scenario_sections.h"
 
 namespace incise::sim {
 

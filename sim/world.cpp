@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/world.h"
+#include "incise/sim/world.h"
 
 #include <cmath>
 #include <utility>
 
-#include "io/number_format.h"
-#include "sim/world_checks.h"
-#include "sim/world_parts.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/world_checks.h"
+#include "incise/sim/world_parts.h"
 
 namespace incise::sim {
 

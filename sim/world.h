@@ -12,15 +12,15 @@
 #include <variant>
 #include <vector>
 
-#include "cutting/cutter.h"
-#include "cutting/tool.h"
-#include "physics/model.h"
-#include "sim/ledger.h"
-#include "topology/boundary_surface.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
-#include "topology/mesh_data.h"
-#include "topology/pose.h"
+#include "incise/cutting/cutter.h"
+#include "incise/cutting/tool.h"
+#include "incise/physics/model.h"
+#include "incise/sim/ledger.h"
+#include "incise/topology/boundary_surface.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_data.h"
+#include "incise/topology/pose.h"
 
 namespace incise::sim {
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include "io/number_format.h"
-#include "sim/world_checks.h"
-#include "sim/world_parts.h"
-#include "topology/mesh_archive.h"
+#include "incise/io/number_format.h"
+#include "incise/sim/world_checks.h"
+#include "incise/sim/world_parts.h"
+#include "incise/topology/mesh_archive.h"
 
 namespace incise::sim {
 

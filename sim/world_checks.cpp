@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/world_checks.h"
+#include "incise/sim/world_checks.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "io/number_format.h"
-#include "topology/error.h"
+#include "incise/io/number_format.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 

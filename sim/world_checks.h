@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "physics/loads.h"
-#include "physics/supports.h"
-#include "sim/world.h"
+#include "incise/physics/loads.h"
+#include "incise/physics/supports.h"
+#include "incise/sim/world.h"
 
 namespace incise::sim {
 

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "physics/integrator.h"
-#include "sim/numbering.h"
-#include "sim/world.h"
-#include "topology/archive.h"
+#include "incise/physics/integrator.h"
+#include "incise/sim/numbering.h"
+#include "incise/sim/world.h"
+#include "incise/topology/archive.h"
 
 namespace incise::sim {
 

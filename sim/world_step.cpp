@@ -4,9 +4,9 @@
 #include <sstream>
 #include <utility>
 
-#include "cutting/step_length.h"
-#include "cutting/undividable.h"
-#include "sim/world_parts.h"
+#include "incise/cutting/step_length.h"
+#include "incise/cutting/undividable.h"
+#include "incise/sim/world_parts.h"
 
 namespace incise::sim {
 

@@ -21,8 +21,8 @@
 #include <variant>
 #include <vector>
 
-#include "topology/error.h"
-#include "topology/types.h"
+#include "incise/topology/error.h"
+#include "incise/topology/types.h"
 
 namespace incise::topology {
 

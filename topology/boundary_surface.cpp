@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/boundary_surface.h"
+#include "incise/topology/boundary_surface.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::topology {
 

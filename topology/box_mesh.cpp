@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/box_mesh.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::topology {
 

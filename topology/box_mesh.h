@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
 

@@ -1,7 +1,7 @@
 // Dart surgery on CGAL's linear cell complex: links are made and broken directly, for the managed
 // operations cost several times as much and tell nobody when a vertex dies.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/cell_map.h"
+#include "incise/topology/cell_map.h"
 
 #include <CGAL/Cell_attribute.h>
 #include <CGAL/Cell_attribute_with_point.h>
@@ -11,7 +11,7 @@
 #include <cassert>
 #include <sstream>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/change_set.h"
+#include "incise/topology/change_set.h"
 
 #include <utility>
 

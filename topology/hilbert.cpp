@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/hilbert.h"
+#include "incise/topology/hilbert.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::topology {
 

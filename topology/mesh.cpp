@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 
-#include "topology/groups.h"
+#include "incise/topology/groups.h"
 
 namespace incise::topology {
 

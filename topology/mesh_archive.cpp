@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_archive.h"
+#include "incise/topology/mesh_archive.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "topology/validate.h"
+#include "incise/topology/validate.h"
 
 namespace incise::topology {
 

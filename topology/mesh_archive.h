@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "topology/archive.h"
-#include "topology/mesh.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 

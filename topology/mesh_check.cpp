@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_check.h"
+#include "incise/topology/mesh_check.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <map>
 #include <sstream>
 
-#include "topology/flat_cell.h"
-#include "topology/geometry.h"
-#include "topology/mesh_repair.h"
+#include "incise/topology/flat_cell.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_repair.h"
 
 namespace incise::topology {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
 

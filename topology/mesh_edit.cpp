@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_edit.h"
+#include "incise/topology/mesh_edit.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::topology {
 

@@ -6,8 +6,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 

@@ -4,11 +4,11 @@
 #include <numeric>
 #include <sstream>
 
-#include "topology/error.h"
-#include "topology/geometry.h"
-#include "topology/hilbert.h"
-#include "topology/mesh.h"
-#include "topology/mesh_check.h"
+#include "incise/topology/error.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/hilbert.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_check.h"
 
 namespace incise::topology {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_metrics.h"
+#include "incise/topology/mesh_metrics.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "topology/error.h"
-#include "topology/geometry.h"
-#include "topology/mesh_check.h"
+#include "incise/topology/error.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_check.h"
 
 namespace incise::topology {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_repair.h"
+#include "incise/topology/mesh_repair.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "topology/flat_cell.h"
-#include "topology/geometry.h"
-#include "topology/weld_outlook.h"
+#include "incise/topology/flat_cell.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/weld_outlook.h"
 
 namespace incise::topology {
 

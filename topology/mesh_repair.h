@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::topology {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/piece_count.h"
+#include "incise/topology/piece_count.h"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "topology/groups.h"
+#include "incise/topology/groups.h"
 
 namespace incise::topology {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/groups.h"
-#include "topology/mesh.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/groups.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise {
 

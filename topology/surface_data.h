@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/validate.h"
+#include "incise/topology/validate.h"
 
 #include <algorithm>
 #include <sstream>
 
-#include "topology/geometry.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::topology {
 

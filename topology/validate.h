@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/weld_outlook.h"
+#include "incise/topology/weld_outlook.h"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <map>
 
-#include "topology/mesh_check.h"
-#include "topology/mesh_repair.h"
+#include "incise/topology/mesh_check.h"
+#include "incise/topology/mesh_repair.h"
 
 namespace incise::topology {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/coloring.h"
+#include "incise/app/render/coloring.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 

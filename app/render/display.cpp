@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/display.h"
+#include "incise/app/render/display.h"
 
 #include <X11/Xlib.h>
 #include <fcntl.h>
@@ -16,7 +16,7 @@
 #include <string>
 #include <system_error>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 

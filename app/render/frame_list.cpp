@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/frame_list.h"
+#include "incise/app/render/frame_list.h"
 
 #include <vtkNew.h>
 #include <vtkXMLDataElement.h>
@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <system_error>
 
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/frame_reader.h"
+#include "incise/app/render/frame_reader.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/input_file.h"
-#include "io/number_text.h"
-#include "topology/error.h"
+#include "incise/io/input_file.h"
+#include "incise/io/number_text.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 

@@ -5,7 +5,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 
-#include "app/render/frame_list.h"
+#include "incise/app/render/frame_list.h"
 
 namespace incise::render {
 

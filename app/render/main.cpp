@@ -14,14 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "app/render/coloring.h"
-#include "app/render/display.h"
-#include "app/render/frame_list.h"
-#include "app/render/frame_reader.h"
-#include "app/render/options.h"
-#include "app/render/scene.h"
-#include "io/atomic_file.h"
-#include "topology/error.h"
+#include "incise/app/render/coloring.h"
+#include "incise/app/render/display.h"
+#include "incise/app/render/frame_list.h"
+#include "incise/app/render/frame_reader.h"
+#include "incise/app/render/options.h"
+#include "incise/app/render/scene.h"
+#include "incise/io/atomic_file.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 namespace {

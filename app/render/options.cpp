@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/options.h"
+#include "incise/app/render/options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "app/help_formatter.h"
-#include "io/number_text.h"
+#include "incise/app/help_formatter.h"
+#include "incise/io/number_text.h"
 
 namespace incise::render {
 

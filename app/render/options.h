@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::render {
 

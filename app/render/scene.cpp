@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/render/scene.h"
+#include "incise/app/render/scene.h"
 
 #include <vtkActor.h>
 #include <vtkCamera.h>
@@ -27,7 +27,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::render {
 

@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
-#include "app/render/coloring.h"
-#include "topology/types.h"
+#include "incise/app/render/coloring.h"
+#include "incise/topology/types.h"
 
 namespace incise::render {
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "topology/mesh.h"
-#include "topology/types.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
 
 namespace incise::bench {
 

@@ -9,7 +9,7 @@
 
 #include "bench/comparators/element_loop.h"
 #include "bench/comparators/link_traces.h"
-#include "physics/heml_kernel.h"
+#include "incise/physics/heml_kernel.h"
 
 namespace incise::bench {
 

@@ -8,7 +8,7 @@
 #include <cassert>
 
 #include "bench/comparators/element_loop.h"
-#include "physics/law.h"
+#include "incise/physics/law.h"
 
 namespace incise::bench {
 

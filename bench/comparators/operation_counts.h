@@ -4,7 +4,7 @@
 
 #include "bench/comparators/counted.h"
 #include "bench/comparators/element_loop.h"
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::bench {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::organs {
 

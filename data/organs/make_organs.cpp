@@ -10,10 +10,10 @@
 #include "data/organs/mesh_smoothing.h"
 #include "data/organs/organ_shapes.h"
 #include "data/organs/tetrahedral_mesher.h"
-#include "io/mesh_writer.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
-#include "topology/validate.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/validate.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "topology/geometry.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::organs {
 

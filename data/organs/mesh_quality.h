@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <map>
 
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::organs {
 

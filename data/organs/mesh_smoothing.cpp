@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "topology/geometry.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::organs {
 

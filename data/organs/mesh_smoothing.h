@@ -4,7 +4,7 @@
 #pragma once
 
 #include "data/organs/organ_shapes.h"
-#include "topology/mesh_data.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::organs {
 

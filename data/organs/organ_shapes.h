@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "topology/types.h"
+#include "incise/topology/types.h"
 
 namespace incise::organs {
 

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::organs {
 

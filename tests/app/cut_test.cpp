@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "in_folder.h"
-#include "io/mesh_writer.h"
-#include "topology/box_mesh.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise {
 namespace {

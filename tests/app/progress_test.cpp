@@ -1,6 +1,6 @@
 // The progress line and the lines where there is no terminal.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/progress.h"
+#include "incise/app/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -12,11 +12,11 @@
 #include <cmath>
 #include <set>
 
-#include "io/atomic_file.h"
-#include "io/mesh_writer.h"
-#include "io/series.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/io/series.h"
+#include "incise/topology/box_mesh.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/box_mesh.h"
 
 namespace incise {
 namespace {

@@ -1,7 +1,7 @@
 // The figures of `incise bench`: that there are all of them, and that they fit each other. How high
 // they are is no affair of tests.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "app/throughput.h"
+#include "incise/app/throughput.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "physics/test_bodies.h"
+#include "incise/physics/test_bodies.h"
 
 namespace incise::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "topology/validate.h"
+#include "incise/topology/validate.h"
 
 namespace incise::bench {
 

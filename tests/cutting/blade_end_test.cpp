@@ -1,6 +1,6 @@
 // Where a blade stops inside a body, its cut ends at its edge.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/blade_end.h"
+#include "incise/cutting/blade_end.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <array>
 #include <cmath>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_metrics.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_metrics.h"
 
 namespace incise::cutting {
 namespace {

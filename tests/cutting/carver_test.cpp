@@ -1,7 +1,7 @@
 // What a carver covers: shapes against dense sampling, moving tools and tissue against a crawl in
 // tiny steps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/carver.h"
+#include "incise/cutting/carver.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <numbers>
 #include <set>
 
+#include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
 
 namespace incise::cutting {
 namespace {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "physics/test_materials.h"
+#include "incise/physics/test_materials.h"
 #include "split_body.h"
 
 namespace incise::cutting {

@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "physics/model.h"
-#include "topology/mesh_data.h"
+#include "incise/physics/model.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::cutting {
 

@@ -1,6 +1,6 @@
 // What a cut remembers of its front, and of where it has been.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/cut_front.h"
+#include "incise/cutting/cut_front.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "cutting/scars.h"
+#include "incise/cutting/scars.h"
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::cutting {
 namespace {

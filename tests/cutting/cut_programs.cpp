@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "cutting/plane.h"
-#include "cutting/swept_edge.h"
-#include "cutting/triangle_surface.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/triangle_surface.h"
 
 namespace incise::cutting {
 

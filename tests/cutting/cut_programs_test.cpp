@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "cut_balance.h"
-#include "io/mesh_reader.h"
-#include "topology/validate.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/topology/validate.h"
 
 namespace incise::cutting {
 namespace {

@@ -12,15 +12,15 @@
 #include <ostream>
 
 #include "cut_balance.h"
-#include "cutting/plane.h"
-#include "cutting/swept_edge.h"
-#include "cutting/triangle_surface.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/triangle_surface.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 #include "split_body.h"
 #include "support/generated_body.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
 
 namespace incise::cutting {
 namespace {

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <set>
 
+#include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 #include "swept_body.h"
-#include "topology/box_mesh.h"
 
 namespace incise::cutting {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/near_nodes.h"
+#include "incise/cutting/near_nodes.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <random>
 
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::cutting {
 namespace {

@@ -1,6 +1,6 @@
 // What a blade opens in tissue that is still, against plain geometry.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/separator.h"
+#include "incise/cutting/separator.h"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 #include <numbers>
 #include <set>
 
+#include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 #include "swept_body.h"
-#include "topology/box_mesh.h"
 
 namespace incise::cutting {
 namespace {

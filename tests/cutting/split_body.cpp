@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 
-#include "cutting/step_length.h"
-#include "cutting/swept_edge.h"
-#include "topology/geometry.h"
-#include "topology/validate.h"
+#include "incise/cutting/step_length.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/validate.h"
 
 namespace incise::cutting {
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "cutting/splitter.h"
-#include "topology/mesh.h"
-#include "topology/mesh_data.h"
-#include "topology/surface_data.h"
+#include "incise/cutting/splitter.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_data.h"
+#include "incise/topology/surface_data.h"
 
 namespace incise::cutting {
 

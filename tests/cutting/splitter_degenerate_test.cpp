@@ -8,13 +8,13 @@
 #include <limits>
 #include <span>
 
-#include "cutting/plane.h"
-#include "cutting/triangle_surface.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/triangle_surface.h"
+#include "incise/topology/box_mesh.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
 
 namespace incise::cutting {
 namespace {

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "blade_path.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/mesh_metrics.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/archive.h"
-#include "topology/mesh_metrics.h"
 
 namespace incise::cutting {
 namespace {

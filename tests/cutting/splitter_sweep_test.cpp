@@ -8,13 +8,13 @@
 #include <set>
 
 #include "blade_path.h"
-#include "cutting/swept_edge.h"
+#include "incise/cutting/swept_edge.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_metrics.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_metrics.h"
 
 namespace incise::cutting {
 namespace {

@@ -1,7 +1,7 @@
 // Splitting along planes in general position: against the volumes of plain geometry, and what an
 // edit has to say of itself.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "cutting/splitter.h"
+#include "incise/cutting/splitter.h"
 
 #include <gtest/gtest.h>
 
@@ -11,17 +11,17 @@
 #include <limits>
 #include <set>
 
-#include "cutting/plane.h"
-#include "cutting/step_length.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/step_length.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/mesh_metrics.h"
+#include "incise/topology/validate.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
-#include "topology/mesh_metrics.h"
-#include "topology/validate.h"
 
 namespace incise::cutting {
 namespace {

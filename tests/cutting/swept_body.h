@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cutting/cut_plan.h"
-#include "cutting/separator.h"
-#include "topology/mesh.h"
-#include "topology/validate.h"
+#include "incise/cutting/cut_plan.h"
+#include "incise/cutting/separator.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/validate.h"
 
 namespace incise::cutting {
 

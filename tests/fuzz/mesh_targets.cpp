@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <string>
 
-#include "io/abaqus_reader.h"
-#include "io/gmsh_reader.h"
-#include "io/legacy_vtk_reader.h"
-#include "io/medit_reader.h"
-#include "io/tetgen_reader.h"
-#include "io/vtu_reader.h"
+#include "incise/io/abaqus_reader.h"
+#include "incise/io/gmsh_reader.h"
+#include "incise/io/legacy_vtk_reader.h"
+#include "incise/io/medit_reader.h"
+#include "incise/io/tetgen_reader.h"
+#include "incise/io/vtu_reader.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_repair.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/mesh_consistency.h"
-#include "topology/mesh.h"
-#include "topology/mesh_repair.h"
 
 namespace incise::fuzz {
 

@@ -1,6 +1,6 @@
 // The reader of scenarios.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/scenario_reader.h"
+#include "incise/sim/scenario_reader.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/fuzz/written_file.h"

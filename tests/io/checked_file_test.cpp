@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/checked_file.h"
+#include "incise/io/checked_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "io/atomic_file.h"
-#include "io/output_folder.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/output_folder.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -10,12 +10,12 @@
 #include <csignal>
 #include <functional>
 
-#include "io/atomic_file.h"
-#include "io/checked_file.h"
-#include "io/file_descriptor.h"
-#include "io/line_file.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/checked_file.h"
+#include "incise/io/file_descriptor.h"
+#include "incise/io/line_file.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "io/label_image.h"
+#include "incise/io/label_image.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "io/input_file.h"
-#include "io/label_image.h"
-#include "io/memory.h"
+#include "incise/io/input_file.h"
+#include "incise/io/label_image.h"
+#include "incise/io/memory.h"
 #include "tests/io/image_samples.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mutation.h"

@@ -1,6 +1,6 @@
 // Hexahedra from label images: how many, where, and that they are one body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/label_mesh.h"
+#include "incise/io/label_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 #include <random>
 #include <set>
 
-#include "topology/error.h"
-#include "topology/geometry.h"
-#include "topology/mesh.h"
-#include "topology/validate.h"
+#include "incise/topology/error.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/validate.h"
 
 namespace incise::io {
 namespace {

@@ -1,6 +1,6 @@
 // Every format that is written keeps the mesh: points, cells, orientation, regions.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/mesh_writer.h"
+#include "incise/io/mesh_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@
 #include <array>
 #include <numbers>
 
-#include "io/mesh_reader.h"
-#include "io/mesh_text.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh_text.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -5,15 +5,15 @@
 #include <random>
 #include <string>
 
-#include "io/abaqus_reader.h"
-#include "io/gmsh_reader.h"
-#include "io/legacy_vtk_reader.h"
-#include "io/medit_reader.h"
-#include "io/vtu_reader.h"
+#include "incise/io/abaqus_reader.h"
+#include "incise/io/gmsh_reader.h"
+#include "incise/io/legacy_vtk_reader.h"
+#include "incise/io/medit_reader.h"
+#include "incise/io/vtu_reader.h"
+#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mesh_consistency.h"
 #include "tests/support/mutation.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -23,8 +23,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 

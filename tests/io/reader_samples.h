@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh_reader.h"
-#include "topology/mesh_data.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::io {
 

@@ -9,11 +9,11 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.h"
-#include "io/series.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/series.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -1,6 +1,6 @@
 // Surfaces: every format gives the same one; what is refused; damaged files.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/surface_reader.h"
+#include "incise/io/surface_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@
 #include <string>
 #include <vector>
 
-#include "io/number_text.h"
-#include "io/obj_reader.h"
-#include "io/off_reader.h"
-#include "io/ply_reader.h"
-#include "io/stl_reader.h"
+#include "incise/io/number_text.h"
+#include "incise/io/obj_reader.h"
+#include "incise/io/off_reader.h"
+#include "incise/io/ply_reader.h"
+#include "incise/io/stl_reader.h"
+#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/io/surface_samples.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

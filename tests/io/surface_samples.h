@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/topology/surface_data.h"
 #include "tests/io/reader_samples.h"
-#include "topology/surface_data.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // What a pair of TetGen files means, and what is refused in one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/tetgen_reader.h"
+#include "incise/io/tetgen_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <string>
 
+#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

@@ -1,6 +1,6 @@
 // What is written as .vtu is what VTK reads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "io/vtu_writer.h"
+#include "incise/io/vtu_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,9 +18,9 @@
 #include <limits>
 #include <numbers>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
 
 namespace incise::io {
 namespace {

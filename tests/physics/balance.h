@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "physics/test_bodies.h"
-#include "topology/geometry.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::physics {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "physics/test_bodies.h"
+#include "incise/physics/test_bodies.h"
 
 namespace incise::physics {
 

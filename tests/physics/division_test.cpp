@@ -6,11 +6,11 @@
 #include <array>
 #include <functional>
 
-#include "physics/balance.h"
-#include "physics/descent.h"
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_edit.h"
+#include "incise/physics/balance.h"
+#include "incise/physics/descent.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

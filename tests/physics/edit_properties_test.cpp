@@ -8,15 +8,15 @@
 #include <optional>
 #include <ostream>
 
-#include "physics/balance.h"
-#include "physics/generated_surroundings.h"
-#include "physics/model_snapshot.h"
+#include "incise/physics/balance.h"
+#include "incise/physics/generated_surroundings.h"
+#include "incise/physics/model_snapshot.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 #include "support/generated_body.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
 
 namespace incise::physics {
 namespace {

@@ -10,15 +10,15 @@
 #include <numeric>
 #include <string_view>
 
-#include "physics/balance.h"
-#include "physics/descent.h"
-#include "physics/model_snapshot.h"
+#include "incise/physics/balance.h"
+#include "incise/physics/descent.h"
+#include "incise/physics/model_snapshot.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
 
 namespace incise::physics {
 namespace {

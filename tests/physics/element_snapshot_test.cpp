@@ -1,6 +1,6 @@
 // What elements did at one moment, worked out while the body goes on.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_snapshot.h"
+#include "incise/physics/element_snapshot.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "physics/model_snapshot.h"
-#include "topology/box_mesh.h"
+#include "incise/physics/model_snapshot.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {

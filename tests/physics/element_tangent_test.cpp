@@ -1,11 +1,11 @@
 // Tangents of elements against differences of their forces.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/element_tangent.h"
+#include "incise/physics/element_tangent.h"
 
 #include <gtest/gtest.h>
 
-#include "physics/spectrum.h"
-#include "physics/test_materials.h"
+#include "incise/physics/spectrum.h"
+#include "incise/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

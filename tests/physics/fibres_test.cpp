@@ -6,10 +6,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

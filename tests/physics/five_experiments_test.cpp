@@ -7,9 +7,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {

@@ -1,12 +1,12 @@
 // Which ways supports leave to a piece, however thin it is.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/free_pieces.h"
+#include "incise/physics/free_pieces.h"
 
 #include <gtest/gtest.h>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
-#include "physics/thin_tetrahedra.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/physics/thin_tetrahedra.h"
 
 namespace incise::physics {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/generated_surroundings.h"
+#include "incise/physics/generated_surroundings.h"
 
 #include <algorithm>
 #include <ostream>
 
-#include "physics/test_bodies.h"
+#include "incise/physics/test_bodies.h"
 
 namespace incise::physics {
 

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "physics/model.h"
+#include "incise/physics/model.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 #include "support/properties.h"
-#include "topology/change_set.h"
-#include "topology/mesh.h"
 
 namespace incise::physics {
 

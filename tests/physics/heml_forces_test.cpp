@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "physics/test_materials.h"
+#include "incise/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

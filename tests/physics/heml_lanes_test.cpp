@@ -1,14 +1,14 @@
 // The fast forces and energies against the reference, on each kind of processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/heml_lanes.h"
+#include "incise/physics/heml_lanes.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <numeric>
 
-#include "physics/processors_at_hand.h"
-#include "physics/test_materials.h"
+#include "incise/physics/processors_at_hand.h"
+#include "incise/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "physics/hybmss_kernel.h"
-#include "physics/test_bodies.h"
+#include "incise/physics/hybmss_kernel.h"
+#include "incise/physics/test_bodies.h"
 
 namespace incise::physics {
 

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "physics/hybmss_cells.h"
-#include "physics/processors_at_hand.h"
+#include "incise/physics/hybmss_cells.h"
+#include "incise/physics/processors_at_hand.h"
 
 namespace incise::physics {
 namespace {

@@ -8,11 +8,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 
 namespace incise::physics {
 namespace {

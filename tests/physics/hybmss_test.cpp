@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "physics/hybmss_cells.h"
-#include "physics/spectrum.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
+#include "incise/physics/hybmss_cells.h"
+#include "incise/physics/spectrum.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

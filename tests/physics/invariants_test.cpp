@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {

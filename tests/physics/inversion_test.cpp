@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "physics/test_bodies.h"
-#include "physics/winding.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/physics/winding.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

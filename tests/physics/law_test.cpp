@@ -1,13 +1,13 @@
 // Laws against their definitions: rest moduli, energies in F, the extension below J0.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/law.h"
+#include "incise/physics/law.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "physics/test_materials.h"
-#include "physics/textbook_energies.h"
+#include "incise/physics/test_materials.h"
+#include "incise/physics/textbook_energies.h"
 
 namespace incise::physics {
 namespace {

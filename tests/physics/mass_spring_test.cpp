@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "physics/model.h"
-#include "physics/test_materials.h"
-#include "topology/box_mesh.h"
+#include "incise/physics/model.h"
+#include "incise/physics/test_materials.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "physics/test_bodies.h"
+#include "incise/physics/test_bodies.h"
 
 namespace incise::physics {
 

@@ -1,15 +1,15 @@
 // A body at rest, its masses and totals, what it refuses, and how it fails.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/model.h"
+#include "incise/physics/model.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "physics/model_snapshot.h"
-#include "topology/archive.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
+#include "incise/physics/model_snapshot.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 namespace {

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/nodal_viscous_kernel.h"
-#include "physics/test_bodies.h"
-#include "physics/viscous_kernel.h"
-#include "physics/viscous_work.h"
-#include "topology/box_mesh.h"
+#include "incise/physics/nodal_viscous_kernel.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/physics/viscous_kernel.h"
+#include "incise/physics/viscous_work.h"
+#include "incise/topology/box_mesh.h"
 
 namespace incise::physics {
 namespace {

@@ -1,7 +1,7 @@
 // The step of several nodes side by side against that of one after the other, on each kind of
 // processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/node_lanes.h"
+#include "incise/physics/node_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "physics/processors_at_hand.h"
+#include "incise/physics/processors_at_hand.h"
 #include "support/mesh_families.h"
 
 namespace incise::physics {

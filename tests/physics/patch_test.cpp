@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
 #include "support/mesh_families.h"
 
 namespace incise::physics {

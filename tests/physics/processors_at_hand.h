@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "physics/processor.h"
+#include "incise/physics/processor.h"
 
 namespace incise::physics {
 

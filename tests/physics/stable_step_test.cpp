@@ -1,15 +1,15 @@
 // The bound on the step against the true one, 2 / omega_max, from a dense eigensolution.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/stable_step.h"
+#include "incise/physics/stable_step.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "physics/spectrum.h"
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
+#include "incise/physics/spectrum.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 
 namespace incise::physics {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/integrator.h"
-#include "physics/test_bodies.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
+#include "incise/physics/integrator.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

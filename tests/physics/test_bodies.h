@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "physics/model.h"
-#include "physics/test_materials.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_data.h"
+#include "incise/physics/model.h"
+#include "incise/physics/test_materials.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::physics {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "physics/heml_kernel.h"
-#include "physics/mass_spring_kernel.h"
-#include "physics/material.h"
+#include "incise/physics/heml_kernel.h"
+#include "incise/physics/mass_spring_kernel.h"
+#include "incise/physics/material.h"
 #include "support/mesh_families.h"
 #include "support/reference_data.h"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/spectrum.h"
-#include "physics/test_materials.h"
+#include "incise/physics/spectrum.h"
+#include "incise/physics/test_materials.h"
 
 namespace incise::physics {
 

@@ -7,10 +7,10 @@
 
 #include <Eigen/LU>
 
-#include "physics/element_tangent.h"
-#include "physics/model.h"
-#include "physics/test_bodies.h"
-#include "physics/thin_tetrahedra.h"
+#include "incise/physics/element_tangent.h"
+#include "incise/physics/model.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/physics/thin_tetrahedra.h"
 
 namespace incise::physics {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "physics/test_materials.h"
-#include "topology/mesh.h"
+#include "incise/physics/test_materials.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::physics {
 

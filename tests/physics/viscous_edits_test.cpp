@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "physics/test_bodies.h"
-#include "topology/mesh_edit.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::physics {
 namespace {

@@ -1,6 +1,6 @@
 // The memory of viscous elements on lanes against the reference, on each kind of processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "physics/viscous_lanes.h"
+#include "incise/physics/viscous_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "physics/processors_at_hand.h"
-#include "physics/test_bodies.h"
-#include "physics/viscous_kernel.h"
+#include "incise/physics/processors_at_hand.h"
+#include "incise/physics/test_bodies.h"
+#include "incise/physics/viscous_kernel.h"
 
 namespace incise::physics {
 namespace {

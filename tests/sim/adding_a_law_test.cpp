@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/material_catalog.h"
+#include "incise/sim/material_catalog.h"
 #include "support/temporary_folder.h"
 
 namespace incise::sim {

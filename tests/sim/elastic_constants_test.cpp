@@ -1,13 +1,13 @@
 // Every set of parameters leads to the same constants, and inadmissible ones are refused.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/elastic_constants.h"
+#include "incise/sim/elastic_constants.h"
 
 #include <gtest/gtest.h>
 
 #include <initializer_list>
 #include <utility>
 
-#include "topology/error.h"
+#include "incise/topology/error.h"
 
 namespace incise::sim {
 namespace {

@@ -3,12 +3,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "io/mesh_reader.h"
-#include "io/vtu_writer.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/sim/frame_builder.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 #include "run_folder.h"
-#include "sim/frame_builder.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
 
 namespace incise::sim {
 namespace {

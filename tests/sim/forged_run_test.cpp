@@ -7,14 +7,14 @@
 #include <functional>
 #include <limits>
 
-#include "io/atomic_file.h"
-#include "io/checked_file.h"
-#include "io/input_file.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/checked_file.h"
+#include "incise/io/input_file.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 #include "run_folder.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::sim {
 namespace {

@@ -1,15 +1,15 @@
 // Cuts at rest: what is reported is what happened to the mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/geometric_cut.h"
+#include "incise/sim/geometric_cut.h"
 
 #include <gtest/gtest.h>
 
-#include "cutting/plane.h"
-#include "cutting/tissue_motion.h"
-#include "sim/tool_build.h"
+#include "incise/cutting/plane.h"
+#include "incise/cutting/tissue_motion.h"
+#include "incise/sim/tool_build.h"
+#include "incise/topology/error.h"
+#include "incise/topology/validate.h"
 #include "support/mesh_families.h"
-#include "topology/error.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

@@ -3,12 +3,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "incise/sim/body.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/validate.h"
 #include "run_folder.h"
-#include "sim/body.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

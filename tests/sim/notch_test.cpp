@@ -15,10 +15,10 @@
 #include <sstream>
 #include <vector>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/validate.h"
 #include "run_folder.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

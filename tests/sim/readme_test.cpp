@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "sim/scenario_reader.h"
+#include "incise/sim/scenario_reader.h"
 #include "support/temporary_folder.h"
 
 namespace incise::sim {

@@ -5,15 +5,15 @@
 
 #include <functional>
 
-#include "io/atomic_file.h"
-#include "io/vtu_writer.h"
+#include "incise/io/atomic_file.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/sim/frame_builder.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/validate.h"
 #include "run_folder.h"
-#include "sim/frame_builder.h"
 #include "support/mesh_families.h"
 #include "support/run_files.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

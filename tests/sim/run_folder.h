@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_writer.h"
-#include "sim/run_writer.h"
-#include "sim/scenario_reader.h"
-#include "sim/simulation.h"
+#include "incise/io/mesh_writer.h"
+#include "incise/sim/run_writer.h"
+#include "incise/sim/scenario_reader.h"
+#include "incise/sim/simulation.h"
 #include "support/temporary_folder.h"
 
 namespace incise::sim {

@@ -1,6 +1,6 @@
 // What a run leaves behind, as scripts and viewers find it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/run_writer.h"
+#include "incise/sim/run_writer.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@
 #include <set>
 #include <sstream>
 
-#include "io/mesh_reader.h"
-#include "io/vtu_writer.h"
+#include "incise/io/mesh_reader.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/sim/frame_builder.h"
+#include "incise/sim/quantities.h"
+#include "incise/topology/error.h"
 #include "run_folder.h"
-#include "sim/frame_builder.h"
-#include "sim/quantities.h"
-#include "topology/error.h"
 
 namespace incise::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/body.h"
-#include "sim/scenario_reader.h"
+#include "incise/sim/body.h"
+#include "incise/sim/scenario_reader.h"
 #include "support/temporary_folder.h"
 
 namespace incise::sim {

@@ -1,6 +1,6 @@
 // Good scenarios: what is read, what is left to its default, overrides, the hash and warnings.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/scenario_reader.h"
+#include "incise/sim/scenario_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What a `where` selects.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/selection.h"
+#include "incise/sim/selection.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <set>
 #include <string>
 
-#include "sim/body.h"
+#include "incise/sim/body.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
 
 namespace incise::sim {
 namespace {

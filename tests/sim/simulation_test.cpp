@@ -1,17 +1,17 @@
 // The loop: when it steps, when it tells, what it keeps account of.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/simulation.h"
+#include "incise/sim/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
+#include "incise/sim/body_problems.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 #include "run_folder.h"
-#include "sim/body_problems.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
 
 namespace incise::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/topology/error.h"
 #include "run_folder.h"
-#include "topology/error.h"
 
 namespace incise::sim {
 namespace {

@@ -8,9 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include "incise/topology/validate.h"
 #include "run_folder.h"
 #include "support/num_cases.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

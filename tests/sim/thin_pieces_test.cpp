@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "incise/topology/box_mesh.h"
 #include "run_folder.h"
-#include "topology/box_mesh.h"
 
 namespace incise::sim {
 namespace {

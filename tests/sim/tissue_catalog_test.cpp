@@ -1,6 +1,6 @@
 // Tissues: sound rows, the published values, and what a scenario makes of a preset.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/tissue_catalog.h"
+#include "incise/sim/tissue_catalog.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <sstream>
 
+#include "incise/sim/elastic_constants.h"
 #include "run_folder.h"
 #include "scenario_file.h"
-#include "sim/elastic_constants.h"
 #include "support/num_cases.h"
 
 namespace incise::sim {

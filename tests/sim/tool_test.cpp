@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "incise/sim/tool_build.h"
 #include "run_folder.h"
-#include "sim/tool_build.h"
 
 namespace incise::sim {
 namespace {

@@ -2,13 +2,13 @@
 // does. SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "io/vtu_writer.h"
+#include "incise/io/vtu_writer.h"
+#include "incise/sim/body.h"
+#include "incise/sim/frame_builder.h"
+#include "incise/sim/selection.h"
+#include "incise/topology/box_mesh.h"
 #include "run_folder.h"
-#include "sim/body.h"
-#include "sim/frame_builder.h"
-#include "sim/selection.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
 
 namespace incise::sim {
 namespace {

@@ -1,6 +1,6 @@
 // A world that is stepped from outside.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "sim/world.h"
+#include "incise/sim/world.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include <functional>
 #include <thread>
 
+#include "incise/sim/selection.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 #include "run_folder.h"
-#include "sim/selection.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
 
 namespace incise::sim {
 namespace {

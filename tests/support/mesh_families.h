@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "topology/change_set.h"
-#include "topology/mesh.h"
-#include "topology/mesh_data.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::test {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::test {
 

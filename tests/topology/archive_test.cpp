@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/archive.h"
+#include "incise/topology/archive.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "topology/change_set.h"
+#include "incise/topology/change_set.h"
 
 namespace incise::topology {
 namespace {

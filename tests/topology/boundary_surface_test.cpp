@@ -1,15 +1,15 @@
 // The surface that follows edits is the surface of the edited mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/boundary_surface.h"
+#include "incise/topology/boundary_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::topology {
 namespace {

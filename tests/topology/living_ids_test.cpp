@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/living_ids.h"
+#include "incise/topology/living_ids.h"
 
 #include <gtest/gtest.h>
 
 #include <iterator>
 #include <unordered_set>
 
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::topology {
 namespace {

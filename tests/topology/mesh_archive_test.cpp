@@ -1,14 +1,14 @@
 // A mesh that has been written and read is the same mesh, and damaged bytes are refused.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_archive.h"
+#include "incise/topology/mesh_archive.h"
 
 #include <gtest/gtest.h>
 
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_edit.h"
+#include "incise/topology/validate.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/error.h"
-#include "topology/mesh_edit.h"
-#include "topology/validate.h"
 
 namespace incise::topology {
 namespace {

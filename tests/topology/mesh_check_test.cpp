@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_check.h"
+#include "incise/topology/mesh_check.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/mesh.h"
 
 namespace incise::topology {
 namespace {

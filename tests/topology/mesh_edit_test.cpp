@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_edit.h"
+#include "incise/topology/mesh_edit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
+#include "incise/topology/validate.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
-#include "topology/box_mesh.h"
-#include "topology/error.h"
-#include "topology/validate.h"
 
 namespace incise::topology {
 namespace {

@@ -1,14 +1,14 @@
 // The figures of topology/mesh_metrics.h against shapes whose figures are known.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_metrics.h"
+#include "incise/topology/mesh_metrics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "topology/box_mesh.h"
-#include "topology/error.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/error.h"
 
 namespace incise::topology {
 namespace {

@@ -1,6 +1,6 @@
 // Points that are not joined and cells that are wound the wrong way round, over all families.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh_repair.h"
+#include "incise/topology/mesh_repair.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <random>
 #include <set>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/mesh_check.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/geometry.h"
-#include "topology/mesh.h"
-#include "topology/mesh_check.h"
 
 namespace incise::topology {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/mesh.h"
+#include "incise/topology/mesh.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/validate.h"
 #include "support/mesh_families.h"
-#include "topology/box_mesh.h"
-#include "topology/geometry.h"
-#include "topology/validate.h"
 
 namespace incise::topology {
 namespace {

@@ -1,6 +1,6 @@
 // The number of pieces that follows edits is the one that a look at the whole mesh finds.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/piece_count.h"
+#include "incise/topology/piece_count.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::topology {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <set>
 
+#include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
-#include "topology/mesh_edit.h"
 
 namespace incise::topology {
 namespace {

@@ -1,11 +1,11 @@
 // What is wrong with a mesh is found: edits that somebody made up are replayed, which no check has
 // seen, and break it each in its own way.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "topology/validate.h"
+#include "incise/topology/validate.h"
 
 #include <gtest/gtest.h>
 
-#include "topology/mesh_edit.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::topology {
 namespace {
