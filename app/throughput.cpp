@@ -190,7 +190,7 @@ struct CutCube {
                                                                       : cutting::UncutBody{}) {}
 
     void follow(const topology::ChangeSet& changes) {
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         cutter.apply(mesh, model.positions(), changes);
     }
 };

@@ -33,11 +33,11 @@ void measure(benchmark::State& state, Edit edit) {
             for (std::size_t i = 0; i < batch; ++i) edit(mesh, transaction, ElementId(first + i));
             changes = transaction.commit();
         }
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         state.PauseTiming();
         const auto back = topology::inverse(changes);
         topology::replay(mesh, back);
-        model.apply(back);
+        model.apply(model.mesh(), back);
         first = (first + batch) % (mesh.element_capacity() - batch);
         state.ResumeTiming();
     }
@@ -78,7 +78,7 @@ void booked_step(benchmark::State& state, topology::Mesh mesh, const physics::Ma
         const auto changes = edit.commit();
         model.compute_states_and_forces();
         benchmark::DoNotOptimize(model.totals());
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         benchmark::DoNotOptimize(model.totals());
         benchmark::DoNotOptimize(model.min_volume_ratio());
         model.compute_forces(0.0);
@@ -126,7 +126,7 @@ void split(benchmark::State& state) {
         std::vector<topology::ChangeSet> history;
         for (int step = 0; step < num_steps; ++step) {
             auto done = cutter.split(cut, mesh, model.positions(), edge(step), edge(step + 1));
-            model.apply(done.changes);
+            model.apply(model.mesh(), done.changes);
             cutter.apply(mesh, model.positions(), done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);
             history.push_back(std::move(done.changes));
@@ -136,7 +136,7 @@ void split(benchmark::State& state) {
             if (history.back().is_empty()) continue;
             const auto back = topology::inverse(history.back());
             topology::replay(mesh, back);
-            model.apply(back);
+            model.apply(model.mesh(), back);
         }
         state.ResumeTiming();
     }

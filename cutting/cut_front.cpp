@@ -96,7 +96,7 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
 
 // Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
 // edges and nobody will ask for them.
-void CutFront::follow(const topology::ChangeSet& changes, bool has_opened_faces_of_it) {
+void CutFront::apply(const Mesh&, const topology::ChangeSet& changes, bool has_opened_faces_of_it) {
     if (is_empty() || changes.is_empty()) return;
     has_changed_ = true;
     for (const topology::NodeRecord& record : changes.nodes_added) {

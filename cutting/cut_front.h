@@ -116,7 +116,8 @@ class CutFront {
     }
 
     /// Copies of a node are what it is, and its twins if the edit has opened faces of this cut.
-    void follow(const topology::ChangeSet& changes, bool has_opened_faces_of_it = false);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes,
+               bool has_opened_faces_of_it = false);
     /// The nodes for which keep(node) is false, in ascending order.
     template <class Keep>
     std::vector<topology::NodeId> nodes_unless(Keep keep) const;

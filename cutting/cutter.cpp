@@ -38,12 +38,10 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
 }  // namespace
 
 Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, UncutBody uncut)
-    : uncut_(std::move(uncut)),
-      boxes_(mesh, positions),
-      before_(positions.begin(), positions.end()) {}
+    : uncut_(std::move(uncut)), boxes_(mesh, positions), before_(mesh, positions) {}
 
 void Cutter::begin_motion(std::span<const Vec3> positions) {
-    before_.assign(positions.begin(), positions.end());
+    before_.assign(positions);
     for (Cut& cut : cuts_) cut.has_moved = false;
 }
 
@@ -134,11 +132,11 @@ void Cutter::apply(const Mesh& mesh, std::span<const Vec3> positions, const Chan
     if (changes.is_empty()) return;
     const OwnEdit own = changes.epoch_after == own_edit_.epoch ? own_edit_ : OwnEdit{};
     own_edit_ = {};
-    topology::append_new_nodes(changes, before_);
-    if (!own.scars_followed) scars_.follow(changes);
+    before_.apply(mesh, changes);
+    if (!own.scars_followed) scars_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
-        if (i != own.cut) cuts_[i].front.follow(changes);
-    boxes_.follow(mesh, positions, changes);
+        if (i != own.cut) cuts_[i].front.apply(mesh, changes);
+    boxes_.apply(mesh, positions, changes);
 }
 
 bool Cutter::is_on(const Mesh& mesh) const {

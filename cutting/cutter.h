@@ -13,6 +13,7 @@
 #include "incise/cutting/scars.h"
 #include "incise/cutting/splitter.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/types.h"
 
@@ -123,15 +124,15 @@ class Cutter {
     /// The other cuts in progress: fronts that an edit by `worker` may touch.
     std::vector<RestingBlade> resting_blades(std::optional<std::size_t> worker);
     TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) const {
-        return {mesh, before_, positions, &boxes_};
+        return {mesh, before_.values(), positions, &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);
 
     UncutBody uncut_;
     ElementBoxes boxes_;
     Scars scars_;
-    std::vector<Cut> cuts_;     // by CutId
-    std::vector<Vec3> before_;  // positions before the present motion, by node id
+    std::vector<Cut> cuts_;             // by CutId
+    topology::NodeField<Vec3> before_;  // positions before the present motion, by node id
     OwnEdit own_edit_;
 };
 

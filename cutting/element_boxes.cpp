@@ -49,8 +49,8 @@ bool ElementBoxes::may_meet(const Box& swept) const {
            std::any_of(groups_.begin(), groups_.end(), meets);
 }
 
-void ElementBoxes::follow(const Mesh& mesh, std::span<const Vec3> positions,
-                          const topology::ChangeSet& changes) {
+void ElementBoxes::apply(const Mesh& mesh, std::span<const Vec3> positions,
+                         const topology::ChangeSet& changes) {
     groups_.resize(num_groups(mesh.element_capacity()));
     supergroups_.resize(num_supergroups(groups_.size()));
     std::vector<std::size_t> touched;

@@ -27,8 +27,8 @@ class ElementBoxes {
     /// Cost: now and then O(n).
     void move(const topology::Mesh& mesh, std::span<const Vec3> positions, double distance);
     /// Takes in what an edit has changed. Cost: proportional to the edit.
-    void follow(const topology::Mesh& mesh, std::span<const Vec3> positions,
-                const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, std::span<const Vec3> positions,
+               const topology::ChangeSet& changes);
 
     /// Whether there are as many boxes as the mesh needs.
     bool cover(const topology::Mesh& mesh) const {

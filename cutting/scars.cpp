@@ -59,7 +59,7 @@ void Scars::inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNo
     }
 }
 
-void Scars::follow(const topology::ChangeSet& changes) {
+void Scars::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
     for (const topology::NodeRecord& record : changes.nodes_added) {
         if (record.num_sources != 1 || scars_.empty()) continue;
         const auto place = scars_.find(record.sources[0].node);

@@ -10,6 +10,7 @@
 
 #include "incise/cutting/cut_surface.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 #include "incise/topology/types.h"
 
 namespace incise::cutting {
@@ -69,7 +70,7 @@ class Scars {
     /// goes through the edge beyond the middle, or passes by both, passes by the middle.
     void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
     /// Copies of a node, and parts of an element, are what it is.
-    void follow(const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     static void archive(auto& ar, auto& self) { ar(self.scars_, self.crumbs_, self.next_rank_); }
 

@@ -94,8 +94,8 @@ class Splitter {
         divide_at_end();
         part();
         Split result{edit_->commit(), report_};
-        front_.follow(result.changes, true);
-        scars_.follow(result.changes);
+        front_.apply(mesh_, result.changes, true);
+        scars_.apply(mesh_, result.changes);
         for (const auto& [e, cut] : crumbs_) scars_.add_crumb(e, cut);
         leave_behind(result.changes);
         return result;

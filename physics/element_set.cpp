@@ -103,7 +103,7 @@ ElementSet::ElementSet(std::vector<ElementId> elements) : members_(std::move(ele
     sort_and_make_unique(members_);
 }
 
-void ElementSet::apply(const ChangeSet& changes) {
+void ElementSet::apply(const Mesh&, const ChangeSet& changes) {
     while (!members_.empty() && members_.back().index() >= changes.element_capacity_after)
         members_.pop_back();
     for (const ElementRecord& record : changes.elements_added)

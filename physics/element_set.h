@@ -18,7 +18,7 @@ class ElementSet {
     /// In ascending order.
     const std::vector<topology::ElementId>& members() const { return members_; }
 
-    void apply(const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     /// Throws InputError if a member cannot be an element.
     void require_fit() const;

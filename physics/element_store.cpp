@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
-#include "incise/physics/inheritance.h"
 #include "incise/physics/kernel_block.h"
 #include "incise/topology/error.h"
 
@@ -80,7 +80,10 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
                 throw InputError(
                     "mass springs have no forces in single precision; use double precision, or "
                     "another method");
-    if (!table_.fibres.empty()) table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
+    if (!table_.fibres.empty()) {
+        table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
+        fibres_.emplace(mesh, std::exchange(table_.fibres, {}));
+    }
     for (const ElementId e : mesh.elements()) {
         require_law(mesh, e);
         insert(mesh, e);
@@ -121,18 +124,7 @@ std::size_t ElementStore::block_index(ElementId e, int region) const {
 }
 
 Vec3 ElementStore::fibre_of(ElementId e) const {
-    return e.index() < table_.fibres.size() ? table_.fibres[e.index()] : Vec3::Zero();
-}
-
-void ElementStore::apply(const topology::ChangeSet& changes) {
-    auto& fibres = table_.fibres;
-    if (fibres.empty()) return;
-    fibres.resize(std::max(changes.element_capacity_before, changes.element_capacity_after),
-                  Vec3::Zero());
-    for_each_part(changes, [&](ElementId parent, ElementId part) {
-        fibres[part.index()] = fibres[parent.index()];
-    });
-    fibres.resize(changes.element_capacity_after);
+    return fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero());
 }
 
 void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {

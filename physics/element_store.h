@@ -18,6 +18,7 @@
 #include "incise/physics/workers.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/error.h"
+#include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -53,7 +54,9 @@ class ElementStore {
 
     /// What elements keep by their ids follows an edit: parts of a divided element inherit its
     /// fibres. Before the elements themselves do.
-    void apply(const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
+        if (fibres_) fibres_->apply(mesh, changes);
+    }
 
     void insert(const topology::Mesh& mesh, ElementId e);
     /// Recomputes an element whose corners are others now.
@@ -74,10 +77,12 @@ class ElementStore {
         return table_.materials[table_.of_region.at(region)].density;
     }
 
-    /// What the store was built from, with the fibres of the elements that edits added.
+    /// What the store was built from, without the fibres.
     const MaterialTable& materials() const { return table_; }
     /// As MaterialTable has them, also of the elements that edits added.
-    std::span<const Vec3> fibres() const { return table_.fibres; }
+    std::span<const Vec3> fibres() const {
+        return fibres_ ? fibres_->values() : std::span<const Vec3>();
+    }
 
     /// The most numbers that an element of any of the materials remembers; 0 if none is viscous.
     std::size_t history_size() const;
@@ -168,7 +173,8 @@ class ElementStore {
     void require_law(const topology::Mesh& mesh, ElementId e) const;
     Vec3 fibre_of(ElementId e) const;
 
-    MaterialTable table_;
+    MaterialTable table_;  // without the fibres
+    std::optional<topology::ElementField<Vec3>> fibres_;
     std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks

@@ -274,12 +274,12 @@ void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body,
         std::span<const NodeId> touched;
 
         void operator()(NodalLoad& load) const {
-            load.nodes.apply(changes);
+            load.nodes.apply(body.mesh, changes);
             share(load, body, touched);
         }
         void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, changes); }
         void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, changes); }
-        void operator()(BodyLoad& load) const { load.elements.apply(changes); }
+        void operator()(BodyLoad& load) const { load.elements.apply(body.mesh, changes); }
     };
     for (Load& load : loads_) std::visit(Follower{changes, body, touched}, load.kind);
     is_up_to_date_ = false;

@@ -24,7 +24,7 @@ double diagonal(const topology::Mesh& mesh) {
 /// Throws InputError, as the next one does.
 MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh,
                           topology::ArchiveReader& ar) {
-    const bool has_fibres = !table.fibres.empty();
+    const bool has_fibres = std::ranges::any_of(table.materials, &Material::has_fibres);
     ar(table.fibres);
     if (table.fibres.size() != (has_fibres ? mesh.element_capacity() : 0))
         throw InputError("the fibres are those of another body");
@@ -43,7 +43,7 @@ Surroundings read_surroundings(const topology::Mesh& mesh, topology::ArchiveRead
 
 Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings)
     : mesh_(mesh),
-      epoch_(mesh.epoch()),
+      epoch_(mesh),
       elements_(mesh, table),
       history_(elements_.history_size(), mesh.element_capacity()),
       gravity_(surroundings.gravity),
@@ -377,20 +377,14 @@ void Model::carry_state(const ChangeSet& changes) {
     merges_.erase(merges_.lower_bound(NodeId(changes.node_capacity_after)), merges_.end());
 }
 
-void Model::apply(const ChangeSet& changes) {
+void Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
-    if (changes.epoch_before != epoch_ || changes.epoch_after != mesh_.epoch())
-        throw InputError("model: an edit out of turn: it leads from epoch " +
-                         std::to_string(changes.epoch_before) + " to " +
-                         std::to_string(changes.epoch_after) + ", the model is at " +
-                         std::to_string(epoch_) + " and the mesh at " +
-                         std::to_string(mesh_.epoch()));
-    epoch_ = changes.epoch_after;
+    epoch_.advance(mesh, changes, "model");
     ++structure_version_;
     resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
     carry_state(changes);
-    history_.apply(changes);
-    elements_.apply(changes);
+    history_.apply(mesh, changes);
+    elements_.apply(mesh, changes);
 
     std::vector<NodeId> touched;
     const auto touch = [&](std::span<const NodeId> nodes) {

@@ -18,6 +18,7 @@
 #include "incise/physics/viscous_history.h"
 #include "incise/topology/archive.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -137,7 +138,8 @@ class Model {
     /// anything moved, gives the former state back to the bit. Forces are those of before until
     /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
     /// the stars touched.
-    void apply(const topology::ChangeSet& changes);
+    /// @param mesh  of the model
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
     /// prescribes what another one does. Cost: O(#nodes) of it.
@@ -289,7 +291,7 @@ class Model {
     std::pair<ElementId, double> most_crushed_before(NodeId n, double dt) const;
 
     const topology::Mesh& mesh_;
-    std::uint64_t epoch_;
+    topology::FollowedEpoch epoch_;
     std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;

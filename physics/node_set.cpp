@@ -21,7 +21,7 @@ const NodeSet::Member* NodeSet::find(NodeId n) const {
     return place != members_.end() && place->node == n ? &*place : nullptr;
 }
 
-void NodeSet::apply(const topology::ChangeSet& changes) {
+void NodeSet::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
     if (members_.empty()) return;
     while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
         members_.pop_back();

@@ -32,7 +32,7 @@ class NodeSet {
     const Member* find(topology::NodeId n) const;
     bool contains(topology::NodeId n) const { return find(n) != nullptr; }
 
-    void apply(const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     /// Throws InputError if a member is no node of the mesh.
     void require_fit(const topology::Mesh& mesh) const;

@@ -20,8 +20,8 @@ Vec3 Support::target(const topology::Mesh& mesh, NodeId n, double time) const {
     return x;
 }
 
-void Support::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
-    nodes.apply(changes);
+void Support::apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
+    nodes.apply(mesh, changes);
     if (grip.is_empty()) return;
     gripped.erase(gripped.lower_bound(NodeId(changes.node_capacity_after)), gripped.end());
     for (const topology::NodeRecord& record : changes.nodes_added) {

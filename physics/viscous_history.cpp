@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "incise/physics/inheritance.h"
+#include "incise/topology/field.h"
 
 namespace incise::physics {
 
-void ViscousHistory::apply(const topology::ChangeSet& changes) {
+void ViscousHistory::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
     if (is_empty()) return;
     resize(std::max(changes.element_capacity_before, changes.element_capacity_after));
-    for_each_part(changes, [&](ElementId parent, ElementId part) {
+    topology::for_each_part(changes, [&](ElementId parent, ElementId part) {
         const auto inherited = of(parent);
         std::copy(inherited.begin(), inherited.end(), of(part).begin());
     });

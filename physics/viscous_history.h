@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
 #include "incise/topology/types.h"
 
 namespace incise::physics {
@@ -49,7 +50,7 @@ class ViscousHistory {
     /// Parts of a divided element inherit what it remembers as it is: stresses are densities, which
     /// the parts share with the whole. Elements that come back find what
     /// they had. Cost: proportional to the elements added.
-    void apply(const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
   private:
     void resize(std::size_t num_elements) { values_.resize(num_elements * size_, 0.0); }

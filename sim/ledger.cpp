@@ -101,7 +101,7 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     edit.mass_removed = mass_removed;
     edit.before = before;
     counts_ = count();
-    pieces_.follow(model_.mesh(), changes);
+    pieces_.apply(model_.mesh(), changes);
     assert(pieces_.value() == topology::components(model_.mesh()).count);
     edit.after = last_ = account();
     const auto energy = [](const Account& a) {

@@ -167,7 +167,7 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     const Account before = has_moved ? ledger.account() : ledger.last();
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);
-    model.apply(changes);
+    model.apply(mesh, changes);
     cutter.apply(mesh, model.positions(), changes);
     if (surface) surface->apply(mesh, changes);
     EditRecord record =

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "incise/topology/error.h"
-
 namespace incise::topology {
 
 namespace {
@@ -36,7 +34,7 @@ std::vector<ElementId> elements_with_other_faces(const ChangeSet& changes) {
 
 }  // namespace
 
-BoundarySurface::BoundarySurface(const Mesh& mesh) : epoch_(mesh.epoch()) {
+BoundarySurface::BoundarySurface(const Mesh& mesh) : epoch_(mesh) {
     for (const ElementId e : mesh.elements()) add_faces(mesh, e);
 }
 
@@ -80,13 +78,7 @@ void BoundarySurface::remove_faces(ElementId e) {
 
 void BoundarySurface::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
-    if (changes.epoch_before != epoch_ || changes.epoch_after != mesh.epoch())
-        throw InputError("surface: an edit out of turn: it leads from epoch " +
-                         std::to_string(changes.epoch_before) + " to " +
-                         std::to_string(changes.epoch_after) + ", the surface is at " +
-                         std::to_string(epoch_) + " and the mesh at " +
-                         std::to_string(mesh.epoch()));
-    epoch_ = changes.epoch_after;
+    epoch_.advance(mesh, changes, "surface");
     const auto touched = elements_with_other_faces(changes);
     for (const ElementId e : touched) remove_faces(e);
     for (const ElementId e : touched)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/types.h"
 
@@ -38,7 +39,7 @@ class BoundarySurface {
     std::span<const std::uint8_t> is_cut() const { return is_cut_; }
 
     /// The epoch of the mesh that the surface is of.
-    std::uint64_t version() const { return epoch_; }
+    std::uint64_t version() const { return epoch_.value(); }
     /// Returns the places that have changed since the last call, in ascending order, at first all
     /// of them. Places from triangles().size() on are gone.
     std::vector<std::size_t> take_changes();
@@ -52,7 +53,7 @@ class BoundarySurface {
     std::vector<std::uint8_t> is_cut_;
     std::unordered_map<ElementId, std::vector<std::size_t>> places_;  // of an element's triangles
     std::vector<std::size_t> changed_;
-    std::uint64_t epoch_;
+    FollowedEpoch epoch_;
 };
 
 }  // namespace incise::topology

@@ -11,19 +11,6 @@ bool ChangeSet::is_empty() const {
            faces_closed.empty();
 }
 
-void append_new_nodes(const ChangeSet& changes, std::vector<Vec3>& values) {
-    values.resize(changes.node_capacity_after, Vec3::Zero());
-    // In ascending order: a source may itself be new.
-    for (const NodeRecord& record : changes.nodes_added) {
-        Vec3 value = Vec3::Zero();
-        for (int s = 0; s < record.num_sources; ++s) {
-            const NodeSource& source = record.sources[static_cast<std::size_t>(s)];
-            value += source.weight * values[source.node.index()];
-        }
-        values[record.id.index()] = value;
-    }
-}
-
 ChangeSet inverse(const ChangeSet& changes) {
     ChangeSet back = changes;
     std::swap(back.epoch_before, back.epoch_after);

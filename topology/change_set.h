@@ -88,10 +88,6 @@ struct ChangeSet {
     }
 };
 
-/// Appends what the added nodes have of a quantity that their sources have: copies the same, nodes
-/// between others the weighted mean. `values` is indexed by node id and has the nodes of before.
-void append_new_nodes(const ChangeSet& changes, std::vector<Vec3>& values);
-
 /// The edit that takes `changes` back.
 ChangeSet inverse(const ChangeSet& changes);
 

@@ -85,7 +85,7 @@ Groups PieceCount::search(const Mesh& mesh, const ChangeSet& changes,
 // Pieces without a touched element are what they were. The others are counted before and after:
 // what the search finds to hang together did and does; before, it did by the opened faces as well,
 // and now by the closed ones.
-void PieceCount::follow(const Mesh& mesh, const ChangeSet& changes) {
+void PieceCount::apply(const Mesh& mesh, const ChangeSet& changes) {
     const std::vector<ElementId> touched = touched_elements(changes);
     group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);
     for (std::size_t i = 0; i < touched.size(); ++i)

@@ -22,7 +22,7 @@ class PieceCount {
     /// Follows an edit of the mesh, which has not been edited since.
     /// Cost: a look at the elements round what it changed, as far as it takes to find that they
     /// still hang together; where they do not, at the smaller pieces, too.
-    void follow(const Mesh& mesh, const ChangeSet& changes);
+    void apply(const Mesh& mesh, const ChangeSet& changes);
 
   private:
     /// Which of the touched elements, by their places in the list, have hung together all the time,

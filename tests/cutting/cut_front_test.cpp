@@ -16,6 +16,12 @@
 namespace incise::cutting {
 namespace {
 
+/// What follows these edits does not look at the mesh.
+const topology::Mesh& any_mesh() {
+    static const topology::Mesh mesh = topology::Mesh::build(test::jittered_cube(1, 0.0, 1)).mesh;
+    return mesh;
+}
+
 using test::Random;
 using topology::ChangeSet;
 using topology::ElementId;
@@ -90,7 +96,7 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
     between.num_sources = 2;
     between.sources = {{{node(1), 0.5}, {node(2), 0.5}}};
     changes.nodes_added.push_back(between);
-    front.follow(changes);
+    front.apply(any_mesh(), changes);
 
     EXPECT_TRUE(front.is_on(node(20)) && !front.is_near(node(20)));
     EXPECT_TRUE(front.is_on(node(21)) && front.is_near(node(21)));
@@ -105,7 +111,7 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
     EXPECT_TRUE(front.is_crossed(node(1), node(7)));  // as before
 
     CutFront empty;
-    empty.follow(changes);
+    empty.apply(any_mesh(), changes);
     EXPECT_TRUE(empty.is_empty());
 }
 
@@ -123,9 +129,9 @@ TEST(CutFront, TwinsMakeARing) {
     CutFront front;
     front.put_on(node(1), true, 1.0, 1);
     front.put_on(node(2), true, 1.0, 2);
-    front.follow(additions({{20, 1}, {21, 1}}), true);
-    front.follow(additions({{22, 20}, {23, 9}}), true);
-    front.follow(additions({{24, 1}}));  // by another cut
+    front.apply(any_mesh(), additions({{20, 1}, {21, 1}}), true);
+    front.apply(any_mesh(), additions({{22, 20}, {23, 9}}), true);
+    front.apply(any_mesh(), additions({{24, 1}}));  // by another cut
     const std::vector<NodeId> all{node(1), node(20), node(21), node(22)};
     for (const NodeId n : all) EXPECT_EQ(ring(front, n), all);
     EXPECT_EQ(ring(front, node(2)), std::vector{node(2)});
@@ -246,7 +252,7 @@ TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     topology::NodeRecord record{copy, Vec3::Zero(), {}, 1};
     record.sources[0] = {n, 1.0};
     changes.nodes_added.push_back(record);
-    scars.follow(changes);
+    scars.apply(any_mesh(), changes);
     EXPECT_TRUE(scars.has(copy, scar(x, -0.1), 1.0));
     EXPECT_FALSE(scars.has(copy, scar(x, 0.1), 1.0));
 }
@@ -259,7 +265,7 @@ TEST(Scars, PartsOfACrumbAreCrumbs) {
     changes.elements_added.push_back({part, topology::CellKind::tetrahedron, 0, whole, {}});
     changes.elements_added.push_back(
         {other, topology::CellKind::tetrahedron, 0, ElementId(std::size_t{4}), {}});
-    scars.follow(changes);
+    scars.apply(any_mesh(), changes);
     EXPECT_TRUE(scars.is_crumb(whole));
     EXPECT_TRUE(scars.is_crumb(part));
     EXPECT_FALSE(scars.is_crumb(other));

@@ -119,7 +119,7 @@ class Patient {
     Split follow(Edit edit) {
         const Balance before(model_, table_);
         const Split done = edit();
-        model_.apply(done.changes);
+        model_.apply(model_.mesh(), done.changes);
         if (!done.changes.is_empty()) check(before);
         return done;
     }

@@ -158,7 +158,7 @@ class Patient {
         for (; !done_.empty(); done_.pop_back()) {
             const ChangeSet back = inverse(done_.back());
             replay(mesh_, back);
-            model_.apply(back);
+            model_.apply(model_.mesh(), back);
         }
         EXPECT_EQ(test::MeshSnapshot(mesh_), first_mesh_);
         model_.compute_forces(0.0);
@@ -229,7 +229,7 @@ class Patient {
         const Balance before(model_, table_);
         const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
         const ChangeSet changes = edit(TissueMotion{mesh_, still, still}).changes;
-        model_.apply(changes);
+        model_.apply(model_.mesh(), changes);
         if (changes.is_empty()) return;
         done_.push_back(changes);
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});

@@ -59,7 +59,7 @@ struct CrossingBlades {
         std::vector<RestingBlade> resting{other.resting(rests_at, options.snap)};
         const Split done = body.cut(SweptEdge(blade.edge(from), blade.edge(to)), blade.front,
                                     options, body.positions, resting);
-        other.front.follow(done.changes);
+        other.front.apply(body.mesh, done.changes);
     }
 };
 
@@ -136,7 +136,7 @@ TEST(RestingBlade, GoesOnThroughWhatAPlaneHasCutMeanwhile) {
         CutFront front;
         const Split done = blades.body.cut(Plane(blades.b.point, blades.b.normal), front,
                                            blades.options, blades.body.positions, resting);
-        blades.a.front.follow(done.changes);
+        blades.a.front.apply(blades.body.mesh, done.changes);
         blades.move(blades.a, part, 1.0, blades.b, 1.0);
     });
 }

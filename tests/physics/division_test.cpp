@@ -42,7 +42,7 @@ ChangeSet bisect(Mesh& mesh, const Edge& edge, double t) {
 
 void take_back(Mesh& mesh, Model& model, const ChangeSet& changes) {
     replay(mesh, inverse(changes));
-    model.apply(inverse(changes));
+    model.apply(model.mesh(), inverse(changes));
 }
 
 /// The edge of an element with the two nodes that are where `is_end` says.
@@ -118,7 +118,7 @@ TEST(Bisection, ChangesTheMotionByTheFormulaForLumpedMasses) {
 
             const ChangeSet changes = bisect(mesh, edge, t);
             ASSERT_EQ(changes.nodes_added.size(), 1u);
-            model.apply(changes);
+            model.apply(model.mesh(), changes);
             const Balance after(model);
             const NodeId born = changes.nodes_added.front().id;
             EXPECT_EQ(at(model.positions(), born), x);
@@ -168,7 +168,7 @@ TEST(Bisection, GivesThePartsTheStateOfTheWhole) {
             const Mat3 F = deformation_gradient(e);
             const ChangeSet changes =
                 bisect(mesh, random_edge(mesh, random), random.uniform(0.2, 0.8));
-            model.apply(changes);
+            model.apply(model.mesh(), changes);
             ASSERT_EQ(living_elements(mesh).size(), 2u);
             double volume = 0.0, energy = 0.0;
             for (const ElementId part : living_elements(mesh)) {
@@ -239,7 +239,7 @@ TEST(Bisection, KeepsTheForceAndMomentOfTractionAndPressure) {
                         if (mesh.neighbor({edge.element, f}).is_valid())
                             edit.open({edge.element, f});
             }
-            model.apply(edit.commit());
+            model.apply(model.mesh(), edit.commit());
             state = state_of(model);
             for (Vec3& v : state.velocities) v.setZero();
             const auto [force_now, moment_now] = force_and_moment();
@@ -260,7 +260,7 @@ struct LoadedTetrahedron {
           model(mesh, table_of_one_law(soft_law), surroundings()) {}
 
     void apply(const ChangeSet& changes) {
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         descent.follow(changes);
         expect_loads_of_a_fresh_model();
     }
@@ -295,7 +295,7 @@ TEST(Bisection, DoesNotLoadAFaceThatItMade) {
                     const Edge other{ElementId(0), corners[j], corners[(i + 1) % 4]};
                     if (other.a != other.b) {
                         const ChangeSet undone = bisect(body.mesh, other, 0.5);
-                        body.model.apply(undone);
+                        body.model.apply(body.model.mesh(), undone);
                         take_back(body.mesh, body.model, undone);
                         body.expect_loads_of_a_fresh_model();
                     }
@@ -373,7 +373,7 @@ TEST(Bisection, AndJoiningInOneEditKeepsLoadsAndState) {
         edit.close(shared, other);
         if (!is_divided_first) divide(shared, 0, 1);
         const ChangeSet changes = edit.commit();
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         for (const NodeId n : nodes_where(mesh, [](const Vec3&) { return true; }))
             EXPECT_EQ(model.positions()[n.index()], mesh.rest_position(n));
         EXPECT_LE((sum_of(loads_at_rest(model)) - force).norm(), 1e-13 * force.norm());
@@ -401,7 +401,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
         edge_where(mesh,
                    [&](const Vec3& a, const Vec3& b) { return is_loaded(a) && is_loaded(b); }),
         0.3);
-    model.apply(changes);
+    model.apply(model.mesh(), changes);
     const NodeId born = changes.nodes_added.front().id;
     std::vector<Vec3> after = loads_at_rest(model);
     EXPECT_LE(after[born.index()].norm(), 1e-11);  // elastic round-off
@@ -410,7 +410,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     MeshEdit edit(mesh);
     open_all_inner_faces(mesh, edit);
     const ChangeSet opened = edit.commit();
-    model.apply(opened);
+    model.apply(model.mesh(), opened);
     after = loads_at_rest(model);
     EXPECT_LE((sum_of(after) - total).norm(), 1e-12);
     for (const auto& record : opened.nodes_added) {
@@ -441,11 +441,11 @@ TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
         const ChangeSet changes = bisect(
             mesh, edge_where(mesh, [&](const Vec3& a, const Vec3& b) { return c.a(a) && c.b(b); }),
             0.5);
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         MeshEdit edit(mesh);
         open_all_inner_faces(mesh, edit);  // copies are held as what they are copies of
         const ChangeSet opened = edit.commit();
-        model.apply(opened);
+        model.apply(model.mesh(), opened);
         double time = 0.0;
         step(model, time, 1e-3);
         const NodeId born = changes.nodes_added.front().id;
@@ -475,7 +475,7 @@ TEST(Supports, IndexedEditByEditEqualFreshOnes) {
         Supports followed(mesh, supports);
         const auto apply = [&](const ChangeSet& changes) {
             followed.apply(mesh, changes);
-            for (Support& support : supports) support.nodes.apply(changes);
+            for (Support& support : supports) support.nodes.apply(mesh, changes);
             const Supports fresh(mesh, supports);
             for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
                 const auto *a = followed.of_node(n), *b = fresh.of_node(n);

@@ -326,7 +326,7 @@ class FollowingBody {
         // As a run does, which has not looked at the body as it is.
         model_.set_history(model_.history().values());  // nothing is known any more
         model_.compute_states_and_forces();
-        model_.apply(*changes);
+        model_.apply(model_.mesh(), *changes);
         acting_.follow(mesh_.mesh(), *changes);
         if (step.fate == Fate::undo) {
             expect_equal(now(), before_.back());

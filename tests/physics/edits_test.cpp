@@ -103,18 +103,18 @@ class EditedBody {
         while (changes.is_empty()) changes = test::random_edit(mesh_, random_);
         ASSERT_EQ(topology::validate(mesh_), no_violations);
         compute_ahead();
-        model_.apply(changes);
+        model_.apply(model_.mesh(), changes);
         expect_balance(before, model_, changes, carried, model_before.masses);
         const MeshSnapshot mesh_after(mesh_);
         const ModelSnapshot model_after(model_, time);
 
         const ChangeSet back = inverse(changes);
         replay(mesh_, back);
-        model_.apply(back);
+        model_.apply(model_.mesh(), back);
         EXPECT_EQ(MeshSnapshot(mesh_), mesh_before);
         expect_equal(ModelSnapshot(model_, time), model_before);
         replay(mesh_, changes);
-        model_.apply(changes);
+        model_.apply(model_.mesh(), changes);
         EXPECT_EQ(MeshSnapshot(mesh_), mesh_after);
         expect_equal(ModelSnapshot(model_, time), model_after);
 
@@ -134,10 +134,10 @@ class EditedBody {
     // So that the ids of the next edit have been others' before.
     void edit_and_take_back() {
         const ChangeSet changes = test::random_edit(mesh_, random_);
-        model_.apply(changes);
+        model_.apply(model_.mesh(), changes);
         compute_ahead();
         replay(mesh_, inverse(changes));
-        model_.apply(inverse(changes));
+        model_.apply(model_.mesh(), inverse(changes));
     }
 
     // Also after a step, in which supports and loads show, and which lets copies part.
@@ -270,11 +270,11 @@ TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
         std::vector<ChangeSet> history;
         for (int i = 0; i < 40 && mesh.num_elements() > 0; ++i) {
             history.push_back(test::random_edit(mesh, random));
-            model.apply(history.back());
+            model.apply(model.mesh(), history.back());
         }
         for (; !history.empty(); history.pop_back()) {
             replay(mesh, inverse(history.back()));
-            model.apply(inverse(history.back()));
+            model.apply(model.mesh(), inverse(history.back()));
         }
         set_state(model, state);
         set_state(reference, state);
@@ -325,14 +325,15 @@ TEST(ModelApply, RefusesAnEditOutOfTurn) {
         return edit.commit();
     };
     const ChangeSet first = remove(0), second = remove(1);
-    EXPECT_THROW(model.apply(second), InputError);  // the first is missing
-    EXPECT_THROW(model.apply(first), InputError);   // the mesh is further on
+    EXPECT_THROW(model.apply(model.mesh(), second), InputError);  // the first is missing
+    EXPECT_THROW(model.apply(model.mesh(), first), InputError);   // the mesh is further on
     replay(mesh, inverse(second));
-    model.apply(first);
-    EXPECT_THROW(model.apply(first), InputError);           // a second time
-    EXPECT_THROW(model.apply(inverse(first)), InputError);  // the mesh has not gone back
+    model.apply(model.mesh(), first);
+    EXPECT_THROW(model.apply(model.mesh(), first), InputError);  // a second time
+    EXPECT_THROW(model.apply(model.mesh(), inverse(first)),
+                 InputError);  // the mesh has not gone back
     replay(mesh, inverse(first));
-    model.apply(inverse(first));
+    model.apply(model.mesh(), inverse(first));
     expect_equal(ModelSnapshot(model, 0.0), before);
 }
 
@@ -342,8 +343,8 @@ TEST(ModelApply, LeavesEmptyEditsAlone) {
     const ModelSnapshot before(model, 0.0);
     topology::MeshEdit edit(mesh);
     const ChangeSet nothing = edit.commit();
-    model.apply(nothing);
-    model.apply(nothing);
+    model.apply(model.mesh(), nothing);
+    model.apply(model.mesh(), nothing);
     expect_equal(ModelSnapshot(model, 0.0), before);
 }
 
@@ -368,7 +369,7 @@ TEST(ModelApply, JoiningTwoPiecesKeepsMassMomentumAndCentreOfMass) {
     const auto table = table_of_one_law(NeoHookean{1e3, 1e3});
     Model model(mesh, table);
     const ChangeSet opened = open_plane(mesh, 1.0);
-    model.apply(opened);
+    model.apply(model.mesh(), opened);
     ASSERT_EQ(topology::components(mesh).count, 2);
     const auto pieces = topology::components(mesh).of_element;
     BodyState state = rest_state(mesh);
@@ -389,7 +390,7 @@ TEST(ModelApply, JoiningTwoPiecesKeepsMassMomentumAndCentreOfMass) {
     const Vec3 moment_before = moment_of_mass();
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
-    model.apply(edit.commit());
+    model.apply(model.mesh(), edit.commit());
     ASSERT_EQ(topology::components(mesh).count, 1);
     const Totals after = model.totals();
     EXPECT_NEAR(after.mass, before.totals.mass, round_off * after.mass);

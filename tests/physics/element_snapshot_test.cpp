@@ -76,7 +76,7 @@ TEST(ElementSnapshot, StaysAsItIsWhileTheModelMovesAndIsEdited) {
             auto results = std::async(std::launch::async,
                                       [&] { return numbers_of(snapshot.results(elements)); });
             for (int k = 0; k < 3; ++k) {
-                model.apply(test::random_edit(mesh, random));
+                model.apply(model.mesh(), test::random_edit(mesh, random));
                 go_on();
             }
             EXPECT_EQ(results.get(), expected);

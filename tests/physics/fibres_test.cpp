@@ -248,7 +248,7 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
     std::size_t num_parts = 0;
     for (int i = 0; i < 60; ++i) {
         edits.push_back(test::random_edit(mesh, random));
-        model.apply(edits.back());
+        model.apply(model.mesh(), edits.back());
         ASSERT_EQ(model.fibres().size(), mesh.element_capacity());
         for (const auto& record : edits.back().elements_added)
             if (record.parent.is_valid()) {
@@ -260,7 +260,7 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
     EXPECT_GT(num_parts, 20u);
     for (; !edits.empty(); edits.pop_back()) {
         replay(mesh, inverse(edits.back()));
-        model.apply(inverse(edits.back()));
+        model.apply(model.mesh(), inverse(edits.back()));
     }
     EXPECT_EQ(std::vector<Vec3>(model.fibres().begin(), model.fibres().end()), first);
 }

@@ -209,7 +209,7 @@ TEST(HybMssStatic, ANotchedBlockOpensAsTheReferenceWheneverItIsCut) {
             PlateRelaxation body(c, mesh);
             if (!is_cut_before) {
                 body.run_until(1.0);
-                body.model().apply(open_notch(mesh, c));
+                body.model().apply(body.model().mesh(), open_notch(mesh, c));
             }
             ASSERT_TRUE(topology::validate(mesh).empty());
             body.run_to_equilibrium();

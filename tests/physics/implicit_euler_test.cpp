@@ -235,7 +235,7 @@ TEST(ImplicitEuler, FollowsEditsAsABodyBuiltAfresh) {
                 }
                 if (is_chosen) edit.open({e, f});
             }
-        model.apply(edit.commit());
+        model.apply(model.mesh(), edit.commit());
         Model fresh(mesh, m.table, cantilever(mesh));
         set_state(fresh, state_of(model), 0.06);
         fresh.set_history(model.history().values());

@@ -119,7 +119,7 @@ TEST(Supports, TakeInNodesBornBetweenTheirs) {
     Model model(mesh, table_of_one_law(soft_law), s);
     const auto changes = open_across(mesh, 0.1, false);
     ASSERT_EQ(changes.nodes_added.size(), 9u);
-    model.apply(changes);
+    model.apply(model.mesh(), changes);
     double time = 0.0;
     const double dt = 0.5 * model.stable_step();
     while (time < 1.0) step(model, time, dt);
@@ -129,9 +129,9 @@ TEST(Supports, TakeInNodesBornBetweenTheirs) {
     }
     // Undone and done again, it is as it was.
     replay(mesh, inverse(changes));
-    model.apply(inverse(changes));
+    model.apply(model.mesh(), inverse(changes));
     replay(mesh, changes);
-    model.apply(changes);
+    model.apply(model.mesh(), changes);
     for (int i = 0; i < 100; ++i) step(model, time, dt);
     for (const auto& record : changes.nodes_added)
         EXPECT_LE(
@@ -154,9 +154,9 @@ TEST(Supports, DoNotSpreadToANodeThatComesBack) {
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
     const auto closed = edit.commit();
-    model.apply(closed);
+    model.apply(model.mesh(), closed);
     replay(mesh, inverse(closed));
-    model.apply(inverse(closed));
+    model.apply(model.mesh(), inverse(closed));
     double time = 0.0;
     step(model, time, 1e-3);
     for (const auto& record : opened.nodes_added) {
@@ -210,7 +210,7 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
         Model model(mesh, table_of_one_law(soft_law, density), s);
         const std::vector<double> masses_before(model.masses().begin(), model.masses().end());
         const auto changes = open_across(mesh, 0.1, is_partial);
-        model.apply(changes);
+        model.apply(model.mesh(), changes);
         ASSERT_FALSE(changes.nodes_added.empty());
 
         const double dt = 1e-4;
@@ -234,7 +234,7 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
         mesh.star(gone, star);
         topology::MeshEdit edit(mesh);
         for (const ElementId e : star) edit.remove(e);
-        model.apply(edit.commit());
+        model.apply(model.mesh(), edit.commit());
         set_state(model, rest_state(mesh));
         model.integrate(0.0, dt);
         EXPECT_LE((model.totals().momentum / dt - 3.0 * force).norm(), 1e-12);

@@ -82,7 +82,7 @@ TEST(ViscousEdits, LeaveTheHistoryToTheParts) {
                         random.uniform(0.3, 0.7));
         }
         const ChangeSet changes = edit.commit();
-        body.model.apply(changes);
+        body.model.apply(body.model.mesh(), changes);
         for (const auto& record : changes.elements_added) {
             const auto part = body.model.history().of(record.id);
             const auto whole = body.model.history().of(record.parent);
@@ -99,7 +99,7 @@ TEST(ViscousEdits, LeaveTheHistoryToTheParts) {
             EXPECT_LE((after[n] - before[n]).norm(), 1e-12 * largest(before));
 
         replay(body.mesh, inverse(changes));
-        body.model.apply(inverse(changes));
+        body.model.apply(body.model.mesh(), inverse(changes));
         EXPECT_EQ(body.forces(), before);
         EXPECT_EQ(body.history(), history);
     }
@@ -115,7 +115,7 @@ TEST(ViscousEdits, ShareTheMemoryAmongCopiesOfANode) {
             if (body.mesh.neighbor({e, f}).is_valid()) edit.open({e, f});
     const ChangeSet changes = edit.commit();
     ASSERT_GT(changes.nodes_added.size(), 50u);
-    body.model.apply(changes);
+    body.model.apply(body.model.mesh(), changes);
     std::vector<Vec3> after = body.forces();
     for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend(); ++record)
         after[record->sources[0].node.index()] += after[record->id.index()];
@@ -132,15 +132,15 @@ TEST(ViscousEdits, KeepTheHistoryOfAFreshBodyAndCanBeUndone) {
             const std::vector<Vec3> before = body.forces();
             const Memory history = body.history();
             const ChangeSet changes = test::random_edit(body.mesh, random);
-            body.model.apply(changes);
+            body.model.apply(body.model.mesh(), changes);
             const std::vector<Vec3> after = body.forces();
             const Memory history_after = body.history();
             replay(body.mesh, inverse(changes));
-            body.model.apply(inverse(changes));
+            body.model.apply(body.model.mesh(), inverse(changes));
             EXPECT_EQ(body.forces(), before);
             EXPECT_EQ(body.history(), history);
             replay(body.mesh, changes);
-            body.model.apply(changes);
+            body.model.apply(body.model.mesh(), changes);
             EXPECT_EQ(body.forces(), after);
             EXPECT_EQ(body.history(), history_after);
 

@@ -134,7 +134,7 @@ TEST(WholeStep, OfAnEditedBodyIsThatOfOneBuiltAnew) {
         for (std::size_t e = 5; e < mesh.element_capacity(); e += 97) edit.remove(ElementId(e));
         const auto changes = edit.commit();
         ASSERT_TRUE(changes.nodes_added.empty());  // else copies would share forces
-        edited.apply(changes);
+        edited.apply(edited.mesh(), changes);
         edited.set_num_threads(2);
         Model built(mesh, viscous_or_hybrid(kind), held_moved_and_loaded(mesh));
         expect_equal(outcome_of_steps(edited), outcome_of_steps(built));
@@ -147,7 +147,7 @@ TEST(WholeStep, HasTheLoadsOfTheEditedBodyBeforeItsForcesAreComputed) {
     Model edited(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));
     topology::MeshEdit edit(mesh);
     edit.remove(ElementId(0));
-    edited.apply(edit.commit());
+    edited.apply(edited.mesh(), edit.commit());
     edited.begin_step();
     const Model built(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));
     std::vector<Vec3> of_edited(mesh.node_capacity()), of_built(mesh.node_capacity());

@@ -27,7 +27,7 @@ TEST(PieceCount, FollowsAnyEditsAndTheirUndoing) {
             std::vector<ChangeSet> done;
             const auto follow = [&](const ChangeSet& changes) {
                 const int before = pieces.value();
-                pieces.follow(mesh, changes);
+                pieces.apply(mesh, changes);
                 ASSERT_EQ(pieces.value(), components(mesh).count);
                 num_changed += pieces.value() != before;
             };
@@ -62,7 +62,7 @@ TEST(PieceCount, OfABodyThatIsPartedStepByStepRisesWithTheLast) {
         MeshEdit edit(mesh);
         for (const FaceId f : test::inner_faces(mesh))
             if (layer_of(f) == layer) edit.open(f);
-        pieces.follow(mesh, edit.commit());
+        pieces.apply(mesh, edit.commit());
         EXPECT_EQ(pieces.value(), layer + 1 < n ? 1 : 2);
     }
 }

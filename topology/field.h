@@ -1,0 +1,101 @@
+// Values of nodes and of elements that follow the edits of a mesh.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
+#include "incise/topology/mesh.h"
+#include "incise/topology/types.h"
+
+namespace incise::topology {
+
+/// Calls inherit(parent, part) for each part that the edit divided off, a parent that is such a
+/// part itself before its own parts. Elements that come back have what they had: they are left out.
+template <class Inherit>
+void for_each_part(const ChangeSet& changes, Inherit inherit) {
+    for (const ElementRecord& record : changes.elements_added)  // in ascending order
+        if (record.id.index() >= changes.element_capacity_before && record.parent.is_valid())
+            inherit(record.parent, record.id);
+}
+
+/// One value for each node, by id. T has sums and multiples. A copy of a node has its value, a node
+/// between others their mean with the weights of its record. Dead nodes keep theirs, so that an
+/// edit that is taken back finds it again.
+template <class T>
+class NodeField {
+  public:
+    /// The same value everywhere.
+    NodeField(const Mesh& mesh, const T& value)
+        : epoch_(mesh), values_(mesh.node_capacity(), value) {}
+    /// @param values  by node id
+    NodeField(const Mesh& mesh, std::span<const T> values)
+        : epoch_(mesh), values_(values.begin(), values.end()) {}
+
+    const T& operator[](NodeId n) const { return values_[n.index()]; }
+    T& operator[](NodeId n) { return values_[n.index()]; }
+    /// By node id; as many as Mesh::node_capacity().
+    std::span<const T> values() const { return values_; }
+    void assign(std::span<const T> values) { values_.assign(values.begin(), values.end()); }
+
+    /// @param mesh after the edit
+    /// Throws InputError for an edit out of turn. Cost: proportional to the nodes added.
+    void apply(const Mesh& mesh, const ChangeSet& changes) {
+        if (changes.is_empty()) return;
+        epoch_.advance(mesh, changes, "field of nodes");
+        values_.resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
+        // In ascending order: a source may itself be new.
+        for (const NodeRecord& record : changes.nodes_added) {
+            if (record.num_sources == 0) continue;  // back with what it had
+            T value = record.sources[0].weight * values_[record.sources[0].node.index()];
+            for (std::size_t s = 1; s < static_cast<std::size_t>(record.num_sources); ++s)
+                value += record.sources[s].weight * values_[record.sources[s].node.index()];
+            values_[record.id.index()] = value;
+        }
+        values_.resize(changes.node_capacity_after);
+    }
+
+  private:
+    FollowedEpoch epoch_;
+    std::vector<T> values_;
+};
+
+/// One value for each element, by id. A part of a divided element has that of the whole. Dead
+/// elements keep theirs, so that an edit that is taken back finds it again.
+template <class T>
+class ElementField {
+  public:
+    /// The same value everywhere.
+    ElementField(const Mesh& mesh, const T& value)
+        : epoch_(mesh), values_(mesh.element_capacity(), value) {}
+    /// @param values  by element id
+    ElementField(const Mesh& mesh, std::vector<T> values)
+        : epoch_(mesh), values_(std::move(values)) {}
+
+    const T& operator[](ElementId e) const { return values_[e.index()]; }
+    T& operator[](ElementId e) { return values_[e.index()]; }
+    /// By element id; as many as Mesh::element_capacity().
+    std::span<const T> values() const { return values_; }
+
+    /// @param mesh after the edit
+    /// Throws InputError for an edit out of turn. Cost: proportional to the elements added.
+    void apply(const Mesh& mesh, const ChangeSet& changes) {
+        if (changes.is_empty()) return;
+        epoch_.advance(mesh, changes, "field of elements");
+        values_.resize(std::max(changes.element_capacity_before, changes.element_capacity_after));
+        for_each_part(changes, [&](ElementId parent, ElementId part) {
+            values_[part.index()] = values_[parent.index()];
+        });
+        values_.resize(changes.element_capacity_after);
+    }
+
+  private:
+    FollowedEpoch epoch_;
+    std::vector<T> values_;
+};
+
+}  // namespace incise::topology
