@@ -9,6 +9,7 @@
 #include <cmath>
 #include <variant>
 
+#include "incise/physics/custom_law.h"
 #include "incise/physics/holzapfel_gasser_ogden.h"
 #include "incise/physics/law_response.h"
 #include "incise/physics/ogden.h"
@@ -190,7 +191,7 @@ struct StableNeoHookean {
 
 using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, CiarletNeoHookean,
                          FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh,
-                         HolzapfelGasserOgden, StableNeoHookean>;
+                         HolzapfelGasserOgden, StableNeoHookean, CustomLaw>;
 
 /// See LawResponse.
 LawResponse<double> response(const Law& law, const LinkStrain<double>& strain, double J0);

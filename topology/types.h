@@ -48,9 +48,11 @@ struct FaceId {
 
 }  // namespace incise::topology
 
+/// @cond
 template <class Tag>
 struct std::hash<incise::topology::Id<Tag>> {
     std::size_t operator()(incise::topology::Id<Tag> id) const noexcept {
         return std::hash<std::int32_t>()(id.value);
     }
 };
+/// @endcond

@@ -8,7 +8,7 @@
 #include "bench/comparators/mass_tensor.h"
 #include "bench/comparators/mjed.h"
 #include "bench/comparators/tled.h"
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::bench {
 namespace {

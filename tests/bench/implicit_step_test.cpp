@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "incise/physics/test_materials.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "incise/physics/test_materials.h"
 #include "split_body.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::cutting {
 

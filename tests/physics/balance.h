@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/geometry.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 

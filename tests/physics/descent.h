@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 

@@ -6,11 +6,11 @@
 #include <array>
 #include <functional>
 
-#include "incise/physics/balance.h"
-#include "incise/physics/descent.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
+#include "tests/physics/balance.h"
+#include "tests/physics/descent.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -8,15 +8,15 @@
 #include <optional>
 #include <ostream>
 
-#include "incise/physics/balance.h"
-#include "incise/physics/generated_surroundings.h"
-#include "incise/physics/model_snapshot.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/generated_body.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
+#include "tests/physics/balance.h"
+#include "tests/physics/generated_surroundings.h"
+#include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
 namespace {

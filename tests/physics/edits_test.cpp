@@ -10,15 +10,15 @@
 #include <numeric>
 #include <string_view>
 
-#include "incise/physics/balance.h"
-#include "incise/physics/descent.h"
-#include "incise/physics/model_snapshot.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
+#include "tests/physics/balance.h"
+#include "tests/physics/descent.h"
+#include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
 namespace {

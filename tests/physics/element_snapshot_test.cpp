@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "incise/physics/model_snapshot.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "incise/physics/spectrum.h"
-#include "incise/physics/test_materials.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

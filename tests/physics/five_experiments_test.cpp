@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

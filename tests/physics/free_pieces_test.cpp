@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
-#include "incise/physics/thin_tetrahedra.h"
+#include "tests/physics/test_bodies.h"
+#include "tests/physics/thin_tetrahedra.h"
 
 namespace incise::physics {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/generated_surroundings.h"
+#include "tests/physics/generated_surroundings.h"
 
 #include <algorithm>
 #include <ostream>
 
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "incise/physics/test_materials.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "incise/physics/processors_at_hand.h"
-#include "incise/physics/test_materials.h"
+#include "tests/physics/processors_at_hand.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

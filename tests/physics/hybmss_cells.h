@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "incise/physics/hybmss_kernel.h"
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 

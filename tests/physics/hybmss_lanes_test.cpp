@@ -7,8 +7,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "incise/physics/hybmss_cells.h"
-#include "incise/physics/processors_at_hand.h"
+#include "tests/physics/hybmss_cells.h"
+#include "tests/physics/processors_at_hand.h"
 
 namespace incise::physics {
 namespace {

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

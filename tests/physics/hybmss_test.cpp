@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "incise/physics/hybmss_cells.h"
 #include "incise/physics/spectrum.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
+#include "tests/physics/hybmss_cells.h"
 
 namespace incise::physics {
 namespace {

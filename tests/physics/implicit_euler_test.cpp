@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/num_cases.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

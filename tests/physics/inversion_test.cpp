@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/physics/winding.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

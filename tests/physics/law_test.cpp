@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "incise/physics/test_materials.h"
-#include "incise/physics/textbook_energies.h"
+#include "tests/physics/test_materials.h"
+#include "tests/physics/textbook_energies.h"
 
 namespace incise::physics {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "incise/physics/model.h"
-#include "incise/physics/test_materials.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 namespace {

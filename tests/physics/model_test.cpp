@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "incise/physics/model_snapshot.h"
 #include "incise/topology/archive.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
+#include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
 namespace {

@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "incise/physics/nodal_viscous_kernel.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/physics/viscous_kernel.h"
-#include "incise/physics/viscous_work.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_bodies.h"
+#include "tests/physics/viscous_work.h"
 
 namespace incise::physics {
 namespace {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "incise/physics/processors_at_hand.h"
 #include "support/mesh_families.h"
+#include "tests/physics/processors_at_hand.h"
 
 namespace incise::physics {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
 #include "support/mesh_families.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "incise/physics/spectrum.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -11,10 +11,10 @@
 #include <set>
 
 #include "incise/physics/integrator.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

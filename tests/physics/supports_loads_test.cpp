@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "incise/physics/model.h"
-#include "incise/physics/test_materials.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_data.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 

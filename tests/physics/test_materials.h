@@ -14,6 +14,9 @@
 
 namespace incise::physics {
 
+/// What the custom law of the tests holds, which is to be as good as the library's own.
+inline constexpr Yeoh held_by_custom_law{1500.0, 300.0, 100.0, 7000.0};
+
 struct NamedLaw {
     std::string name;
     Law law;
@@ -43,6 +46,7 @@ inline std::vector<NamedLaw> test_laws() {
         {"stable neo-Hookean, nu -0.2", StableNeoHookean::of_rest_moduli(-1190.0, 4167.0)},
         {"stable neo-Hookean, nu 0.49", StableNeoHookean::of_rest_moduli(1.6e5, 3356.0)},
         {"Yeoh", Yeoh{1923.0, 400.0, 150.0, 8333.0}},
+        {"custom", custom_law(held_by_custom_law)},
         {"fibres in parallel", HolzapfelGasserOgden{3846.0, 8333.0, 2000.0, 0.3, 0.0}},
         {"dispersed fibres", HolzapfelGasserOgden{3846.0, 8333.0, 2000.0, 0.3, 0.2}},
     };

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "incise/physics/spectrum.h"
-#include "incise/physics/test_materials.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 
@@ -72,6 +72,10 @@ inline double energy_density(const Yeoh& law, const Mat3& F) {
     const double J = F.determinant(), i = std::pow(J, -2.0 / 3.0) * F.squaredNorm() - 3.0;
     return law.c1 * i + law.c2 * i * i + law.c3 * i * i * i +
            0.5 * law.bulk_modulus * (J - 1) * (J - 1);
+}
+
+inline double energy_density(const CustomLaw&, const Mat3& F) {
+    return energy_density(held_by_custom_law, F);
 }
 inline double energy_density(const HolzapfelGasserOgden& law, const Mat3& F) {
     const double J = F.determinant(), I1 = F.squaredNorm();

@@ -9,8 +9,8 @@
 
 #include "incise/physics/element_tangent.h"
 #include "incise/physics/model.h"
-#include "incise/physics/test_bodies.h"
-#include "incise/physics/thin_tetrahedra.h"
+#include "tests/physics/test_bodies.h"
+#include "tests/physics/thin_tetrahedra.h"
 
 namespace incise::physics {
 namespace {

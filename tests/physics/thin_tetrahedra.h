@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "incise/physics/test_materials.h"
 #include "incise/topology/mesh.h"
+#include "tests/physics/test_materials.h"
 
 namespace incise::physics {
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "incise/physics/test_bodies.h"
-#include "incise/physics/textbook_energies.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_bodies.h"
+#include "tests/physics/textbook_energies.h"
 
 namespace incise::physics {
 namespace {

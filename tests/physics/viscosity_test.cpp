@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/physics/viscous_kernel.h"
-#include "incise/physics/viscous_work.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/test_bodies.h"
+#include "tests/physics/viscous_work.h"
 
 namespace incise::physics {
 namespace {

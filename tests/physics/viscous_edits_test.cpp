@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "incise/physics/test_bodies.h"
 #include "incise/topology/mesh_edit.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "incise/physics/processors_at_hand.h"
-#include "incise/physics/test_bodies.h"
 #include "incise/physics/viscous_kernel.h"
+#include "tests/physics/processors_at_hand.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "incise/physics/test_bodies.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::physics {
 
