@@ -8,8 +8,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "incise/physics/motion_failure.h"
 #include "incise/physics/spectrum.h"
-#include "incise/topology/error.h"
 
 namespace incise::physics {
 
@@ -152,9 +152,9 @@ void require_equilibrium(const Mesh& mesh, const FreePiece& piece, std::span<con
     } else
         text << "push it with " << moving.head<3>().norm() << " N along "
              << moving.head<3>().normalized().transpose();
-    text << "; hold it by a constraint, take the loads and gravity from it, or use mode = "
-            "\"dynamic\"";
-    throw PhysicsError(text.str());
+    MotionFailure failure(FailureCause::free_component_loaded, text.str());
+    failure.element = e;
+    throw failure;
 }
 
 }  // namespace incise::physics

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "incise/physics/integrator.h"
-#include "incise/topology/error.h"
+#include "incise/physics/motion_failure.h"
 
 namespace incise::physics {
 
@@ -32,9 +32,8 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
         text << "the implicit step to t = " << time + dt
              << " s has no solution within reach: " << report.iterations << " iterations, "
              << report.imbalance << " N out of balance of " << report.scale
-             << " N, also with a step of " << dt
-             << " s; use a smaller dynamics.time_step, or gentler motion of supports and loads";
-        throw PhysicsError(text.str());
+             << " N, also with a step of " << dt << " s";
+        throw MotionFailure(FailureCause::no_implicit_step, text.str());
     }
 
     outer_.resize(x_.size());

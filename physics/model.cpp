@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <sstream>
 
+#include "incise/physics/motion_failure.h"
 #include "incise/topology/error.h"
 
 namespace incise::physics {
@@ -143,7 +142,7 @@ void Model::integrate(double time, double dt) {
     external_work_ += sums.work;
     dissipated_energy_ += damping_ * sums.mass_times_square * dt;
     largest_move_ = std::sqrt(sums.largest_square) * dt;
-    if (!sums.is_finite() || largest_move_ > body_size_) explain_failure(time, dt);
+    if (!sums.is_finite() || largest_move_ > body_size_) throw failure_of_step(*this, time, dt);
     if (!history_.is_empty())
         dissipated_energy_ +=
             elements_.advance(previous_positions_, positions_, dt, workers_, history_);
@@ -254,68 +253,6 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
 void Model::book(double external_work, double dissipated_energy) {
     external_work_ += external_work;
     dissipated_energy_ += dissipated_energy;
-}
-
-std::pair<ElementId, double> Model::most_crushed_before(NodeId n, double dt) const {
-    std::vector<Vec3> before(positions_);
-    for (std::size_t i = 0; i < before.size(); ++i) before[i] -= dt * velocities_[i];
-    std::vector<ElementId> star;
-    mesh_.star(n, star);
-    std::pair<ElementId, double> lowest{mesh_.anchor(n), std::numeric_limits<double>::infinity()};
-    for (const ElementId e : star)
-        if (const double J = elements_.block_of(mesh_, e).result(e, before, history_).volume_ratio;
-            J < lowest.second)
-            lowest = {e, J};
-    return lowest;
-}
-
-void Model::explain_failure(double time, double dt) const {
-    // The first node that is not finite, or else the fastest.
-    std::size_t worst = 0;
-    double largest = -1.0;
-    for (std::size_t n = 0; n < masses_.size() && std::isfinite(largest); ++n) {
-        if (masses_[n] == 0.0) continue;
-        const double speed = velocities_[n].norm();
-        if (speed <= largest) continue;
-        worst = n;
-        largest = speed;
-    }
-    const ElementId e = mesh_.anchor(NodeId(worst));
-    std::ostringstream text;
-    text << "element " << mesh_.label(e) << ", node " << mesh_.label(NodeId(worst))
-         << " (at rest at " << mesh_.rest_positions()[worst].transpose() << ") ";
-    if (std::isfinite(largest))
-        text << "moved by " << largest * dt << " m in the step from t = " << time
-             << " s, farther than the body is wide";
-    else
-        text << "is no longer at a finite place after the step from t = " << time << " s";
-    text << "; likely cause: ";
-    if (dt > stable_step())
-        text << "the step of " << dt << " s is above the stable step of " << stable_step()
-             << " s; use time_step = \"auto\"";
-    else if (supports_.of_node(worst))
-        text << "its support is moved too fast; move it more slowly";
-    else if (outer_forces_[worst].norm() > elastic_forces_[worst].norm())
-        text << "the load on it of " << outer_forces_[worst].norm() << " N, with a mass of "
-             << masses_[worst] << " kg; make it smaller or bring it up slowly";
-    else {
-        constexpr double crushed = 0.2;
-        const auto [element, J] = most_crushed_before(NodeId(worst), dt);
-        std::ostringstream of_stable;
-        of_stable << " (the step of " << dt << " s is " << dt / stable_step()
-                  << " of what is stable at rest); use a smaller dynamics.safety, more damping, "
-                     "gentler motion, or ";
-        if (J < crushed)
-            text << "element " << mesh_.label(element)
-                 << (J < 0.0 ? " there was turned inside out" : " there was crushed")
-                 << " (its volume ratio was " << J << "), where tissue is stiffer than at rest"
-                 << of_stable.str()
-                 << "for tetrahedra law = \"stable-neo-hookean\", which stiffens least";
-        else
-            text << "strain so large that it has stiffened the tissue" << of_stable.str()
-                 << "a finer mesh there";
-    }
-    throw PhysicsError(text.str());
 }
 
 // Keeps momentum and centre of mass; equal states stay what they are to the bit.

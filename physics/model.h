@@ -111,8 +111,8 @@ class Model {
     /// One step of semi-implicit Euler, from the forces last computed:
     /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
     /// to be at time + dt. Source: HEML 2015, eq. (32).
-    /// Throws PhysicsError, naming an element, the time, the likely cause and what to do, if the
-    /// state is no longer finite or a node has moved by more than the body's size in this step.
+    /// Throws MotionFailure, naming an element, the time and the likely cause, if the state is no
+    /// longer finite or a node has moved by more than the body's size in this step.
     void integrate(double time, double dt);
 
     /// For implicit integration and statics, which find the end of a step by themselves and hand it
@@ -286,9 +286,6 @@ class Model {
     void take_from_sources(const topology::NodeRecord& record);
     void merge(NodeId absorbed, NodeId survivor);
     bool take_back_merge(NodeId absorbed);
-    [[noreturn]] void explain_failure(double time, double dt) const;
-    /// Of the elements at the node the one with the lowest volume ratio before the last step.
-    std::pair<ElementId, double> most_crushed_before(NodeId n, double dt) const;
 
     const topology::Mesh& mesh_;
     topology::FollowedEpoch epoch_;

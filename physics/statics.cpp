@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "incise/physics/integrator.h"
-#include "incise/topology/error.h"
+#include "incise/physics/motion_failure.h"
 
 namespace incise::physics {
 
@@ -68,9 +68,8 @@ void Statics::step(Model& model, double time, double dt) {
             text << "no equilibrium found at load time " << now << " s: " << report.iterations
                  << " iterations, " << report.imbalance << " N out of balance of " << report.scale
                  << " N, also with a " << 1.0 / smallest_increment
-                 << "th of the load step; the tissue may have become unstable there: use smaller "
-                    "loads or motion, more dynamics.steps, or mode = \"dynamic\" with damping";
-            throw PhysicsError(text.str());
+                 << "th of the load step; the tissue may have become unstable there";
+            throw MotionFailure(FailureCause::no_equilibrium, text.str());
         }
         model.outer_forces_at(x_, now, next_outer_);
         // Forces go in proportion to the way, so that their mean does the work.

@@ -10,6 +10,7 @@
 #include "incise/io/number_format.h"
 #include "incise/physics/winding.h"
 #include "incise/sim/body.h"
+#include "incise/sim/remedies.h"
 #include "incise/sim/step_limit.h"
 #include "incise/topology/error.h"
 
@@ -72,9 +73,9 @@ void Simulation::step() {
         if (!error.is_undividable) throw;
         throw InputError(std::string(error.what()) + "; " +
                          instead_of_dividing(world_.tool(error.tool).shape));
-    } catch (const PhysicsError&) {
+    } catch (const physics::MotionFailure& failure) {
         tell_edits();
-        throw;
+        throw PhysicsError(failure.what() + remedy_for(failure));
     }
     last_step_ = step.to - step.from;
     tell_edits();

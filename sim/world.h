@@ -125,8 +125,8 @@ class World {
     ///
     /// Throws InputError, and changes nothing, if dt is not above 0, if it is above the stable step
     /// of an explicit solver, or if the world has failed before.
-    /// Throws PhysicsError if the motion is lost, ToolError if a tool meets what it cannot cut. The
-    /// world has failed then: it can be looked at, and restored, but not stepped.
+    /// Throws physics::MotionFailure if the motion is lost, ToolError if a tool meets what it
+    /// cannot cut. The world has failed then: it can be looked at, and restored, but not stepped.
     const StepReport& step(double dt);
     /// The same with the time at the end of the step, s.
     const StepReport& step_to(double time);

@@ -218,7 +218,7 @@ void check_cut_during_the_run(const CutReference& reference) {
     for_each_solution(reference, true, [&](Mesh& mesh, const Law& law, const auto& solution) {
         Relaxation relaxation(mesh, reference, law);
         relaxation.run_until(1.1 * ramp_time);  // loaded, and still in motion
-        relaxation.apply(relaxation.mesh(), open_cut_faces(mesh, reference));
+        relaxation.apply(open_cut_faces(mesh, reference));
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>());
         relaxation.run_to_equilibrium();
         expect_solution(relaxation.model(), reference, solution);
