@@ -9,14 +9,14 @@
 int main() {
     using namespace incise;
     sim::WorldDef def;
-    def.mesh = topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {0.1, 0.1, 0.1},
-                                  {4, 4, 4});
+    def.mesh =
+        topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {0.1, 0.1, 0.1}, {4, 4, 4});
     def.materials = {{.density = 1000.0,
                       .method = physics::HyperElasticLinks{physics::NeoHookean{500.0, 2000.0}}}};
     def.gravity = {0, 0, -9.81};
     sim::World world(std::move(def));
-    const sim::ToolId knife = world.add_tool(
-        {.name = "knife", .shape = cutting::PlaneCut{{0, 0, 0.052}, Vec3::UnitZ()}});
+    const sim::ToolId knife =
+        world.add_tool({.name = "knife", .shape = cutting::PlaneCut{{0, 0, 0.052}, Vec3::UnitZ()}});
     const Pose turned{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vec3::UnitX())), {1, 2, 3}};
     world.set_tool_pose(knife, turned);
     world.withdraw_tool(knife);
