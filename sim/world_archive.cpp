@@ -10,6 +10,9 @@
 
 namespace incise::sim {
 
+using cutting::Blade;
+using cutting::CutMode;
+
 namespace {
 
 double read_time(topology::ArchiveReader& ar) {

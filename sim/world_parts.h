@@ -60,7 +60,7 @@ struct World::Parts {
         return std::ranges::any_of(tools, [](const Tool& tool) { return tool.is_present; });
     }
 
-    Mesh mesh;
+    topology::Mesh mesh;
     double time = 0.0;
     physics::Model model;
     std::unique_ptr<physics::Integrator> integrator;
