@@ -193,8 +193,9 @@ class World {
     /// Returns everything but the materials and the solver: mesh, state, constraints, loads, tools
     /// and cuts in progress. Cost: some 100 bytes an element and as many a node.
     std::string save() const;
-    /// Goes on from what a world of the same materials and solver has saved, to the same bits.
-    /// Throws InputError, and changes nothing, for bytes that are not of such a world.
+    /// Goes on from what a world has saved, to the same bits.
+    /// @pre Materials and solver are those of that world: this is not checked.
+    /// Throws InputError, and changes nothing, for bytes that cannot be those of a world.
     /// Cost: that of a new world, and of topology::validate().
     void restore(std::string_view bytes);
 
