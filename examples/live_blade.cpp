@@ -4,7 +4,8 @@
 #include <incise/sim/selection.h>
 #include <incise/sim/world.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <iostream>
 #include <string>
 #include <vector>

@@ -43,7 +43,8 @@ void NodeSet::require_fit(const topology::Mesh& mesh) const {
     for (const Member& m : members_)
         if (!m.node.is_valid() || !is_there(m.node))
             throw InputError("a selection has nodes that are not there");
-    if (!std::ranges::is_sorted(members_, std::ranges::less_equal(), &Member::node))
+    if (std::ranges::adjacent_find(members_, std::ranges::greater_equal(), &Member::node) !=
+        members_.end())
         throw InputError("a selection of nodes is out of order");
 }
 

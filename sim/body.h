@@ -8,30 +8,12 @@
 
 #include "incise/physics/model.h"
 #include "incise/sim/scenario.h"
+#include "incise/sim/source_mesh.h"
 #include "incise/sim/tool_build.h"
 #include "incise/sim/world.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::sim {
-
-/// Cell arrays of a mesh file.
-struct CellVectors {
-    std::string file;
-    std::map<std::string, std::vector<Vec3>> by_name;  ///< one vector for each label of an element
-};
-
-/// The mesh of a scenario, with what its file says of the cells.
-struct SourceMesh {
-    topology::Mesh mesh;
-    std::vector<std::string> warnings;
-    CellVectors cell_vectors;
-};
-
-/// Reads or makes the scenario's mesh, with the cell arrays that materials name. Warnings name the
-/// file.
-/// Throws InputError with every problem found, each line naming the file; BodyError if the scale or
-/// the box are at fault.
-SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials);
 
 /// Which region has which material, which element fibres of which direction, and the precision of
 /// the forces. Warns of regions that the mesh does not have.

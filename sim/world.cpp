@@ -99,6 +99,7 @@ void World::withdraw_tool(ToolId id, const Pose* pose_before) {
     Parts::Tool& tool = parts_->tool_of(id);
     if (!tool.is_present)
         throw InputError("tool '" + tool.def.name + "' is not there to be withdrawn");
+    if (pose_before) parts_->require_sound_pose(id, *pose_before);
     tool.is_leaving = true;
     tool.pose_before_end.reset();
     if (pose_before) tool.pose_before_end = *pose_before;
@@ -180,7 +181,10 @@ topology::BoundarySurface& World::surface() {
     return *p.surface;
 }
 
-void World::set_num_threads(int n) { parts_->model.set_num_threads(n); }
+void World::set_num_threads(int n) {
+    require_sound_num_threads(n);
+    parts_->model.set_num_threads(n);
+}
 
 const Mesh& World::mesh() const { return parts_->mesh; }
 const physics::Model& World::model() const { return parts_->model; }

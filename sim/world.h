@@ -107,7 +107,8 @@ struct ToolError : InputError {
 
 /// A body, what acts on it, and the tools that cut it.
 ///
-/// A world can be moved. Several worlds can live in one process and be stepped by several threads,
+/// A world can be moved; the one that it was moved from can be destroyed and assigned to, and
+/// nothing else. Several worlds can live in one process and be stepped by several threads,
 /// each world by one thread at a time. References that its functions return are valid until the
 /// world is stepped, restored or destroyed; moving it keeps them.
 class World {
@@ -193,9 +194,10 @@ class World {
     /// Returns everything but the materials and the solver: mesh, state, constraints, loads, tools
     /// and cuts in progress. Cost: some 100 bytes an element and as many a node.
     std::string save() const;
-    /// Goes on from what a world has saved, to the same bits.
-    /// @pre Materials and solver are those of that world: this is not checked.
-    /// Throws InputError, and changes nothing, for bytes that cannot be those of a world.
+    /// Goes on from what a world of the same materials and solver has saved, to the same bits.
+    /// Throws InputError, and changes nothing, for bytes that cannot be those of such a world. Laws
+    /// are compared by their kind and their moduli at rest. There is no checksum: a changed number
+    /// goes unnoticed.
     /// Cost: that of a new world, and of topology::validate().
     void restore(std::string_view bytes);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "incise/io/checked_file.h"
 #include "incise/io/number_format.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
@@ -34,7 +35,7 @@ World::Parts::Parts(const Parts& former, topology::ArchiveReader& ar)
       cutter(mesh, model.positions()) {
     integrator->restore(ar, model);
     ledger.restore(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of the world");
     prepare_tools();
     require_sound_grasps();
@@ -58,7 +59,7 @@ void World::Parts::save(topology::ArchiveWriter& ar) const {
     model.save(ar);
     integrator->save(ar);
     ledger.save(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);
 }
 
 /// What an archive does not hold of tools, or holds wrongly.
@@ -80,14 +81,37 @@ void World::Parts::prepare_tools() {
 namespace {
 
 /// To be changed with what save() lists and with the bits that a world computes.
-constexpr std::uint32_t state_format = 1;
+constexpr std::uint32_t state_format = 2;
 constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
+
+/// Of what is plain of the materials: two laws with the same moduli at rest are not told apart.
+std::uint64_t fingerprint_of(const physics::Model& model) {
+    const physics::MaterialTable& table = model.elements().materials();
+    topology::ArchiveWriter ar;
+    for (const physics::Material& material : table.materials) {
+        ar(material.density, static_cast<std::uint64_t>(material.method.index()));
+        if (const auto* links = std::get_if<physics::HyperElasticLinks>(&material.method)) {
+            ar(static_cast<std::uint64_t>(links->law.index()), physics::rest_mu(links->law),
+               physics::rest_lambda(links->law), links->inversion_threshold, links->prony_rule);
+            for (const physics::PronyTerm& term : links->prony) ar(term.alpha, term.tau);
+        } else if (const auto* springs = std::get_if<physics::MassSprings>(&material.method)) {
+            ar(springs->young);
+        } else {
+            const auto& hybrid = std::get<physics::HybridSprings>(material.method);
+            ar(hybrid.shear_modulus, hybrid.volume_modulus, hybrid.stiffness_ratio);
+        }
+    }
+    for (const auto& [region, material] : table.of_region)
+        ar(region, static_cast<std::uint64_t>(material));
+    ar(table.precision);
+    return io::checksum(ar.bytes());
+}
 
 }  // namespace
 
 std::string World::save() const {
     topology::ArchiveWriter ar;
-    ar(state_mark, state_format);
+    ar(state_mark, state_format, parts_->solver, fingerprint_of(parts_->model));
     parts_->save(ar);
     return ar.bytes();
 }
@@ -100,6 +124,10 @@ void World::restore(std::string_view bytes) {
     if (format != state_format)
         throw InputError("the world was saved in format " + std::to_string(format) +
                          ", and this version reads " + std::to_string(state_format));
+    if (ar.read<Solver>() != parts_->solver)
+        throw InputError("the world that was saved has another solver");
+    if (ar.read<std::uint64_t>() != fingerprint_of(parts_->model))
+        throw InputError("the world that was saved has other materials");
     parts_ = std::make_unique<Parts>(*parts_, ar);
 }
 

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <type_traits>
+#include <utility>
 
 #include "incise/io/number_format.h"
 #include "incise/topology/error.h"
@@ -15,6 +18,28 @@ using topology::Mesh;
 using topology::NodeId;
 
 namespace {
+
+bool is_finite(const Vec3& x) { return x.allFinite(); }
+
+/// Throws InputError unless times are finite and ascend strictly, and values are finite.
+template <class Value>
+void require_curve(const physics::TimeCurve<Value>& curve, const std::string& what) {
+    const auto is_sound = [](const Value& value) {
+        if constexpr (std::is_same_v<Value, double>)
+            return std::isfinite(value);
+        else
+            return value.allFinite();
+    };
+    const std::pair<double, Value>* before = nullptr;
+    for (const auto& key : curve.keys()) {
+        if (!std::isfinite(key.first) || !is_sound(key.second))
+            throw InputError(what + " has a key that is not finite");
+        if (before && !(before->first < key.first))
+            throw InputError(what + " has keys whose times do not ascend, at " +
+                             io::format_number(key.first) + " s");
+        before = &key;
+    }
+}
 
 void require_nodes(const Mesh& mesh, const std::string& what, const physics::NodeSet& nodes) {
     if (nodes.members().empty()) throw InputError(what + ": it has no node");
@@ -67,41 +92,168 @@ struct LoadRequirement {
 
 }  // namespace
 
+namespace {
+
+/// Why a shape is none; empty if it is one.
+struct FaultOfShape {
+    std::string operator()(const Blade& blade) const {
+        if (blade.edge.size() < 2)
+            return "the edge of a blade needs at least 2 points, and has " +
+                   std::to_string(blade.edge.size());
+        if (!std::ranges::all_of(blade.edge, is_finite)) return "a point of its edge is not finite";
+        if (std::ranges::adjacent_find(blade.edge) != blade.edge.end())
+            return "two points of its edge that follow each other are the same";
+        return fault_of_snap(blade.snap);
+    }
+    std::string operator()(const Carver& carver) const {
+        return std::visit([&](const auto& shape) { return fault_of(shape); }, carver.shape);
+    }
+    std::string operator()(const cutting::PlaneCut& plane) const {
+        if (!is_finite(plane.point) || !is_finite(plane.normal)) return "its plane is not finite";
+        if (!(plane.normal.squaredNorm() > 0.0)) return "the normal of its plane is zero";
+        return fault_of_snap(plane.snap);
+    }
+    std::string operator()(const cutting::SurfaceCut& cut) const {
+        const auto& [points, triangles] = cut.surface;
+        if (triangles.empty()) return "its surface has no triangle";
+        if (!std::ranges::all_of(points, is_finite)) return "a point of its surface is not finite";
+        for (const auto& triangle : triangles)
+            for (const std::int64_t p : triangle)
+                if (p < 0 || p >= static_cast<std::int64_t>(points.size()))
+                    return "a triangle of its surface names point " + std::to_string(p) +
+                           ", and there are " + std::to_string(points.size());
+        return fault_of_snap(cut.snap);
+    }
+
+  private:
+    static std::string fault_of(const cutting::Sphere& sphere) {
+        return fault_of_length("it has a radius", sphere.radius);
+    }
+    static std::string fault_of(const cutting::Capsule& capsule) {
+        if (!is_finite(capsule.from) || !is_finite(capsule.to)) return "its axis is not finite";
+        return fault_of_length("it has a radius", capsule.radius);
+    }
+    static std::string fault_of(const cutting::Cuboid& cuboid) {
+        if (!is_finite(cuboid.size)) return "its size is not finite";
+        return fault_of_length("it has an edge", cuboid.size.minCoeff());
+    }
+    static std::string fault_of_length(const char* what, double length) {
+        if (length > 0.0 && std::isfinite(length)) return "";
+        return what + (" of " + io::format_number(length)) + " m: it must be above 0";
+    }
+    static std::string fault_of_snap(double snap) {
+        if (snap >= 0.0 && snap <= 1.0) return "";
+        return "it has a snap of " + io::format_number(snap) + ": it must be from 0 to 1";
+    }
+};
+
+}  // namespace
+
 void require_sound(const ToolDef& def) {
-    const auto refuse = [&](const std::string& why) {
-        throw InputError("tool '" + def.name + "': " + why);
-    };
-    const auto require_above_zero = [&](double length, const char* what) {
-        if (!(length > 0.0 && std::isfinite(length)))
-            refuse(std::string(what) + " of " + io::format_number(length) +
-                   " m: it must be above 0");
-    };
-    if (const auto* blade = std::get_if<Blade>(&def.shape)) {
-        if (blade->edge.size() < 2)
-            refuse("the edge of a blade needs at least 2 points, and has " +
-                   std::to_string(blade->edge.size()));
-        if (!std::ranges::all_of(blade->edge, [](const Vec3& x) { return x.allFinite(); }))
-            refuse("a point of its edge is not finite");
-    }
-    if (const auto* carver = std::get_if<Carver>(&def.shape)) {
-        if (const auto* sphere = std::get_if<cutting::Sphere>(&carver->shape))
-            require_above_zero(sphere->radius, "it has a radius");
-        if (const auto* capsule = std::get_if<cutting::Capsule>(&carver->shape))
-            require_above_zero(capsule->radius, "it has a radius");
-        if (const auto* cuboid = std::get_if<cutting::Cuboid>(&carver->shape))
-            require_above_zero(cuboid->size.minCoeff(), "it has an edge");
-    }
-    if (const auto* plane = std::get_if<cutting::PlaneCut>(&def.shape))
-        if (!(plane->normal.squaredNorm() > 0.0)) refuse("the normal of its plane is zero");
+    const std::string fault = std::visit(FaultOfShape{}, def.shape);
+    if (!fault.empty()) throw InputError("tool '" + def.name + "': " + fault);
 }
 
 void require_sound(const physics::Support& constraint, const Mesh& mesh) {
-    require_nodes(mesh, "constraint '" + constraint.name + "'", constraint.nodes);
+    const std::string what = "constraint '" + constraint.name + "'";
+    require_nodes(mesh, what, constraint.nodes);
     constraint.require_fit(mesh);
+    if (std::ranges::none_of(constraint.components, std::identity()))
+        throw InputError(what + ": it prescribes no component");
+    require_curve(constraint.displacement, what + ": its displacement");
+    require_curve(constraint.angle, what + ": its angle");
+    if (!is_finite(constraint.point)) throw InputError(what + ": its point is not finite");
+    if (!(std::abs(constraint.axis.norm() - 1.0) < 1e-6))
+        throw InputError(what + ": its axis has a length of " +
+                         io::format_number(constraint.axis.norm()) + ": it must be 1");
 }
 
 void require_sound(const physics::Load& load, const Mesh& mesh) {
-    std::visit(LoadRequirement{mesh, "load '" + load.name + "'"}, load.kind);
+    const std::string what = "load '" + load.name + "'";
+    std::visit(LoadRequirement{mesh, what}, load.kind);
+    require_curve(load.factor, what + ": its factor");
+}
+
+namespace {
+
+/// Why a material is none; empty if it is one.
+struct FaultOfMethod {
+    std::string operator()(const physics::HyperElasticLinks& links) const {
+        const double mu = physics::rest_mu(links.law), lambda = physics::rest_lambda(links.law);
+        if (!(mu > 0.0 && std::isfinite(mu)))
+            return "its shear modulus at rest is " + io::format_number(mu) +
+                   " Pa: it must be above 0";
+        if (const double bulk = lambda + 2.0 / 3.0 * mu; !(bulk > 0.0 && std::isfinite(bulk)))
+            return "its bulk modulus at rest is " + io::format_number(bulk) +
+                   " Pa: it must be above 0";
+        if (!(links.inversion_threshold > 0.0 && links.inversion_threshold < 1.0))
+            return "its inversion threshold is " + io::format_number(links.inversion_threshold) +
+                   ": it must be between 0 and 1";
+        double sum = 0.0;
+        for (const physics::PronyTerm& term : links.prony) {
+            if (!(term.alpha > 0.0 && term.tau > 0.0 && std::isfinite(term.tau)))
+                return "a term of its Prony series has alpha " + io::format_number(term.alpha) +
+                       " and tau " + io::format_number(term.tau) + " s: both must be above 0";
+            sum += term.alpha;
+        }
+        if (!(sum < 1.0))
+            return "the alphas of its Prony series add up to " + io::format_number(sum) +
+                   ": they must stay below 1";
+        return "";
+    }
+    std::string operator()(const physics::MassSprings& springs) const {
+        if (springs.young > 0.0 && std::isfinite(springs.young)) return "";
+        return "its Young's modulus is " + io::format_number(springs.young) +
+               " Pa: it must be above 0";
+    }
+    std::string operator()(const physics::HybridSprings& springs) const {
+        if (!(springs.shear_modulus > 0.0 && std::isfinite(springs.shear_modulus)))
+            return "its shear modulus is " + io::format_number(springs.shear_modulus) +
+                   " Pa: it must be above 0";
+        if (!std::isfinite(springs.volume_modulus)) return "its volume modulus is not finite";
+        if (!(springs.stiffness_ratio >= 0.0)) return "its stiffness ratio must be 0 or more";
+        return "";
+    }
+};
+
+void require_sound(const physics::Material& material, std::size_t number) {
+    std::string fault;
+    if (!(material.density > 0.0 && std::isfinite(material.density)))
+        fault =
+            "its density is " + io::format_number(material.density) + " kg/m3: it must be above 0";
+    else
+        fault = std::visit(FaultOfMethod{}, material.method);
+    if (!fault.empty()) throw InputError("material " + std::to_string(number) + ": " + fault);
+}
+
+}  // namespace
+
+void require_sound(const WorldDef& def, const Mesh& mesh) {
+    if (def.materials.empty()) throw InputError("the definition of a world has no material");
+    for (std::size_t i = 0; i < def.materials.size(); ++i) require_sound(def.materials[i], i);
+    for (const auto& [region, material] : def.material_of_region)
+        if (material >= def.materials.size())
+            throw InputError("region " + std::to_string(region) + " has material " +
+                             std::to_string(material) + ", and there are " +
+                             std::to_string(def.materials.size()));
+    if (def.fibres.size() > mesh.element_capacity() || !std::ranges::all_of(def.fibres, is_finite))
+        throw InputError("fibres must have one finite direction for each element");
+    if (!is_finite(def.gravity)) throw InputError("gravity is not finite");
+    if (!(def.damping >= 0.0 && std::isfinite(def.damping)))
+        throw InputError("damping is " + io::format_number(def.damping) +
+                         " 1/s: it must be 0 or more");
+    if (def.solver != Solver::semi_implicit_euler && def.solver != Solver::implicit_euler &&
+        def.solver != Solver::statics)
+        throw InputError("there is no such solver");
+    require_sound_num_threads(def.num_threads);
+    for (const physics::Support& constraint : def.constraints) require_sound(constraint, mesh);
+    for (const physics::Load& load : def.loads) require_sound(load, mesh);
+}
+
+void require_sound_num_threads(int n) {
+    if (n < 1)
+        throw InputError("the number of threads is " + std::to_string(n) +
+                         ": it must be at least 1");
 }
 
 }  // namespace incise::sim

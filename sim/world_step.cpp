@@ -6,6 +6,7 @@
 
 #include "incise/cutting/step_length.h"
 #include "incise/cutting/undividable.h"
+#include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 
 namespace incise::sim {
@@ -22,7 +23,9 @@ Mesh mesh_of(std::variant<topology::MeshData, Mesh> mesh) {
     return Mesh::build(std::get<topology::MeshData>(mesh)).mesh;
 }
 
+/// Throws InputError if anything of the definition cannot be.
 physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
+    require_sound(def, mesh);
     physics::MaterialTable table{std::move(def.materials), std::move(def.material_of_region),
                                  std::move(def.fibres), def.precision};
     if (table.of_region.empty() && !table.materials.empty())
@@ -57,8 +60,10 @@ std::unique_ptr<physics::Integrator> make_integrator(Solver solver) {
 
 World::Parts::Parts(WorldDef def)
     : mesh(mesh_of(std::move(def.mesh))),
-      model(mesh, materials_of(def, mesh),
-            {def.gravity, def.damping, std::move(def.constraints), std::move(def.loads)}),
+      // Braces, as the definition is checked before parts of it are moved.
+      model{mesh,
+            materials_of(def, mesh),
+            {def.gravity, def.damping, std::move(def.constraints), std::move(def.loads)}},
       integrator(make_integrator(def.solver)),
       solver(def.solver),
       ledger(model),

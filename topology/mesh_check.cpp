@@ -42,6 +42,39 @@ class Complaints {
     std::map<std::string, std::size_t> counts_;
 };
 
+/// What is wrong with the lists themselves; empty if each cell can be looked at.
+std::string fault_of_lists(const MeshData& data) {
+    const std::size_t num_cells = data.kinds.size();
+    const auto is_one_each = [](std::size_t size, std::size_t count) {
+        return size == 0 || size == count;  // these may be left out
+    };
+    if (data.offsets.size() != num_cells + 1)
+        return "offsets has " + std::to_string(data.offsets.size()) + " entries for " +
+               std::to_string(num_cells) + " cells, and needs one more than cells";
+    if (data.regions.size() != num_cells)
+        return "regions has " + std::to_string(data.regions.size()) + " entries for " +
+               std::to_string(num_cells) + " cells";
+    if (!is_one_each(data.welded_to.size(), data.points.size()))
+        return "welded_to has " + std::to_string(data.welded_to.size()) + " entries for " +
+               std::to_string(data.points.size()) + " points";
+    if (!std::ranges::all_of(data.welded_to, [&](std::int64_t p) {
+            return p >= 0 && p < static_cast<std::int64_t>(data.points.size());
+        }))
+        return "welded_to names a point that is not there";
+    if (data.offsets.front() != 0 || data.offsets.back() != data.corners.size())
+        return "offsets has to begin with 0 and to end with the number of corners, " +
+               std::to_string(data.corners.size());
+    for (std::size_t c = 0; c < num_cells; ++c) {
+        if (static_cast<std::size_t>(data.kinds[c]) >= num_cell_kinds)
+            return "cell " + std::to_string(c) + " is of no kind that is known";
+        const CellTraits& t = traits(data.kinds[c]);
+        if (data.offsets[c + 1] != data.offsets[c] + static_cast<std::size_t>(t.num_corners))
+            return "cell " + std::to_string(c) + " (" + t.name + ") needs " +
+                   std::to_string(t.num_corners) + " corners, and offsets gives it another number";
+    }
+    return "";
+}
+
 bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complaints) {
     const auto corners = data.cell(c);
     const auto num_points = static_cast<std::int64_t>(data.points.size());
@@ -239,6 +272,11 @@ MeshCheck check(const MeshData& data) {
     if (data.num_cells() == 0) {
         result.errors.emplace_back(
             "holds no tetrahedra, hexahedra, wedges or pyramids: a volume mesh is needed");
+        return result;
+    }
+
+    if (std::string fault = fault_of_lists(data); !fault.empty()) {
+        result.errors.push_back(std::move(fault));
         return result;
     }
 

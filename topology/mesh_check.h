@@ -33,13 +33,12 @@ struct MeshCheck {
     std::vector<SharedFace> shared_faces;
 };
 
-/// Finds: nothing volumetric; indices out of range; coordinates not finite; repeated corners; zero
-/// or negative volume, or a corner of a hexahedron, wedge or pyramid that is turned inside out;
-/// duplicate cells; faces shared by three; neighbours on the same side of their face, or twisted
-/// against each other. Warns of points that no cell uses, and of points at one position that are
-/// not joined (see mesh_repair.h).
-/// Cells and points are named by their numbers from 0, and as the source calls them. Cost: O(n),
-/// some 0.3 us a cell.
+/// Finds: lists whose lengths do not fit each other; nothing volumetric; indices out of range;
+/// coordinates not finite; repeated corners; zero or negative volume, or a corner of a hexahedron,
+/// wedge or pyramid that is turned inside out; duplicate cells; faces shared by three; neighbours
+/// on the same side of their face, or twisted against each other. Warns of points that no cell
+/// uses, and of points at one position that are not joined (see mesh_repair.h). Cells and points
+/// are named by their numbers from 0, and as the source calls them. Cost: O(n), some 0.3 us a cell.
 MeshCheck check(const MeshData& data);
 
 }  // namespace incise::topology

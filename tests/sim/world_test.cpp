@@ -367,6 +367,150 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     EXPECT_TRUE(world.save() == undisturbed.world().save());
 }
 
+TEST(World, RefusesDefinitionsThatCannotBe) {
+    const double nan = std::nan("");
+    const auto links = [](WorldDef& def) -> physics::HyperElasticLinks& {
+        return std::get<physics::HyperElasticLinks>(def.materials[0].method);
+    };
+    const auto data = [](WorldDef& def) -> topology::MeshData& {
+        return std::get<topology::MeshData>(def.mesh);
+    };
+    const physics::NodeSet nowhere(std::vector{NodeId(100000)});
+    using Spoil = std::function<void(WorldDef&)>;
+    const std::vector<std::pair<Spoil, const char*>> faults = {
+        {[](WorldDef& d) { d.materials.clear(); }, "has no material"},
+        {[](WorldDef& d) { d.materials[0].density = -1060; }, "its density is -1060"},
+        {[&](WorldDef& d) { d.materials[0].density = nan; }, "its density is"},
+        {[&](WorldDef& d) {
+             links(d).law = physics::NeoHookean{nan, 1.0};
+         },
+         "its shear modulus"},
+        {[&](WorldDef& d) {
+             links(d).law = physics::NeoHookean{200, -600};
+         },
+         "its bulk modulus"},
+        {[&](WorldDef& d) { links(d).inversion_threshold = nan; }, "its inversion threshold"},
+        {[&](WorldDef& d) {
+             links(d).prony = {{1.2, 1.0}};
+         },
+         "add up to 1.2"},
+        {[&](WorldDef& d) {
+             links(d).prony = {{0.2, 0.0}};
+         },
+         "both must be above 0"},
+        {[](WorldDef& d) { d.materials[0].method = physics::MassSprings{-1}; }, "Young's modulus"},
+        {[](WorldDef& d) {
+             d.material_of_region = {{0, 1}};
+         },
+         "region 0 has material 1"},
+        {[](WorldDef& d) {
+             d.material_of_region = {{7, 0}};
+         },
+         "region 0"},
+        {[&](WorldDef& d) { d.gravity.x() = nan; }, "gravity is not finite"},
+        {[](WorldDef& d) { d.damping = -5; }, "damping is -5"},
+        {[](WorldDef& d) { d.solver = Solver(17); }, "no such solver"},
+        {[](WorldDef& d) { d.num_threads = 0; }, "must be at least 1"},
+        {[&](WorldDef& d) { d.constraints = {{.name = "a", .nodes = nowhere}}; },
+         "there is no node 100000"},
+        {[](WorldDef& d) { d.constraints = {{}}; }, "it has no node"},
+        {[&](WorldDef& d) { d.loads = {{.name = "a", .kind = physics::NodalLoad{nowhere}}}; },
+         "there is no node 100000"},
+        {[](WorldDef& d) { d.loads = {{}}; }, "it has no node"},
+        {[&](WorldDef& d) { data(d).regions.clear(); }, "regions has 0 entries"},
+        {[&](WorldDef& d) { data(d).offsets.pop_back(); }, "needs one more than cells"},
+        {[&](WorldDef& d) { data(d).offsets.clear(); }, "needs one more than cells"},
+        {[&](WorldDef& d) { data(d).offsets[2] = 1000000; }, "needs 4 corners"},
+        {[&](WorldDef& d) { data(d).corners.pop_back(); }, "end with the number of corners"},
+        {[&](WorldDef& d) { data(d).kinds[3] = topology::CellKind(77); }, "is of no kind"},
+        {[&](WorldDef& d) { data(d).kinds[3] = topology::CellKind::hexahedron; },
+         "needs 8 corners"},
+        {[&](WorldDef& d) { data(d).welded_to = {0}; }, "welded_to has 1 entries"},
+        {[&](WorldDef& d) { data(d).points[3].y() = nan; }, "is not finite"},
+        {[](WorldDef& d) { d.mesh = topology::MeshData(); }, "a volume mesh is needed"}};
+    for (const auto& [spoil, why] : faults) {
+        WorldDef def = soft_body();
+        spoil(def);
+        const std::string message = input_error_of([&] { World{std::move(def)}; });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+}
+
+TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
+    World world = held_world();
+    const std::string before = world.save();
+    const double nan = std::nan("");
+    const auto surface = [](std::vector<Vec3> points, std::array<std::int64_t, 3> triangle) {
+        return cutting::SurfaceCut{{std::move(points), {triangle}}};
+    };
+    const std::vector<std::pair<cutting::ToolShape, const char*>> shapes = {
+        {surface({{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}), "is not finite"},
+        {surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 77}), "names point 77"},
+        {surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, -1, 2}), "names point -1"},
+        {cutting::SurfaceCut{}, "has no triangle"},
+        {cutting::PlaneCut{{nan, 0, 0}}, "its plane is not finite"},
+        {cutting::PlaneCut{{0, 0, 0}, {nan, 0, 0}}, "its plane is not finite"},
+        {cutting::PlaneCut{{0, 0, 0}, {1, 0, 0}, 7.0}, "a snap of 7"},
+        {Blade{{{0, 0, 0}, {0, 0, 0}}}, "are the same"},
+        {Blade{{{0, 0, 0}, {1, 0, 0}}, cutting::CutMode::split, nan}, "from 0 to 1"},
+        {cutting::Carver{cutting::Capsule{{nan, 0, 0}, {0, 0, 0}, 1.0}}, "its axis"},
+        {cutting::Carver{cutting::Cuboid{{1, 1, -1}}}, "it must be above 0"}};
+    for (const auto& [shape, why] : shapes) {
+        const std::string message = input_error_of([&, &held = shape] {
+            world.add_tool({"odd", held});
+        });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+    const physics::NodeSet top(nodes_where(world, [](const Vec3& x) { return x.z() == size; }));
+    using Curve = physics::TimeCurve<Vec3>;
+    const std::vector<std::pair<physics::Support, const char*>> constraints = {
+        {{.name = "a", .nodes = top, .displacement = Curve({{0.0, Vec3(nan, 0, 0)}})},
+         "not finite"},
+        {{.name = "a",
+          .nodes = top,
+          .displacement = Curve({{1.0, Vec3::Zero()}, {0.5, Vec3::Zero()}})},
+         "do not ascend"},
+        {{.name = "a", .nodes = top, .components = {false, false, false}}, "no component"},
+        {{.name = "a", .nodes = top, .axis = {0, 0, 2}}, "a length of 2"}};
+    for (const auto& [constraint, why] : constraints) {
+        const std::string message =
+            input_error_of([&, &held = constraint] { world.add_constraint(held); });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+    EXPECT_NE(input_error_of([&] {
+                  world.add_load({.name = "a",
+                                  .kind = physics::NodalLoad{top, {1, 0, 0}},
+                                  .factor = physics::TimeCurve<double>({{0.0, nan}})});
+              }).find("not finite"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] { world.set_num_threads(0); }).find("at least 1"),
+              std::string::npos);
+    EXPECT_TRUE(world.save() == before);
+}
+
+TEST(World, RestoresOnlyWorldsOfItsSolverAndMaterials) {
+    const std::string bytes = held_world().save();
+    World implicit = held_world(Solver::implicit_euler), equilibria = held_world(Solver::statics);
+    for (World* world : {&implicit, &equilibria})
+        EXPECT_NE(input_error_of([&] { world->restore(bytes); }).find("another solver"),
+                  std::string::npos);
+    const auto refusal = [&](const std::function<void(WorldDef&)>& change) {
+        WorldDef def = soft_body();
+        change(def);
+        World world(std::move(def));
+        return input_error_of([&] { world.restore(bytes); });
+    };
+    EXPECT_EQ(refusal([](WorldDef&) {}), "");
+    for (const auto& message :
+         {refusal([](WorldDef& d) { d.materials[0].density = 1001; }),
+          refusal([](WorldDef& d) { d.materials.push_back(d.materials[0]); }),
+          refusal([](WorldDef& d) { d.precision = physics::Precision::single_precision; }),
+          refusal([](WorldDef& d) {
+              d.materials[0].method = physics::HyperElasticLinks{physics::NeoHookean{201, 600}};
+          })})
+        EXPECT_NE(message.find("other materials"), std::string::npos) << message;
+}
+
 TEST(World, ThatHasFailedIsNotSteppedAndCanBeRestored) {
     World world = held_world();
     const double dt = 0.5 * world.stable_step();
@@ -380,6 +524,8 @@ TEST(World, ThatHasFailedIsNotSteppedAndCanBeRestored) {
     EXPECT_THROW(world.step(dt), PhysicsError);
     EXPECT_TRUE(world.has_failed());
     EXPECT_NE(input_error_of([&] { world.step(dt); }).find("has failed"), std::string::npos);
+    world.restore(world.save());
+    EXPECT_TRUE(world.has_failed());
     world.restore(before);
     EXPECT_FALSE(world.has_failed());
     world.step(dt);
