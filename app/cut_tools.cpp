@@ -5,8 +5,8 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/number_list.h"
-#include "incise/cutting/surface_check.h"
-#include "incise/io/surface_reader.h"
+#include "incise/cutting/surfaces/surface_check.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/sim/diagnostics.h"
 #include "incise/topology/error.h"
 

@@ -16,7 +16,7 @@
 #include "incise/app/command_line.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
-#include "incise/physics/workers.h"
+#include "incise/physics/elements/workers.h"
 #include "incise/topology/error.h"
 
 namespace {

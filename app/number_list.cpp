@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "incise/io/number_format.h"
-#include "incise/io/number_text.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/files/number_text.h"
 #include "incise/sim/diagnostics.h"
 #include "incise/topology/error.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "incise/app/messages.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/error.h"
 
 namespace incise::app {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "incise/app/verbs.h"
-#include "incise/io/output_folder.h"
+#include "incise/io/files/output_folder.h"
 #include "incise/sim/checkpoint.h"
 #include "incise/sim/scenario.h"
 

@@ -11,10 +11,10 @@
 #include <span>
 
 #include "incise/cutting/cutter.h"
-#include "incise/physics/heml_lanes.h"
-#include "incise/physics/hybmss_lanes.h"
+#include "incise/physics/body/model.h"
+#include "incise/physics/elements/heml_lanes.h"
+#include "incise/physics/elements/hybmss_lanes.h"
 #include "incise/physics/machine_speed.h"
-#include "incise/physics/model.h"
 #include "incise/sim/elastic_constants.h"
 #include "incise/sim/tissue_catalog.h"
 #include "incise/topology/box_mesh.h"
@@ -61,7 +61,7 @@ topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {
 struct Measured {
     std::string_view method, law;
     physics::Material material;
-    double operations;  ///< of one element's forces, two a fused one: physics/link_forces.h,
+    double operations;  ///< of one element's forces, two a fused one: physics/simd/link_forces.h,
                         ///< hybmss_forces.cpp
     double bytes;       ///< of one element in a group of lanes
 };

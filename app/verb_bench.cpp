@@ -7,7 +7,7 @@
 #include "incise/app/progress.h"
 #include "incise/app/throughput.h"
 #include "incise/app/verbs.h"
-#include "incise/io/atomic_file.h"
+#include "incise/io/files/atomic_file.h"
 
 namespace incise::app {
 

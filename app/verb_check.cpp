@@ -7,8 +7,8 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
-#include "incise/io/mesh_reader.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/scenario_reader.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh.h"

@@ -4,8 +4,8 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
-#include "incise/io/mesh_reader.h"
-#include "incise/io/mesh_writer.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/mesh/mesh_writer.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"

@@ -7,7 +7,7 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
-#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_metrics.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/app/verbs.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/material_catalog.h"
 #include "incise/sim/table_reader.h"
 #include "incise/sim/tissue_catalog.h"

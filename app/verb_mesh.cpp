@@ -9,9 +9,9 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
-#include "incise/io/label_mesh.h"
-#include "incise/io/mesh_writer.h"
-#include "incise/io/number_text.h"
+#include "incise/io/files/number_text.h"
+#include "incise/io/image/label_mesh.h"
+#include "incise/io/mesh/mesh_writer.h"
 #include "incise/sim/table_reader.h"
 #include "incise/topology/error.h"
 #include "incise/topology/geometry.h"

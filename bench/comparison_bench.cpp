@@ -14,8 +14,8 @@
 #include "bench/comparators/mjed.h"
 #include "bench/comparators/tled.h"
 #include "bodies.h"
-#include "incise/io/mesh_reader.h"
-#include "incise/physics/heml_kernel.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/physics/elements/heml_kernel.h"
 
 namespace incise::bench {
 namespace {

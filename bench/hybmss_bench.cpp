@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh.h"
 

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bodies.h"
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 
 namespace incise::bench {
 namespace {

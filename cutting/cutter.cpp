@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "incise/cutting/cut_plan.h"
-#include "incise/cutting/separator.h"
-#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/exact/cut_plan.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/tools/separator.h"
 #include "incise/topology/error.h"
 
 namespace incise::cutting {

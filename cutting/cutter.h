@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "incise/cutting/carver.h"
 #include "incise/cutting/element_boxes.h"
-#include "incise/cutting/scars.h"
-#include "incise/cutting/splitter.h"
+#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/splitter.h"
+#include "incise/cutting/tools/carver.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
 #include "incise/topology/mesh.h"

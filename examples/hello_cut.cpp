@@ -1,6 +1,6 @@
 // Cuts a soft block in two with a blade that is moved from outside, and writes the result.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <incise/io/mesh_writer.h>
+#include <incise/io/mesh/mesh_writer.h>
 #include <incise/sim/selection.h>
 #include <incise/sim/world.h>
 #include <incise/topology/box_mesh.h>

@@ -1,6 +1,6 @@
 // The loop of a live program: a blade moved from outside, and a surface that a renderer keeps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <incise/io/mesh_reader.h>
+#include <incise/io/mesh/mesh_reader.h>
 #include <incise/sim/selection.h>
 #include <incise/sim/world.h>
 

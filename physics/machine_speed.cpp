@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "incise/physics/heml_kernel.h"
+#include "incise/physics/elements/heml_kernel.h"
 #include "incise/physics/peak_loops.h"
 
 namespace incise::physics {

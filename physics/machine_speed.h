@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "incise/physics/law.h"
-#include "incise/physics/processor.h"
+#include "incise/physics/elements/processor.h"
+#include "incise/physics/laws/law.h"
 
 namespace incise::physics {
 

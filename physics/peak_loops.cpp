@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "incise/physics/link_forces.h"
+#include "incise/physics/simd/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

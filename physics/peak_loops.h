@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "incise/physics/heml_lanes.h"
+#include "incise/physics/elements/heml_lanes.h"
 
 namespace incise::physics {
 

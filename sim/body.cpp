@@ -9,7 +9,7 @@
 #include <span>
 #include <sstream>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/body_problems.h"
 #include "incise/sim/elastic_constants.h"
 #include "incise/sim/selection.h"

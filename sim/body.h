@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/sim/scenario.h"
 #include "incise/sim/source_mesh.h"
 #include "incise/sim/tool_build.h"

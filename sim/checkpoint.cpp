@@ -6,10 +6,10 @@
 #include <optional>
 #include <system_error>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/checked_file.h"
-#include "incise/io/input_file.h"
-#include "incise/io/number_text.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_text.h"
 #include "incise/sim/measured_quantities.h"
 #include "incise/topology/error.h"
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "incise/io/series.h"
-#include "incise/io/written_bytes.h"
+#include "incise/io/files/written_bytes.h"
+#include "incise/io/vtk/series.h"
 #include "incise/sim/simulation.h"
 #include "incise/topology/archive.h"
 
@@ -37,7 +37,7 @@ class SavedMoment {
     /// Between two steps. Cost: see Simulation::save.
     explicit SavedMoment(const Simulation& simulation);
 
-    /// Writes the checkpoint, which is whole or not there (io/checked_file.h), and tidies up.
+    /// Writes the checkpoint, which is whole or not there (io/files/checked_file.h), and tidies up.
     /// Everything that `written` speaks of must be on the disk. Throws OutputError.
     void write(const std::filesystem::path& folder, const Written& written,
                CheckpointKind kind) const;

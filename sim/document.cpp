@@ -9,8 +9,8 @@
 #include <fstream>
 #include <optional>
 
-#include "incise/io/mesh_reader.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/diagnostics.h"
 #include "incise/topology/error.h"
 

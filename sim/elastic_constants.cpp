@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/error.h"
 
 namespace incise::sim {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "incise/io/frame.h"
-#include "incise/physics/element_snapshot.h"
-#include "incise/physics/model.h"
+#include "incise/io/vtk/frame.h"
+#include "incise/physics/body/element_snapshot.h"
+#include "incise/physics/body/model.h"
 #include "incise/sim/scenario.h"
 
 namespace incise::sim {

@@ -10,13 +10,13 @@
 #include <set>
 #include <sstream>
 
-#include "incise/cutting/cut_plan.h"
 #include "incise/cutting/cutter.h"
-#include "incise/cutting/plane.h"
-#include "incise/cutting/separator.h"
-#include "incise/cutting/step_length.h"
-#include "incise/cutting/triangle_surface.h"
-#include "incise/cutting/undividable.h"
+#include "incise/cutting/exact/cut_plan.h"
+#include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
+#include "incise/cutting/tools/separator.h"
 #include "incise/topology/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_metrics.h"

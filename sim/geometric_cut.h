@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "incise/cutting/carver.h"
-#include "incise/cutting/splitter.h"
-#include "incise/cutting/tool.h"
+#include "incise/cutting/exact/splitter.h"
+#include "incise/cutting/tools/carver.h"
+#include "incise/cutting/tools/tool.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/surface_data.h"
 #include "incise/topology/types.h"

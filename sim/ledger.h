@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "incise/cutting/splitter.h"
-#include "incise/physics/model.h"
+#include "incise/cutting/exact/splitter.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/piece_count.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 
 namespace incise::sim {
 

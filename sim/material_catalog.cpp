@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/error.h"
 
 namespace incise::sim {

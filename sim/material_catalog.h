@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/physics/law.h"
+#include "incise/physics/laws/law.h"
 #include "incise/sim/limits.h"
 
 namespace incise::sim {

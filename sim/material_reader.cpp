@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/elastic_constants.h"
 #include "incise/sim/scenario_sections.h"
 #include "incise/sim/tissue_catalog.h"

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "incise/io/input_file.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/quantities.h"
 #include "incise/topology/error.h"
 

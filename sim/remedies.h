@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "incise/physics/motion_failure.h"
+#include "incise/physics/body/motion_failure.h"
 
 namespace incise::sim {
 

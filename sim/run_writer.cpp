@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/error.h"
 
 namespace incise::sim {

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "incise/io/line_file.h"
-#include "incise/io/output_folder.h"
-#include "incise/io/series.h"
+#include "incise/io/files/line_file.h"
+#include "incise/io/files/output_folder.h"
+#include "incise/io/vtk/series.h"
 #include "incise/sim/checkpoint.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/sim/measured_quantities.h"

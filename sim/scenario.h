@@ -13,10 +13,10 @@
 #include <variant>
 #include <vector>
 
-#include "incise/cutting/tool.h"
-#include "incise/io/frame.h"
-#include "incise/physics/material.h"
-#include "incise/physics/precision.h"
+#include "incise/cutting/tools/tool.h"
+#include "incise/io/vtk/frame.h"
+#include "incise/physics/elements/precision.h"
+#include "incise/physics/laws/material.h"
 #include "incise/sim/material_catalog.h"
 #include "incise/sim/selection.h"
 #include "incise/sim/time_key.h"

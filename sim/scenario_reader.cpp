@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "incise/io/number_format.h"
-#include "incise/io/series.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/vtk/series.h"
 #include "incise/sim/quantities.h"
 #include "incise/sim/scenario_sections.h"
 #include "incise/topology/error.h"

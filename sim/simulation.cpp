@@ -5,10 +5,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "incise/io/checked_file.h"
-#include "incise/io/input_file.h"
-#include "incise/io/number_format.h"
-#include "incise/physics/winding.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_format.h"
+#include "incise/physics/body/winding.h"
 #include "incise/sim/body.h"
 #include "incise/sim/remedies.h"
 #include "incise/sim/step_limit.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "incise/io/memory.h"
-#include "incise/io/mesh_reader.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/memory.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/body_problems.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"

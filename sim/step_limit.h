@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/sim/scenario.h"
 
 namespace incise::sim {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 
 namespace incise::sim {
 

@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 
 namespace incise::sim {
 

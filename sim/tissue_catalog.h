@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/physics/material.h"
+#include "incise/physics/laws/material.h"
 #include "incise/sim/material_catalog.h"
 
 namespace incise::sim {

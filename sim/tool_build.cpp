@@ -7,10 +7,10 @@
 #include <sstream>
 #include <utility>
 
-#include "incise/cutting/surface_check.h"
-#include "incise/cutting/swept_edge.h"
-#include "incise/cutting/undividable.h"
-#include "incise/io/surface_reader.h"
+#include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/surfaces/surface_check.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/topology/error.h"
 
 namespace incise::sim {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "incise/cutting/element_boxes.h"
-#include "incise/cutting/tool.h"
+#include "incise/cutting/tools/tool.h"
 #include "incise/sim/scenario.h"
 #include "incise/sim/tool_path.h"
 #include "incise/topology/mesh.h"

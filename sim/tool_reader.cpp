@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/scenario_sections.h"
 
 namespace incise::sim {

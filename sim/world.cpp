@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "incise/cutting/cutter.h"
-#include "incise/cutting/tool.h"
-#include "incise/physics/model.h"
+#include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/model.h"
 #include "incise/sim/ledger.h"
 #include "incise/topology/boundary_surface.h"
 #include "incise/topology/error.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "incise/io/checked_file.h"
-#include "incise/io/number_format.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/number_format.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_archive.h"

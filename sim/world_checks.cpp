@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "incise/io/number_format.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/error.h"
 
 namespace incise::sim {

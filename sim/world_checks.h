@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "incise/physics/loads.h"
-#include "incise/physics/supports.h"
+#include "incise/physics/body/loads.h"
+#include "incise/physics/body/supports.h"
 #include "incise/sim/world.h"
 
 namespace incise::sim {

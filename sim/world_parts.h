@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "incise/sim/numbering.h"
 #include "incise/sim/world.h"
 #include "incise/topology/archive.h"

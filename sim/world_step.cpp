@@ -4,8 +4,8 @@
 #include <sstream>
 #include <utility>
 
-#include "incise/cutting/step_length.h"
-#include "incise/cutting/undividable.h"
+#include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/exact/undividable.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 

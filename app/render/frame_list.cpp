@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "incise/io/number_text.h"
+#include "incise/io/files/number_text.h"
 #include "incise/topology/error.h"
 
 namespace incise::render {

@@ -14,8 +14,8 @@
 #include <string>
 #include <string_view>
 
-#include "incise/io/input_file.h"
-#include "incise/io/number_text.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_text.h"
 #include "incise/topology/error.h"
 
 namespace incise::render {

@@ -20,7 +20,7 @@
 #include "incise/app/render/frame_reader.h"
 #include "incise/app/render/options.h"
 #include "incise/app/render/scene.h"
-#include "incise/io/atomic_file.h"
+#include "incise/io/files/atomic_file.h"
 #include "incise/topology/error.h"
 
 namespace incise::render {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "incise/app/help_formatter.h"
-#include "incise/io/number_text.h"
+#include "incise/io/files/number_text.h"
 
 namespace incise::render {
 

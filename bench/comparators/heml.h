@@ -1,6 +1,6 @@
 // Hyper-elastic mass links over any scalar: as the paper prints the force of Saint Venant-Kirchhoff
 // tissue, with its matrices, and as the program computes it, link by link. For counting; the
-// program's own is physics/heml_kernel.h.
+// program's own is physics/elements/heml_kernel.h.
 // Source: HEML 2015, Table 3, (26), (B.2), (C.4), with the corrections of docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -9,7 +9,7 @@
 
 #include "bench/comparators/element_loop.h"
 #include "bench/comparators/link_traces.h"
-#include "incise/physics/heml_kernel.h"
+#include "incise/physics/elements/heml_kernel.h"
 
 namespace incise::bench {
 
@@ -72,7 +72,7 @@ struct PrintedHeml {
     }
 };
 
-/// Derivatives of an energy density by a = tr(2E), b = tr((2E)^2) and J; physics/law.h.
+/// Derivatives of an energy density by a = tr(2E), b = tr((2E)^2) and J; physics/laws/law.h.
 template <class Scalar>
 struct LinkResponse {
     Scalar w_a, w_b, w_J;

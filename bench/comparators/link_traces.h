@@ -4,7 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "incise/physics/heml_kernel.h"
+#include "incise/physics/elements/heml_kernel.h"
 
 namespace incise::bench {
 

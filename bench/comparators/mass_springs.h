@@ -8,7 +8,7 @@
 
 #include "bench/comparators/element_loop.h"
 #include "bench/comparators/heml.h"
-#include "incise/physics/mass_spring_kernel.h"
+#include "incise/physics/elements/mass_spring_kernel.h"
 
 namespace incise::bench {
 

@@ -8,7 +8,7 @@
 #include <cassert>
 
 #include "bench/comparators/element_loop.h"
-#include "incise/physics/law.h"
+#include "incise/physics/laws/law.h"
 
 namespace incise::bench {
 

@@ -11,7 +11,7 @@
 
 #include "bench/comparators/element_loop.h"
 #include "bench/comparators/tled.h"
-#include "incise/physics/law.h"
+#include "incise/physics/laws/law.h"
 
 namespace incise::bench {
 

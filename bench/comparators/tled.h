@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "bench/comparators/element_loop.h"
-#include "incise/physics/law.h"
+#include "incise/physics/laws/law.h"
 
 namespace incise::bench {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "in_folder.h"
-#include "incise/io/mesh_writer.h"
+#include "incise/io/mesh/mesh_writer.h"
 #include "incise/topology/box_mesh.h"
 
 namespace incise {

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <set>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/mesh_writer.h"
-#include "incise/io/series.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/mesh/mesh_writer.h"
+#include "incise/io/vtk/series.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 

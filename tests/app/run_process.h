@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "support/temporary_folder.h"
 
 namespace incise::test {

@@ -1,6 +1,6 @@
 // Where a blade stops inside a body, its cut ends at its edge.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/blade_end.h"
+#include "incise/cutting/exact/blade_end.h"
 
 #include <gtest/gtest.h>
 

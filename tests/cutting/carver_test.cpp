@@ -1,7 +1,7 @@
 // What a carver covers: shapes against dense sampling, moving tools and tissue against a crawl in
 // tiny steps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/carver.h"
+#include "incise/cutting/tools/carver.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::cutting {

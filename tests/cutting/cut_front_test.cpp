@@ -1,6 +1,6 @@
 // What a cut remembers of its front, and of where it has been.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/cut_front.h"
+#include "incise/cutting/exact/cut_front.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "incise/cutting/scars.h"
+#include "incise/cutting/exact/scars.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/swept_edge.h"
-#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
 
 namespace incise::cutting {
 

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "cut_balance.h"
-#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/validate.h"
 
 namespace incise::cutting {

@@ -12,9 +12,9 @@
 #include <ostream>
 
 #include "cut_balance.h"
-#include "incise/cutting/plane.h"
-#include "incise/cutting/swept_edge.h"
-#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "split_body.h"

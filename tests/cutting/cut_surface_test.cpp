@@ -1,7 +1,7 @@
 // Where surfaces pass through segments: places against plain geometry, signs against whole numbers,
 // and the promise that a closed path is crossed an even number of times.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/cut_surface.h"
+#include "incise/cutting/surfaces/cut_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <cmath>
 #include <limits>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/swept_edge.h"
-#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"

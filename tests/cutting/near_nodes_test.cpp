@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/near_nodes.h"
+#include "incise/cutting/exact/near_nodes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Blades that are in the body at the same time, on ways that cross.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/resting_blade.h"
+#include "incise/cutting/exact/resting_blade.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "incise/cutting/plane.h"
+#include "incise/cutting/surfaces/plane.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"

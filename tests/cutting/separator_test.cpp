@@ -1,6 +1,6 @@
 // What a blade opens in tissue that is still, against plain geometry.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/separator.h"
+#include "incise/cutting/tools/separator.h"
 
 #include <gtest/gtest.h>
 

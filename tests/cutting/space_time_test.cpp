@@ -1,7 +1,7 @@
 // Crossings of moving segments: the plain cases, and the promise that carries the cut: chains of
 // tissue and blade that belong together are counted together, in every degenerate position.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/space_time.h"
+#include "incise/cutting/surfaces/space_time.h"
 
 #include <gtest/gtest.h>
 

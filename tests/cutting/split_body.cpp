@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "incise/cutting/step_length.h"
-#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/validate.h"
 

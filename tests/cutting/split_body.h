@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "incise/cutting/splitter.h"
+#include "incise/cutting/exact/splitter.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/surface_data.h"

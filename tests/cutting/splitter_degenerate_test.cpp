@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/topology/box_mesh.h"
 #include "split_body.h"
 #include "support/mesh_families.h"

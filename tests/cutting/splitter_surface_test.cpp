@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/triangle_surface.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"

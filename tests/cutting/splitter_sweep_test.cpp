@@ -8,7 +8,7 @@
 #include <set>
 
 #include "blade_path.h"
-#include "incise/cutting/swept_edge.h"
+#include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_metrics.h"
 #include "split_body.h"

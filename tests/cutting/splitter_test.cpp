@@ -1,7 +1,7 @@
 // Splitting along planes in general position: against the volumes of plain geometry, and what an
 // edit has to say of itself.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/splitter.h"
+#include "incise/cutting/exact/splitter.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <limits>
 #include <set>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/step_length.h"
+#include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/surfaces/plane.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"

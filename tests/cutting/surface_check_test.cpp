@@ -1,6 +1,6 @@
 // Which surfaces are one sheet, and what is said of those that are not.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/surface_check.h"
+#include "incise/cutting/surfaces/surface_check.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "incise/cutting/cut_plan.h"
-#include "incise/cutting/separator.h"
+#include "incise/cutting/exact/cut_plan.h"
+#include "incise/cutting/tools/separator.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/validate.h"
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <fstream>
 
-#include "incise/io/label_image.h"
-#include "incise/io/label_mesh.h"
-#include "incise/io/surface_reader.h"
+#include "incise/io/image/label_image.h"
+#include "incise/io/image/label_mesh.h"
+#include "incise/io/surface/surface_reader.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/fuzz/written_file.h"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <string>
 
-#include "incise/io/abaqus_reader.h"
-#include "incise/io/gmsh_reader.h"
-#include "incise/io/legacy_vtk_reader.h"
-#include "incise/io/medit_reader.h"
-#include "incise/io/tetgen_reader.h"
-#include "incise/io/vtu_reader.h"
+#include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/gmsh_reader.h"
+#include "incise/io/mesh/medit_reader.h"
+#include "incise/io/mesh/tetgen_reader.h"
+#include "incise/io/vtk/legacy_vtk_reader.h"
+#include "incise/io/vtk/vtu_reader.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_repair.h"
 #include "tests/fuzz/findings.h"

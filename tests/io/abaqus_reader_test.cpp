@@ -1,6 +1,6 @@
 // What an Abaqus or CalculiX file means, and what is refused in one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/abaqus_reader.h"
+#include "incise/io/mesh/abaqus_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/base64.h"
+#include "incise/io/files/base64.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/checked_file.h"
+#include "incise/io/files/checked_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/output_folder.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/output_folder.h"
 #include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -10,10 +10,10 @@
 #include <csignal>
 #include <functional>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/checked_file.h"
-#include "incise/io/file_descriptor.h"
-#include "incise/io/line_file.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/file_descriptor.h"
+#include "incise/io/files/line_file.h"
 #include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 

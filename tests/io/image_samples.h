@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/io/label_image.h"
+#include "incise/io/image/label_image.h"
 #include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 

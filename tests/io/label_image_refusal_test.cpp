@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "incise/io/input_file.h"
-#include "incise/io/label_image.h"
-#include "incise/io/memory.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/memory.h"
+#include "incise/io/image/label_image.h"
 #include "tests/io/image_samples.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mutation.h"

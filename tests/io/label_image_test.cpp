@@ -1,6 +1,6 @@
 // What label images of each format mean.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/label_image.h"
+#include "incise/io/image/label_image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 #include <numbers>
 
-#include "incise/io/input_file.h"
+#include "incise/io/files/input_file.h"
 #include "tests/io/image_samples.h"
 #include "tests/io/reader_samples.h"
 

@@ -1,6 +1,6 @@
 // Hexahedra from label images: how many, where, and that they are one body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/label_mesh.h"
+#include "incise/io/image/label_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
-#include "incise/io/mesh_text.h"
-#include "incise/io/mesh_writer.h"
-#include "incise/io/surface_reader.h"
+#include "incise/io/mesh/mesh_text.h"
+#include "incise/io/mesh/mesh_writer.h"
+#include "incise/io/surface/surface_reader.h"
 #include "tests/io/reader_samples.h"
 #include "tests/io/surface_samples.h"
 #include "tests/support/temporary_folder.h"

@@ -1,6 +1,6 @@
 // What a MEDIT file means, and what is refused in one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/medit_reader.h"
+#include "incise/io/mesh/medit_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // What all formats share: every encoding gives the same mesh, and files that are none are refused.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh/mesh_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <random>
 
-#include "incise/io/mesh_writer.h"
-#include "incise/io/vtu_writer.h"
+#include "incise/io/mesh/mesh_writer.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"

@@ -1,6 +1,6 @@
 // Every format that is written keeps the mesh: points, cells, orientation, regions.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/mesh_writer.h"
+#include "incise/io/mesh/mesh_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 #include <array>
 #include <numbers>
 
-#include "incise/io/mesh_reader.h"
-#include "incise/io/mesh_text.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/mesh/mesh_text.h"
 #include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,11 +5,11 @@
 #include <random>
 #include <string>
 
-#include "incise/io/abaqus_reader.h"
-#include "incise/io/gmsh_reader.h"
-#include "incise/io/legacy_vtk_reader.h"
-#include "incise/io/medit_reader.h"
-#include "incise/io/vtu_reader.h"
+#include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/gmsh_reader.h"
+#include "incise/io/mesh/medit_reader.h"
+#include "incise/io/vtk/legacy_vtk_reader.h"
+#include "incise/io/vtk/vtu_reader.h"
 #include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mesh_consistency.h"

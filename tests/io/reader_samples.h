@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/io/mesh_reader.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::io {

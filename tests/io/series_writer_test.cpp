@@ -9,8 +9,8 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/series.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/vtk/series.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"

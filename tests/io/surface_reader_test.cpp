@@ -1,6 +1,6 @@
 // Surfaces: every format gives the same one; what is refused; damaged files.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/surface_reader.h"
+#include "incise/io/surface/surface_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "incise/io/number_text.h"
-#include "incise/io/obj_reader.h"
-#include "incise/io/off_reader.h"
-#include "incise/io/ply_reader.h"
-#include "incise/io/stl_reader.h"
+#include "incise/io/files/number_text.h"
+#include "incise/io/surface/obj_reader.h"
+#include "incise/io/surface/off_reader.h"
+#include "incise/io/surface/ply_reader.h"
+#include "incise/io/surface/stl_reader.h"
 #include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/io/surface_samples.h"

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "incise/io/number_text.h"
+#include "incise/io/files/number_text.h"
 
 namespace incise::io {
 

@@ -1,6 +1,6 @@
 // What a pair of TetGen files means, and what is refused in one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/tetgen_reader.h"
+#include "incise/io/mesh/tetgen_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // What is written as .vtu is what VTK reads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/vtu_writer.h"
+#include "incise/io/vtk/vtu_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Derivatives carried along against differences.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/dual.h"
+#include "incise/physics/laws/dual.h"
 
 #include <gtest/gtest.h>
 

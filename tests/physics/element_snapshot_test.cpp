@@ -1,6 +1,6 @@
 // What elements did at one moment, worked out while the body goes on.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/element_snapshot.h"
+#include "incise/physics/body/element_snapshot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Tangents of elements against differences of their forces.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/element_tangent.h"
+#include "incise/physics/elements/element_tangent.h"
 
 #include <gtest/gtest.h>
 
-#include "incise/physics/spectrum.h"
+#include "incise/physics/elements/spectrum.h"
 #include "tests/physics/test_materials.h"
 
 namespace incise::physics {

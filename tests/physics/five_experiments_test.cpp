@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/test_bodies.h"
 

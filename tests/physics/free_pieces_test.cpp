@@ -1,10 +1,10 @@
 // Which ways supports leave to a piece, however thin it is.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/free_pieces.h"
+#include "incise/physics/solve/free_pieces.h"
 
 #include <gtest/gtest.h>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/thin_tetrahedra.h"
 

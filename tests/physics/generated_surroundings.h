@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
 #include "support/properties.h"

@@ -1,6 +1,6 @@
 // The fast forces and energies against the reference, on each kind of processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/heml_lanes.h"
+#include "incise/physics/elements/heml_lanes.h"
 
 #include <gtest/gtest.h>
 

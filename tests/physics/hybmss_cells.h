@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/physics/hybmss_kernel.h"
+#include "incise/physics/elements/hybmss_kernel.h"
 #include "tests/physics/test_bodies.h"
 
 namespace incise::physics {

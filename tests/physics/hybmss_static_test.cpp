@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "incise/physics/spectrum.h"
+#include "incise/physics/elements/spectrum.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "tests/physics/hybmss_cells.h"

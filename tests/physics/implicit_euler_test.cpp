@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"

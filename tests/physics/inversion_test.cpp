@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/physics/winding.h"
+#include "incise/physics/body/winding.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"

@@ -1,7 +1,7 @@
 // The functions of lanes against those of the C library.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #define INCISE_PROCESSOR lanes_under_test
-#include "incise/physics/lanes.h"
+#include "incise/physics/simd/lanes.h"
 
 #include <gtest/gtest.h>
 

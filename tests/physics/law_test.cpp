@@ -1,6 +1,6 @@
 // Laws against their definitions: rest moduli, energies in F, the extension below J0.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/law.h"
+#include "incise/physics/laws/law.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/test_materials.h"
 

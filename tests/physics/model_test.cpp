@@ -1,6 +1,6 @@
 // A body at rest, its masses and totals, what it refuses, and how it fails.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "incise/physics/nodal_viscous_kernel.h"
-#include "incise/physics/viscous_kernel.h"
+#include "incise/physics/elements/nodal_viscous_kernel.h"
+#include "incise/physics/elements/viscous_kernel.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/viscous_work.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "incise/physics/processor.h"
+#include "incise/physics/elements/processor.h"
 
 namespace incise::physics {
 

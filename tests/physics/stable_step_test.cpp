@@ -1,12 +1,12 @@
 // The bound on the step against the true one, 2 / omega_max, from a dense eigensolution.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/stable_step.h"
+#include "incise/physics/elements/stable_step.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "incise/physics/spectrum.h"
+#include "incise/physics/elements/spectrum.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"
 #include "tests/physics/test_bodies.h"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "incise/physics/integrator.h"
+#include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "tests/physics/test_materials.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "incise/physics/heml_kernel.h"
-#include "incise/physics/mass_spring_kernel.h"
-#include "incise/physics/material.h"
+#include "incise/physics/elements/heml_kernel.h"
+#include "incise/physics/elements/mass_spring_kernel.h"
+#include "incise/physics/laws/material.h"
 #include "support/mesh_families.h"
 #include "support/reference_data.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "incise/physics/spectrum.h"
+#include "incise/physics/elements/spectrum.h"
 #include "tests/physics/test_materials.h"
 
 namespace incise::physics {

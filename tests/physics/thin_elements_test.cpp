@@ -7,8 +7,8 @@
 
 #include <Eigen/LU>
 
-#include "incise/physics/element_tangent.h"
-#include "incise/physics/model.h"
+#include "incise/physics/body/model.h"
+#include "incise/physics/elements/element_tangent.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/thin_tetrahedra.h"
 

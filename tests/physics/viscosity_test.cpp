@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "incise/physics/viscous_kernel.h"
+#include "incise/physics/elements/viscous_kernel.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/viscous_work.h"

@@ -1,6 +1,6 @@
 // The memory of viscous elements on lanes against the reference, on each kind of processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/viscous_lanes.h"
+#include "incise/physics/elements/viscous_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "incise/physics/viscous_kernel.h"
+#include "incise/physics/elements/viscous_kernel.h"
 #include "tests/physics/processors_at_hand.h"
 #include "tests/physics/test_bodies.h"
 

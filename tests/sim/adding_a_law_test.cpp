@@ -56,7 +56,7 @@ TEST(AddingALaw, ShowsCodeThatIsInTheFilesItNames) {
         const std::string text = support::read_text(root / example.file);
         EXPECT_NE(text.find(example.code), text.npos);
     }
-    EXPECT_EQ(files, (std::set<std::string>{"physics/law.h", "sim/material_catalog.cpp",
+    EXPECT_EQ(files, (std::set<std::string>{"physics/laws/law.h", "sim/material_catalog.cpp",
                                             "tests/physics/test_materials.h",
                                             "tests/physics/textbook_energies.h"}));
     EXPECT_GE(examples.size(), 6u);

@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "incise/io/mesh_reader.h"
-#include "incise/io/vtu_writer.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"

@@ -7,9 +7,9 @@
 #include <functional>
 #include <limits>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/checked_file.h"
-#include "incise/io/input_file.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/input_file.h"
 #include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "run_folder.h"

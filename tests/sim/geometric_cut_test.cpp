@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "incise/cutting/plane.h"
-#include "incise/cutting/tissue_motion.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/sim/tool_build.h"
 #include "incise/topology/error.h"
 #include "incise/topology/validate.h"

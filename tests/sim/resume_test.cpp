@@ -5,8 +5,8 @@
 
 #include <functional>
 
-#include "incise/io/atomic_file.h"
-#include "incise/io/vtu_writer.h"
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/error.h"

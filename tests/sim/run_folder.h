@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/io/mesh_writer.h"
+#include "incise/io/mesh/mesh_writer.h"
 #include "incise/sim/run_writer.h"
 #include "incise/sim/scenario_reader.h"
 #include "incise/sim/simulation.h"

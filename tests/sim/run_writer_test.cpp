@@ -10,8 +10,8 @@
 #include <set>
 #include <sstream>
 
-#include "incise/io/mesh_reader.h"
-#include "incise/io/vtu_writer.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/sim/quantities.h"
 #include "incise/topology/error.h"

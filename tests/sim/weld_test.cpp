@@ -2,7 +2,7 @@
 // does. SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "incise/io/vtu_writer.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/body.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/sim/selection.h"

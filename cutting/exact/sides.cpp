@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/exact/sides.h"
+
+#include <algorithm>
+#include <iterator>
+#include <queue>
+#include <unordered_set>
+
+namespace incise::cutting {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+
+Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
+             const PlaceOnCut& place_on_cut)
+    : mesh_(mesh), front_(front), place_on_cut_(place_on_cut) {
+    collect_faces(touched);
+    place_elements_on_cut();
+}
+
+std::vector<FaceId> Sides::parted_faces() const {
+    std::vector<FaceId> parted;
+    std::ranges::copy_if(faces_, std::back_inserter(parted),
+                         [&](FaceId f) { return is_parted(f); });
+    return parted;
+}
+
+/// Of the touched elements, and of those next to them that have no corner off the cut.
+void Sides::collect_faces(const std::vector<ElementId>& touched) {
+    std::vector<ElementId> pending = touched;
+    std::unordered_set<topology::ElementId> followed;
+    while (!pending.empty()) {
+        const ElementId e = pending.back();
+        pending.pop_back();
+        if (mesh_.kind(e) != CellKind::tetrahedron) continue;
+        for (int f = 0; f < 4; ++f) {
+            const FaceId face{e, f}, other = mesh_.neighbor(face);
+            if (!other.is_valid() || !is_on_cut(face)) continue;
+            faces_.push_back(std::min(face, other));
+            if (!far_corner(other.element).is_valid() && followed.insert(other.element).second)
+                pending.push_back(other.element);
+        }
+    }
+    std::sort(faces_.begin(), faces_.end());
+    faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+}
+
+void Sides::place_elements_on_cut() {
+    struct Bond {
+        double area;
+        FaceId placed;  // the side that is placed
+        bool operator<(const Bond& other) const {
+            return area != other.area ? area < other.area : other.placed < placed;
+        }
+    };
+    std::priority_queue<Bond> bonds;
+    const auto add = [&](FaceId from, FaceId to) {
+        if (is_placed(from.element) && !is_placed(to.element))
+            bonds.push({topology::rest_area(mesh_, from), from});
+    };
+    for (const FaceId face : faces_)
+        for (const ElementId e : {face.element, mesh_.neighbor(face).element})
+            if (!far_corner(e).is_valid())
+                if (const auto known = place(e)) places_.emplace(e, *known);
+    for (const FaceId face : faces_) {
+        add(face, mesh_.neighbor(face));
+        add(mesh_.neighbor(face), face);
+    }
+    while (!bonds.empty()) {
+        const FaceId from = bonds.top().placed;
+        bonds.pop();
+        const ElementId e = mesh_.neighbor(from).element;
+        if (is_placed(e)) continue;
+        const NodeId corner = mesh_.face_corner(from, 0);
+        places_.emplace(e, Place{corner, is_crossed_to(from.element, corner)});
+        for (int f = 0; f < 4; ++f)
+            if (const FaceId next = mesh_.neighbor({e, f}); next.is_valid()) add({e, f}, next);
+    }
+}
+
+bool Sides::is_on_cut(FaceId f) const {
+    for (int p = 0; p < mesh_.face_size(f); ++p)
+        if (!front_.is_on(mesh_.face_corner(f, p))) return false;
+    return true;
+}
+
+/// The corner that tells where the element is: one that is not on the cut; invalid if all are.
+NodeId Sides::far_corner(ElementId e) const {
+    for (const NodeId n : mesh_.corners(e))
+        if (!front_.is_on(n)) return n;
+    return {};
+}
+
+std::optional<CutFront::Place> Sides::place(ElementId e) const {
+    if (const NodeId far = far_corner(e); far.is_valid()) return Place{far};
+    if (const auto known = places_.find(e); known != places_.end()) return known->second;
+    if (mesh_.kind(e) != CellKind::tetrahedron) return std::nullopt;
+    if (place_on_cut_)
+        if (const std::optional<Place> place = place_on_cut_(e)) return place;
+    return front_.place_of(e, mesh_.corners(e).first<4>());
+}
+
+bool Sides::is_crossed_to(ElementId e, NodeId n) const {
+    const Place from = *place(e);
+    return from.is_crossed != (from.corner != n && front_.is_crossed(from.corner, n));
+}
+
+bool Sides::is_parted(FaceId f) const {
+    const ElementId here = f.element, there = mesh_.neighbor(f).element;
+    if (!is_placed(here) || !is_placed(there)) return false;
+    for (int p = 0; p < 3; ++p) {
+        const NodeId n = mesh_.face_corner(f, p);
+        if (is_crossed_to(here, n) == is_crossed_to(there, n)) return false;
+    }
+    return true;
+}
+
+}  // namespace incise::cutting

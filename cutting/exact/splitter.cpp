@@ -1,0 +1,651 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/exact/splitter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <queue>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "incise/cutting/exact/crossing_counts.h"
+#include "incise/cutting/exact/cut_border.h"
+#include "incise/cutting/exact/cut_end.h"
+#include "incise/cutting/exact/edge_list.h"
+#include "incise/cutting/exact/fitting_place.h"
+#include "incise/cutting/exact/folds.h"
+#include "incise/cutting/exact/near_nodes.h"
+#include "incise/cutting/exact/parting.h"
+#include "incise/cutting/exact/passages.h"
+#include "incise/cutting/exact/recognition.h"
+#include "incise/cutting/exact/undividable.h"
+#include "incise/topology/mesh_edit.h"
+
+namespace incise::cutting {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::FaceId;
+using topology::Mesh;
+using topology::MeshEdit;
+using topology::NodeId;
+
+namespace {
+
+/// Nearer to an end than this share of an edge, rounding would decide.
+constexpr double smallest_snap = 1e-7;
+
+/// Of the distance up to which nodes may count as on the surface, that up to which they always do.
+/// What lies between keeps the shape of elements (docs/cutting.md).
+constexpr double share_always_snapped = 1.0 / 3.0;
+
+/// Nearer than this share of an edge to an end that is on the surface, it is no other passage but a
+/// bend of the surface, or that the tissue's motion between two steps is taken as straight.
+constexpr double bend = 0.25;
+
+/// How often an edge is divided in one sweep: folds of a surface could go on for ever.
+constexpr int max_generation = 6;
+
+/// Of those through an edge, the one at which it is divided first: that to which the blade comes
+/// first, as in steps of which each has one of them; of those that it meets at once, the middle.
+const Passage& first_of(const Passages& passages) {
+    const auto is_earlier = [](const Passage& a, const Passage& b) { return a.time < b.time; };
+    const double time = std::min_element(passages.begin(), passages.end(), is_earlier)->time;
+    const auto is_first = [&](const Passage& p) { return p.time == time; };
+    auto skipped = std::count_if(passages.begin(), passages.end(), is_first) / 2;
+    return *std::find_if(passages.begin(), passages.end(),
+                         [&](const Passage& p) { return is_first(p) && skipped-- == 0; });
+}
+
+class Splitter {
+  public:
+    Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
+             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting,
+             const BladeEnd* blade_end = nullptr)
+        : mesh_(mesh),
+          tissue_(tissue),
+          surface_(surface),
+          front_(front),
+          scars_(scars),
+          resting_(resting),
+          options_(options),
+          snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
+          farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
+          num_old_nodes_(mesh.node_capacity()),
+          near_nodes_(mesh, {snap_, farthest_}) {
+        if (blade_end) end_.emplace(mesh, *blade_end, [&](NodeId n) { return point(n)[1]; });
+    }
+
+    Split run() {
+        const bool begins = front_.is_empty();
+        find_crossed_edges();
+        if (touched_.empty() && front_.waiting().empty()) {
+            leave_behind({});
+            return {};
+        }
+        if (begins) front_.set_number(scars_.take_rank());
+        edit_.emplace(mesh_);
+        while (!queue_.empty()) divide_next();
+        put_on_lying_nodes();
+        divide_at_end();
+        part();
+        Split result{edit_->commit(), report_};
+        front_.apply(mesh_, result.changes, true);
+        scars_.apply(mesh_, result.changes);
+        for (const auto& [e, cut] : crumbs_) scars_.add_crumb(e, cut);
+        leave_behind(result.changes);
+        return result;
+    }
+
+  private:
+    /// An edge to be divided, unless an end of it comes to count as on the surface.
+    struct Pending {
+        ElementId element;  // one of those that have the edge
+        Passages passages;
+    };
+    struct Turn {
+        double time, length;
+        Edge edge;
+        // As the blade comes to them, so that it does not matter into how many steps its way is
+        // taken; of those that it meets at once, the longest comes first, of equal ones the lowest.
+        bool operator<(const Turn& other) const {
+            if (time != other.time) return time > other.time;
+            return length != other.length ? length < other.length : other.edge < edge;
+        }
+    };
+
+    MovingPoint point(NodeId n) const {
+        if (n.index() < num_old_nodes_)
+            return {tissue_.before[n.index()], tissue_.after[n.index()]};
+        return new_points_[n.index() - num_old_nodes_];
+    }
+
+    void leave_behind(const topology::ChangeSet& changes) {
+        cutting::leave_behind(
+            mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
+            report_.elements_crossed > 0, front_);
+    }
+
+    /// Of a copy, where its source is.
+    Vec3 final_position(NodeId n, const topology::ChangeSet& changes) const {
+        if (n.index() >= num_old_nodes_ + new_points_.size()) {
+            const std::size_t row = n.index() - changes.node_capacity_before;
+            n = changes.nodes_added[row].sources[0].node;
+        }
+        return point(n)[1];
+    }
+
+    int generation(NodeId n) const {
+        return n.index() < num_old_nodes_ ? 0 : generations_[n.index() - num_old_nodes_];
+    }
+
+    Vec3 rest_edge(NodeId from, NodeId to) const {
+        return mesh_.rest_position(to) - mesh_.rest_position(from);
+    }
+    double rest_length(const Edge& edge) const { return rest_edge(edge.a, edge.b).norm(); }
+
+    void find_crossed_edges();
+    Passages passages(const Edge& edge, ElementId element) const;
+    Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
+    void receive(const Edge& edge, ElementId element, Passages passages);
+    Scar scar_at(NodeId n, const Passage& passage) const;
+    bool is_at(const EdgeEnd& end, const Passage& passage);
+    bool passes_by(NodeId n, NodeId other, const Passage& passage) const;
+    void settle(const Edge& edge, const Passages& passages);
+    bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
+    void divide_next();
+    double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
+    NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
+    struct Division {
+        NodeId middle;
+        std::vector<NodeId> ring;  // of the other nodes of the elements round the edge
+        const std::vector<MeshEdit::DividedElement>& elements;
+    };
+    Division bisect(const Edge& edge, ElementId element, double place);
+    void place_halves(const Edge& edge, const Division& division, double reach);
+    void divide_at_end();
+    NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
+    void part();
+    std::optional<CutFront::Place> place_at_fold(ElementId e) const;
+    void open(const CutFront& front, const Parting& parting);
+    double time_of_parting(FaceId f) const;
+    std::array<MovingPoint, 3> points(FaceId f) const {
+        return {point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
+                point(mesh_.face_corner(f, 2))};
+    }
+    void put_on_lying_nodes();
+    void put_on(NodeId n, bool is_exact, double reach);
+    void snap_to(NodeId n, double reach);
+
+    Mesh& mesh_;
+    const TissueMotion& tissue_;
+    const CutSurface& surface_;
+    CutFront& front_;
+    Scars& scars_;
+    const std::span<RestingBlade> resting_;
+    const SplitOptions& options_;
+    const double snap_;      // share of an edge: nearer crossings count as at its end
+    const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
+    const std::size_t num_old_nodes_;
+    NearNodes near_nodes_;
+    std::optional<MeshEdit> edit_;  // from when there is something to do
+    std::optional<CutEnd> end_;     // where the surface goes on ahead of the cut
+
+    std::vector<MovingPoint> new_points_;
+    double now_ = 0.0;  // the time of what is being done
+    // When nodes came to the cut, in this step.
+    std::unordered_map<topology::NodeId, double> came_on_;
+    std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
+    std::unordered_map<Edge, Pending, EdgeHash> pending_;
+    std::priority_queue<Turn> queue_;
+    NodesOnSurface lying_;            // but for rounding
+    std::vector<ElementId> touched_;  // crossed, made of such, or with a face on the surface
+    std::vector<ElementId> ring_;     // scratch
+    std::vector<std::pair<ElementId, std::uint64_t>> crumbs_;  // and the number of the cut
+    SplitReport report_;
+};
+
+/// Normals go the other way than points: n . F dX = (F^T n) . dX, F the deformation gradient.
+Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
+    const auto corners = mesh_.corners(e);
+    Eigen::Matrix3d rest, current;
+    for (int k = 0; k < 3; ++k) {
+        const NodeId n = corners[static_cast<std::size_t>(k) + 1];
+        rest.col(k) = mesh_.rest_position(n) - mesh_.rest_position(corners[0]);
+        current.col(k) = point(n)[1] - point(corners[0])[1];
+    }
+    return rest.transpose().inverse() * (current.transpose() * normal);
+}
+
+Passages Splitter::passages(const Edge& edge, ElementId element) const {
+    const CrossableEdge crossable{point(edge.a), point(edge.b), rest_edge(edge.a, edge.b)};
+    const bool is_tetrahedron = mesh_.kind(element) == CellKind::tetrahedron;
+    Passages passages;
+    for (const Crossing& crossing : crossings_of(surface_, crossable, snap_)) {
+        const Vec3 normal =
+            is_tetrahedron ? normal_at_rest(element, crossing.normal) : Vec3(Vec3::Zero());
+        passages.push_back(passage_at(crossing, surface_, crossable, normal));
+    }
+    return passages;
+}
+
+void Splitter::find_crossed_edges() {
+    EdgeList edges;
+    std::vector<std::pair<ElementId, std::size_t>> edges_of_elements;
+    const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
+    tissue_.for_each_near(may_meet, [&](ElementId e) {
+        const auto corners = mesh_.corners(e);
+        std::array<MovingPoint, topology::max_corners> points;
+        std::ranges::transform(corners, points.begin(), [&](NodeId n) { return point(n); });
+        if (!surface_.may_meet_hull(std::span(points).first(corners.size()))) return;
+        const topology::CellTraits& t = traits(mesh_.kind(e));
+        for (int k = 0; k < t.num_edges; ++k) {
+            const auto [p, q] = t.edges[static_cast<std::size_t>(k)];
+            const Edge edge = edge_between(corners[static_cast<std::size_t>(p)],
+                                           corners[static_cast<std::size_t>(q)]);
+            edges_of_elements.emplace_back(e, edges.add(edge, e));
+        }
+    });
+
+    struct Found {
+        EdgeList::Entry entry;
+        Passages passages;
+    };
+    std::vector<Found> found;
+    std::vector<bool> is_crossed(edges.entries().size());
+    for (std::size_t i = 0; i < edges.entries().size(); ++i) {
+        const EdgeList::Entry& entry = edges.entries()[i];
+        auto passed = passages(entry.edge, entry.element);
+        if (passed.empty()) continue;
+        is_crossed[i] = true;
+        found.push_back({entry, std::move(passed)});
+    }
+    for (const auto& [e, edge] : edges_of_elements)
+        if (is_crossed[edge] && (touched_.empty() || touched_.back() != e)) touched_.push_back(e);
+    report_.elements_crossed = touched_.size();
+    for (const ElementId e : touched_)
+        if (mesh_.kind(e) != CellKind::tetrahedron) {
+            if (end_) {  // the blade has not come to it, and its cut ends as the front is
+                touched_.clear();
+                report_ = {};
+                return;
+            }
+            refuse_to_divide(mesh_, e);
+        }
+
+    lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);
+    ElementId last;
+    for (const auto& [e, edge] : edges_of_elements) {
+        if (lying_.is_empty()) break;
+        if (e != last && lying_.have_face_of(mesh_, e)) touched_.push_back(e);
+        last = e;
+    }
+    if (!found.empty())
+        for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
+            came_on_[n] = time;
+    for (const Found& f : found)
+        if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
+    for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));
+}
+
+/// Opens what lies on the cut, and on those of the blades that are in the body besides.
+void Splitter::part() {
+    std::ranges::copy_if(front_.waiting(), std::back_inserter(touched_),
+                         [&](ElementId e) { return mesh_.is_alive(e); });
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    const auto parting_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut,
+                                const std::function<bool(FaceId)>& is_reached, bool snaps,
+                                const Course& course) {
+        return parting(mesh_, front, scars_, touched_, place_on_cut, is_reached,
+                       snaps ? std::optional(course) : std::nullopt);
+    };
+    const PlaceOnCut place_at_fold = [&](ElementId e) { return this->place_at_fold(e); };
+    const auto is_behind_end = [&](FaceId f) { return !end_ || end_->is_behind(f); };
+    // A surface at rest does not go on, nor does a blade at its end: all is decided at once.
+    Parting own = parting_of(
+        front_, surface_.has_folds() ? place_at_fold : PlaceOnCut(), is_behind_end,
+        options_.snap > 0.0,
+        {[&](FaceId f) { return time_of_parting(f); },
+         [&](FaceId f) { return !end_ && surface_.ends_inside(points(f)).value_or(false); }});
+    std::vector<Parting> others;
+    for (const RestingBlade& blade : resting_)
+        others.push_back(
+            parting_of(blade.front, {}, {}, blade.snaps,
+                       {[](FaceId) { return 0.0; },
+                        [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
+    open(front_, own);
+    front_.set_waiting(std::move(own.waiting));
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        CutFront& front = resting_[i].front;
+        open(front, others[i]);
+        std::ranges::copy(front.waiting(), std::back_inserter(others[i].waiting));
+        front.set_waiting(std::move(others[i].waiting));
+    }
+}
+
+/// By its middle. Corners that the edit has made do not tell: rounding has moved them off their
+/// edges, and crossings are counted as if it had not.
+std::optional<CutFront::Place> Splitter::place_at_fold(ElementId e) const {
+    std::array<MovingPoint, 4> points;
+    NodeId old;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const NodeId n = mesh_.corners(e)[k];
+        points[k] = point(n);
+        if (n.index() < num_old_nodes_) old = n;
+    }
+    if (!old.is_valid()) return std::nullopt;
+    return CutFront::Place{old, is_crossed_from_middle(surface_, points, point(old))};
+}
+
+void Splitter::open(const CutFront& front, const Parting& parting) {
+    for (const FaceId f : parting.faces) {
+        if (!mesh_.neighbor(f).is_valid()) continue;  // it is on another cut, too
+        report_.cut_area += topology::rest_area(mesh_, f);
+        ++report_.faces_opened;
+        edit_->open(f);
+    }
+    for (const ElementId e : parting.crumbs) crumbs_.emplace_back(e, front.number());
+}
+
+/// When the face came to have its three nodes on the cut and its elements on different sides of
+/// it; before the step, if a look at them does not tell.
+double Splitter::time_of_parting(FaceId f) const {
+    double last = -1.0;
+    for (int p = 0; p < 3; ++p)
+        if (const auto place = came_on_.find(mesh_.face_corner(f, p)); place != came_on_.end())
+            last = std::max(last, place->second);
+    std::array<NodeId, 3> corners;
+    for (int p = 0; p < 3; ++p) corners[static_cast<std::size_t>(p)] = mesh_.face_corner(f, p);
+    for (const ElementId e : {f.element, mesh_.neighbor(f).element})
+        for (const NodeId apex : mesh_.corners(e)) {
+            if (std::ranges::find(corners, apex) != corners.end()) continue;
+            for (const NodeId n : corners)
+                for (const Passage& passage : passages(edge_between(apex, n), e))
+                    last = std::max(last, passage.time);
+        }
+    return last;
+}
+
+/// When all is divided: if they were on the cut before, a bend of the surface or another sheet near
+/// them would count as passing by them.
+void Splitter::put_on_lying_nodes() {
+    for (const auto& [n, normal, reach] : lying_) {
+        if (front_.is_on(n)) continue;
+        snap_to(n, reach);
+        const Vec3 x = point(n)[1];
+        scars_.add(n, {normal, Vec3::Zero(), false, front_.rank(n), surface_.identity(), x});
+    }
+}
+
+void Splitter::put_on(NodeId n, bool is_exact, double reach) {
+    if (!front_.is_on(n)) came_on_[n] = now_;
+    front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : scars_.take_rank());
+}
+
+void Splitter::snap_to(NodeId n, double reach) {
+    if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
+    put_on(n, false, reach);
+}
+
+Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
+    const Vec3 x = point(n)[1];
+    const bool is_exact = front_.is_on(n) && !front_.is_near(n);
+    return {passage.normal, passage.point - x, is_exact, front_.rank(n), surface_.identity(), x};
+}
+
+/// Whether a passage through an edge counts as at the end.
+bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) {
+    if (near_nodes_.has(end, passage.normal_at_rest)) return true;
+    const double size = (point(end.node)[1] - passage.point).norm();
+    return scars_.has(end.node, scar_at(end.node, passage), size);
+}
+
+/// Whether the passage through the edge to `other` is no more than where the surface passes by a
+/// node that is near it.
+bool Splitter::passes_by(NodeId n, NodeId other, const Passage& passage) const {
+    if (!front_.is_near(n)) return false;
+    if (!surface_.has_folds()) return true;
+    const double length = (point(other)[1] - point(n)[1]).norm();
+    return is_same_sheet(scars_.of(n), scar_at(n, passage), length);
+}
+
+// Of a node near the surface, the nearest crossing of any edge counts as at the node.
+bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& passages) {
+    auto begin = passages.begin(), end = passages.end();
+    const auto drop_bends = [&] {
+        while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
+        while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
+    };
+    const auto counts_as_on = [&](NodeId n) { return front_.is_on(n) || lying_.contains(n); };
+    const auto are_both_on = [&] { return counts_as_on(edge.a) && counts_as_on(edge.b); };
+    if (begin != end && passes_by(edge.a, edge.b, *begin)) ++begin;
+    if (begin != end && passes_by(edge.b, edge.a, *(end - 1))) --end;
+    drop_bends();
+    if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
+    const double length = rest_length(edge);
+    const auto is_near_a = [&](const Passage& p) {
+        return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
+    };
+    const auto is_near_b = [&](const Passage& p) {
+        return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
+    };
+    // At both of them: at the nearer one.
+    const auto is_at_a = [&](const Passage& p) {
+        return is_near_a(p) && (p.from_a <= p.from_b || !is_near_b(p));
+    };
+    const auto is_at_b = [&](const Passage& p) {
+        return is_near_b(p) && (p.from_b < p.from_a || !is_near_a(p));
+    };
+    const auto bring = [&](NodeId n, const Passage& passage) {
+        if (front_.is_on(n)) return;
+        snap_to(n, length);
+        scars_.add(n, scar_at(n, passage));
+    };
+    for (; begin != end && is_at_a(*begin); ++begin) bring(edge.a, *begin);
+    for (; begin != end && is_at_b(*(end - 1)); --end) bring(edge.b, *(end - 1));
+    drop_bends();
+    if (begin == end || are_both_on()) return false;
+    passages = Passages(begin, end);
+    return true;
+}
+
+void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
+    queue_.push({first_of(passages).time, rest_length(edge), edge});
+    pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
+}
+
+/// The edge is not divided: what passes through it counts as at its ends.
+void Splitter::settle(const Edge& edge, const Passages& passages) {
+    for (const Passage& passage : passages) {
+        const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
+        if (is_at_a && (!is_at_b || passage.from_a <= passage.from_b))
+            scars_.add(edge.a, scar_at(edge.a, passage));
+        if (is_at_b && (!is_at_a || passage.from_b <= passage.from_a))
+            scars_.add(edge.b, scar_at(edge.b, passage));
+    }
+}
+
+void Splitter::divide_next() {
+    const auto [time, length, edge] = queue_.top();
+    queue_.pop();
+    now_ = time;
+    const auto place = pending_.find(edge);
+    const ElementId element = place->second.element;
+    Passages due = std::move(place->second.passages), later;
+    pending_.erase(place);
+    // Of later ones it is decided when the blade is there, as if they were in another step.
+    const auto is_later = [&](const Passage& passage) { return passage.time > now_ + at_once; };
+    std::ranges::copy_if(due, std::back_inserter(later), is_later);
+    if (!later.empty()) std::erase_if(due, is_later);
+    if (Passages left = due; is_to_be_divided(edge, element, left)) {
+        const Passage& passage = first_of(left);
+        const double t = place_to_divide(edge, element, passage);
+        if (t > 0.0) {
+            const NodeId middle = divide(edge, element, t, passage);
+            scars_.add(middle, scar_at(middle, passage));
+            return;
+        }
+        const NodeId end = passage.from_a < passage.from_b ? edge.a : edge.b;
+        snap_to(end, rest_length(edge));
+        scars_.add(end, scar_at(end, passage));  // beside a fold, even of a node made on the cut
+    }
+    settle(edge, due);
+    if (!later.empty()) receive(edge, element, std::move(later));
+}
+
+/// Where to divide the edge; negative if the nearer end is to count as on the surface.
+double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
+    if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
+    if (options_.uncut.step_length.empty()) return passage.place;
+    ring_.clear();
+    topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
+    return fitting_place(mesh_, {edge.a, edge.b, ring_}, passage,
+                         {options_.uncut, least_step_share(options_.snap), farthest_});
+}
+
+Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double t) {
+    const MovingPoint from = point(edge.a), to = point(edge.b);
+    const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
+    const NodeId middle = halves.node;
+    generations_.push_back(1 + std::max(generation(edge.a), generation(edge.b)));
+    ++report_.edges_divided;
+    new_points_.push_back({(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]});
+
+    std::vector<NodeId> ring;
+    for (const auto& [kept, added] : halves.elements) {
+        touched_.push_back(kept);
+        touched_.push_back(added);
+        for (const NodeId n : mesh_.corners(added)) {
+            if (n == middle || n == edge.b) continue;
+            ring.push_back(n);
+            // Edges that end where the added half begins have gone over to it.
+            const auto waiting = pending_.find(edge_between(edge.b, n));
+            if (waiting != pending_.end()) waiting->second.element = added;
+        }
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
+    scars_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
+    return {middle, std::move(ring), halves.elements};
+}
+
+/// On this cut and on those of the other blades, once its crossings of the new edges are counted.
+void Splitter::place_halves(const Edge& edge, const Division& division, double reach) {
+    const auto& [middle, ring, elements] = division;
+    front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
+    for (const RestingBlade& blade : resting_) {
+        place_for_resting(blade, edge, middle, ring, reach, scars_,
+                          [&](NodeId n) { return point(n); });
+        blade.front.place_halves(mesh_, edge.a, edge.b, middle, elements);
+    }
+}
+
+/// Returns the new node.
+NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Passage& passage) {
+    const double reach = rest_length(edge);
+    const Division division = bisect(edge, element, t);
+    const auto& [middle, ring, elements] = division;
+    put_on(middle, t == passage.place, reach);
+
+    const auto holder = [&](NodeId other) {
+        ElementId found;
+        for (const auto& [kept, added] : division.elements)
+            for (const ElementId e : {kept, added})
+                if (mesh_.corner_of(e, other) >= 0) found = e;
+        return found;
+    };
+    const auto ask = [&](NodeId other) {
+        return passages(edge_between(other, middle), holder(other));
+    };
+    std::vector<Passages> to_ring;
+    for (const NodeId n : ring) to_ring.push_back(ask(n));
+    Passages to_a = ask(edge.a), to_b = ask(edge.b);
+    const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
+        return surface_.ends_inside({point(p), point(q), point(r)});
+    };
+    const auto place = [&](NodeId a, NodeId b, const Passages& towards_b) {
+        place_on_side(front_, a, b, middle, ring, has_border, [&](std::size_t i) {
+            return (to_ring[i].size() + towards_b.size()) % 2 == 1;
+        });
+    };
+    if (t < passage.place)
+        place(edge.b, edge.a, to_a);
+    else
+        place(edge.a, edge.b, to_b);
+    place_halves(edge, division, reach);
+    // What the blade did before, it did to the edge that was there then: in smaller steps these
+    // would not be asked for it.
+    const auto take = [&](NodeId other, Passages&& passed) {
+        std::erase_if(passed, [&](const Passage& p) { return p.time < passage.time; });
+        if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
+    };
+    take(edge.a, std::move(to_a));
+    take(edge.b, std::move(to_b));
+    for (std::size_t i = 0; i < ring.size(); ++i) take(ring[i], std::move(to_ring[i]));
+    return middle;
+}
+
+/// The faces on the cut, where they run on ahead of the edge at which it ends.
+void Splitter::divide_at_end() {
+    if (!end_) return;
+    now_ = 1.0;
+    const PlaceOnCut unknown;
+    const auto faces = Sides(mesh_, front_, touched_, unknown).parted_faces();
+    for (const auto& [edge, element, passage] : end_->crossed_edges(faces, snap_, farthest_))
+        receive(edge, element, {passage});
+    while (!queue_.empty()) {
+        const Edge edge = queue_.top().edge;
+        queue_.pop();
+        const auto [element, passages] = std::move(pending_.extract(edge).mapped());
+        if (end_->is_at(edge.a) || end_->is_at(edge.b)) continue;
+        const Passage& passage = passages.front();
+        const double t = place_to_divide(edge, element, passage);
+        if (t > 0.0)
+            end_->put_at(divide_on_cut(edge, element, t));
+        else
+            end_->put_at(passage.from_a < passage.from_b ? edge.a : edge.b);
+    }
+}
+
+/// Both ends are on the cut: so is the new node, on the side of one of them.
+NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
+    const double reach = rest_length(edge);
+    const Division division = bisect(edge, element, t);
+    const auto& [middle, ring, elements] = division;
+    put_on(middle, !front_.is_near(edge.a) && !front_.is_near(edge.b), reach);
+    place_on_side(
+        front_, edge.a, edge.b, middle, ring,
+        [](NodeId, NodeId, NodeId) { return std::optional(false); },
+        [](std::size_t) { return false; });
+    place_halves(edge, division, reach);
+    return middle;
+}
+
+}  // namespace
+
+double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
+
+Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
+            const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
+    return Splitter(mesh, tissue, surface, front, options, scars, resting).run();
+}
+
+Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
+             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
+    if (front.is_empty()) return {};
+    const BladeEnd end =
+        away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
+    Split result = Splitter(mesh, tissue, end.continuation(way_out(tissue, end)), front, options,
+                            scars, resting, &end)
+                       .run();
+    front = {};
+    return result;
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/exact/undividable.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "incise/cutting/exact/edge_list.h"
+
+namespace incise::cutting {
+
+using topology::CellKind;
+using topology::ElementId;
+using topology::Mesh;
+using topology::NodeId;
+
+void refuse_to_divide(const Mesh& mesh, ElementId e) {
+    throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
+                             topology::traits(mesh.kind(e)).name +
+                             ", and only tetrahedra can be split");
+}
+
+namespace {
+
+/// An element that is no tetrahedron, at rest.
+class RestingElement {
+  public:
+    RestingElement(const Mesh& mesh, ElementId e)
+        : traits_(topology::traits(mesh.kind(e))), corners_(mesh.corners(e)) {
+        for (std::size_t k = 0; k < corners_.size(); ++k)
+            points_[k] = mesh.rest_position(corners_[k]);
+        outwards_.fill(Vec3::Zero());
+        for (int k = 0; k < traits_.num_edges; ++k) {
+            const auto [p, q] = ends_of_edge(k);
+            const Vec3 edge = points_[q] - points_[p];
+            const double length = edge.norm();
+            mean_edge_ += length / traits_.num_edges;
+            if (length == 0.0) continue;
+            outwards_[p] -= edge / length;
+            outwards_[q] += edge / length;
+        }
+    }
+
+    double mean_edge() const { return mean_edge_; }
+
+    /// Whether the surface passes through an edge of the element, whose faces have been moved
+    /// outwards by `distance`, m: exactly so if its angles are right ones.
+    bool is_crossed_by(const CutSurface& surface, double distance) const {
+        std::array<MovingPoint, topology::max_corners> points;
+        Box box;
+        for (std::size_t k = 0; k < corners_.size(); ++k) {
+            const Vec3 x = points_[k] + distance * outwards_[k];
+            points[k] = {x, x};
+            box.extend(x);
+        }
+        if (!surface.may_meet(box) ||
+            !surface.may_meet_hull(std::span(points).first(corners_.size())))
+            return false;
+        std::vector<Crossing> crossings;
+        for (int k = 0; k < traits_.num_edges; ++k) {
+            const auto [p, q] = ends_of_edge(k);
+            // In the direction in which the cut asks, so that ties are decided as there.
+            const bool is_forward = corners_[p] < corners_[q];
+            surface.append_crossings(points[is_forward ? p : q], points[is_forward ? q : p],
+                                     crossings);
+            if (!crossings.empty()) return true;
+        }
+        return false;
+    }
+
+  private:
+    std::pair<std::size_t, std::size_t> ends_of_edge(int k) const {
+        const auto [p, q] = traits_.edges[static_cast<std::size_t>(k)];
+        return {static_cast<std::size_t>(p), static_cast<std::size_t>(q)};
+    }
+
+    const topology::CellTraits& traits_;
+    std::span<const NodeId> corners_;
+    std::array<Vec3, topology::max_corners> points_;
+    std::array<Vec3, topology::max_corners> outwards_;  // of the corners
+    double mean_edge_ = 0.0;
+};
+
+/// How far the faces of the element must be moved outwards for the surface to cross it, m.
+/// @pre  at `limit` it does, at 0 it does not
+double distance_to(const RestingElement& element, const CutSurface& surface, double limit) {
+    double low = 0.0, high = limit;
+    constexpr int num_halvings = 20;  // to a millionth of the limit
+    for (int i = 0; i < num_halvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        (element.is_crossed_by(surface, middle) ? high : low) = middle;
+    }
+    return low;
+}
+
+}  // namespace
+
+std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& surface) {
+    for (const ElementId e : mesh.elements())
+        if (mesh.kind(e) != CellKind::tetrahedron &&
+            RestingElement(mesh, e).is_crossed_by(surface, 0.0))
+            return e;
+    return std::nullopt;
+}
+
+void add_near_misses(const Mesh& mesh, const CutSurface& surface, double margin,
+                     NearMisses& found) {
+    for (const ElementId e : mesh.elements()) {
+        if (mesh.kind(e) == CellKind::tetrahedron) continue;
+        const RestingElement element(mesh, e);
+        const double limit = margin * element.mean_edge();
+        if (!element.is_crossed_by(surface, limit)) continue;
+        found.elements.insert(e);
+        // Those that are as near but for rounding need no exact distance.
+        const double nearer = std::min(limit, 0.999 * found.distance);
+        if (nearer < limit && (nearer == 0.0 || !element.is_crossed_by(surface, nearer))) continue;
+        found.distance = distance_to(element, surface, nearer);
+        found.nearest = e;
+    }
+}
+
+}  // namespace incise::cutting

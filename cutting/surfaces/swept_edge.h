@@ -1,0 +1,36 @@
+// What a blade's edge sweeps in one step.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "incise/cutting/surfaces/cut_surface.h"
+
+namespace incise::cutting {
+
+/// A polyline whose points move straight from `before` to `after` (m).
+class SweptEdge final : public CutSurface {
+  public:
+    /// The two have the same number of points, at least two.
+    SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after);
+
+    bool may_meet(const Box& box) const override;
+    bool may_meet_hull(std::span<const MovingPoint> points) const override;
+    void append_crossings(const MovingPoint& a, const MovingPoint& b,
+                          std::vector<Crossing>& crossings) const override;
+    std::optional<bool> ends_inside(const std::array<MovingPoint, 3>& triangle) const override;
+    bool ends_near(const Vec3& x, double reach) const override;
+
+  private:
+    /// What a segment sweeps lies in its box and between two planes across the normal.
+    struct Bounds {
+        Box box;
+        Vec3 normal;
+        double low, high;
+    };
+
+    std::vector<MovingSegment> segments_;
+    std::vector<Bounds> bounds_;  // of the segments
+};
+
+}  // namespace incise::cutting

@@ -1,0 +1,38 @@
+// A cut along a triangulated surface, open or closed.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "incise/cutting/surfaces/cut_surface.h"
+#include "incise/topology/surface_data.h"
+
+namespace incise::cutting {
+
+/// Triangles that share an edge share its points, so that nothing slips through between them; a
+/// closed surface frees its inside. Triangles without area cut nothing.
+class TriangleSurface final : public CutSurface {
+  public:
+    /// Cost: O(n log n).
+    explicit TriangleSurface(const topology::SurfaceData& surface);
+    ~TriangleSurface() override;
+
+    bool may_meet(const Box& box) const override;
+    void append_crossings(const MovingPoint& a, const MovingPoint& b,
+                          std::vector<Crossing>& crossings) const override;
+
+    bool has_folds() const override { return true; }
+    std::optional<Vec3> normal_near(const Vec3& x, double distance) const override;
+    /// Of its triangles.
+    SurfaceIdentity identity() const override { return identity_; }
+
+    /// Infinite without triangles.
+    double distance(const Vec3& x) const override;
+
+  private:
+    struct Tree;
+    std::unique_ptr<Tree> tree_;
+    SurfaceIdentity identity_ = no_identity;
+};
+
+}  // namespace incise::cutting

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/tools/tool.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
+
+namespace incise::cutting {
+
+std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape) {
+    if (const auto* plane = std::get_if<PlaneCut>(&shape))
+        return std::make_shared<Plane>(plane->point, plane->normal);
+    if (const auto* cut = std::get_if<SurfaceCut>(&shape))
+        return std::make_shared<TriangleSurface>(cut->surface);
+    return nullptr;
+}
+
+void place_edge(const Blade& blade, const Pose& pose, std::vector<Vec3>& edge) {
+    edge.resize(blade.edge.size());
+    std::ranges::transform(blade.edge, edge.begin(),
+                           [&](const Vec3& x) { return pose.to_world(x); });
+}
+
+}  // namespace incise::cutting

@@ -1,0 +1,185 @@
+// Reading of volume meshes from files. A further format is one more file and one more row here.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/io/mesh/mesh_reader.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_text.h"
+#include "incise/io/files/scanner.h"
+#include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/gmsh_reader.h"
+#include "incise/io/mesh/medit_reader.h"
+#include "incise/io/mesh/mesh_text.h"
+#include "incise/io/mesh/tetgen_reader.h"
+#include "incise/io/vtk/frame_index.h"
+#include "incise/io/vtk/legacy_vtk_reader.h"
+#include "incise/io/vtk/vtu_reader.h"
+#include "incise/topology/error.h"
+#include "incise/topology/mesh_repair.h"
+
+namespace incise::io {
+
+namespace {
+
+struct ReadFormat {
+    const char* name;
+    const char* suffix;
+    std::string_view magic;  ///< how its text begins, in lower case; empty: told by the suffix only
+    MeshFile (*read)(const InputFile& file, const ReadOptions& options);
+};
+
+// clang-format off
+constexpr ReadFormat read_formats[] = {
+    {"VTU", ".vtu", "<", read_vtu},
+    {"legacy VTK", ".vtk", "# vtk datafile", read_legacy_vtk},
+    {"Gmsh", ".msh", "$", read_gmsh},
+    {"MEDIT", ".mesh", "meshversionformatted", read_medit},
+    {"TetGen", ".node", "", read_tetgen},
+    {"TetGen", ".ele", "", read_tetgen},
+    {"Abaqus", ".inp", "*", read_abaqus},
+};
+// clang-format on
+
+/// Meshes of other programs that are known by how their text begins, in lower case, with one blank
+/// where there are several.
+struct ForeignFormat {
+    const char* name;
+    std::string_view magic;
+};
+constexpr ForeignFormat foreign_formats[] = {
+    {"a mesh of ANSYS Fluent", "("},
+    {"an archive of ANSYS Mechanical", "/com"},
+    {"an archive of ANSYS Mechanical", "/prep7"},
+    {"a mesh of LS-DYNA", "*keyword"},
+    {"a mesh of Netgen", "mesh3d"},
+    {"a mesh of GiD", "mesh dimension"},
+    {"a mesh of GiD", "mesh \""},
+    {"a neutral file of GAMBIT", "control info"},
+    {"a neutral file of FEMAP", "-1 100 "},
+    {"a universal file (UNV) of I-DEAS", "-1 "},
+    {"a mesh of SU2", "ndime="},
+    {"an HDF5 file, as of Fluent (.msh.h5), CGNS and MED", "\x89hdf"},
+    {"a NetCDF file, as of Exodus", "cdf"},
+};
+
+constexpr std::size_t head_size = 128;  // longer than any magic
+
+/// How the text begins, in lower case, with one blank where there are several.
+std::string head_of(std::string_view text) {
+    std::string head;
+    for (const char c : text.substr(0, head_size))
+        if (!is_blank(c))
+            head += c;
+        else if (!head.ends_with(' '))
+            head += ' ';
+    return lower_case(head);
+}
+
+std::string known_formats() {
+    std::string known;
+    for (const auto& row : read_formats)
+        known += std::string(known.empty() ? "" : ", ") + row.name + " (" + row.suffix + ")";
+    return known;
+}
+
+/// The format whose mark the text begins with, behind blanks. Null if there is none.
+const ReadFormat* marked_format_of(const std::string& head) {
+    for (const auto& format : read_formats)
+        if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+    return nullptr;
+}
+
+std::string_view behind_blanks(std::string_view text) {
+    return {std::find_if_not(text.begin(), text.end(), is_blank), text.end()};
+}
+
+/// Whether the text begins as meshes of FreeFEM do: with a line of three counts, of points, cells
+/// and boundary elements. Other formats begin so too: the suffix must tell as well.
+bool begins_like_freefem(std::string_view text) {
+    text = trimmed(text.substr(0, text.find('\n')));
+    int num_counts = 0;
+    while (!text.empty()) {
+        const auto end = std::find_if(text.begin(), text.end(), is_blank);
+        if (!parse_number<std::uint64_t>({text.begin(), end})) return false;
+        text = behind_blanks({end, text.end()});
+        ++num_counts;
+    }
+    return num_counts == 3;
+}
+
+/// Null if it is not known. Throws InputError for an index of other files or a mesh of another
+/// program.
+const ReadFormat* read_format_of(const InputFile& file) {
+    std::string_view text = file.bytes;
+    while (true) {
+        text = behind_blanks(text);
+        const auto head = head_of(text);
+        for (const auto& format : foreign_formats)
+            if (head.starts_with(format.magic))
+                throw InputError(file.name() + ": is " + format.name +
+                                 ", which cannot be read; convert it, with Gmsh or meshio for "
+                                 "instance, to one of: " +
+                                 known_formats());
+        if (const auto* format = marked_format_of(head)) return format;
+        if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
+        text.remove_prefix(std::min(text.find('\n'), text.size()));
+    }
+    const auto suffix = lower_case(file.path.extension().string());
+    if (suffix == ".series")
+        refuse_series(file);
+    else if (const auto files = files_of_series(file); !files.empty())
+        refuse_index(file, files);
+    if (suffix == ".msh" && begins_like_freefem(text))
+        throw InputError(file.name() +
+                         ": begins with three counts and has no $MeshFormat, so it is a mesh of "
+                         "FreeFEM and not of Gmsh; FreeFEM writes MEDIT, which can be read, where "
+                         "the name ends so: savemesh(Th, \"NAME.mesh\")");
+    for (const auto& format : read_formats)
+        if (format.magic.empty() && suffix == format.suffix) return &format;
+    return nullptr;
+}
+
+/// What every format has in common.
+void finish(const InputFile& file, MeshFile& result) {
+    constexpr std::size_t longest_head = 500;  // a mark is in one of the first lines
+    if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
+        std::string_view::npos)
+        result.mesh.points_may_coincide = true;
+    if (const auto num_inverted = topology::turn_inverted_cells(result.mesh)) {
+        const auto num_cells = result.mesh.num_cells(), num_flat = num_cells - num_inverted;
+        result.warnings.push_back(
+            (num_cells == 1 ? "the only cell has"
+             : num_flat > 0 ? "all cells but " + std::to_string(num_flat) + " without volume have"
+                            : "all " + std::to_string(num_cells) + " cells have") +
+            std::string(" negative volume by VTK's order of corners: the order was reversed; make "
+                        "sure that the body is not the mirror image of what is meant"));
+    }
+}
+
+}  // namespace
+
+bool begins_like_a_mesh(std::string_view text) {
+    return marked_format_of(head_of(behind_blanks(text))) != nullptr;
+}
+
+MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+    const auto file = load_input_file(path);
+    const auto* format = read_format_of(file);
+    if (format == nullptr)
+        throw UnknownFormat(
+            file.name() +
+            ": begins like no mesh format known here; convert it to one of: " + known_formats());
+    MeshFile result = format->read(file, options);
+    for (const auto& name : options.vector_arrays)
+        if (!result.cell_vectors.contains(name))
+            throw InputError(file.name() + ": has no cell array " + in_quotes(name) +
+                             ": none is read from meshes of the format " + format->name +
+                             "; use VTU or legacy VTK");
+    finish(file, result);
+    return result;
+}
+
+}  // namespace incise::io

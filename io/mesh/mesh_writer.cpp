@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/io/mesh/mesh_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "incise/io/files/atomic_file.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/mesh/mesh_text.h"
+#include "incise/io/vtk/vtu_writer.h"
+#include "incise/topology/error.h"
+
+namespace incise::io {
+
+namespace {
+
+struct WrittenFormat {
+    const char* suffix;
+    std::string (*text)(const topology::MeshData&);
+};
+
+std::string plain_vtu_text(const topology::MeshData& mesh) {
+    Frame frame;
+    frame.mesh = mesh;
+    std::string text = vtu_text(frame);
+    if (mesh.points_may_coincide)  // behind the XML declaration
+        text.insert(text.find('\n') + 1, "<!-- " + std::string(coincidence_mark) + " -->\n");
+    return text;
+}
+
+constexpr std::array<WrittenFormat, 5> written_formats = {{
+    {".inp", abaqus_text},
+    {".mesh", medit_text},
+    {".msh", gmsh_text},
+    {".vtk", legacy_vtk_text},
+    {".vtu", plain_vtu_text},
+}};
+
+const WrittenFormat& written_format_of(const std::filesystem::path& path) {
+    auto suffix = path.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const auto& format : written_formats)
+        if (suffix == format.suffix) return format;
+
+    std::string known;
+    for (const auto& format : written_formats)
+        known += (known.empty() ? "" : ", ") + std::string(format.suffix);
+    const auto what = suffix.empty() ? "a name without a suffix tells no format"
+                                     : "meshes cannot be written as '" + suffix + "'";
+    throw InputError(path.string() + ": " + what + "; use one of " + known);
+}
+
+}  // namespace
+
+ReorderedCell with_wedges_facing_inwards(const topology::MeshData& mesh, std::size_t cell) {
+    const auto corners = mesh.cell(cell);
+    ReorderedCell out{{}, corners.size()};
+    const bool is_wedge = mesh.kinds[cell] == topology::CellKind::wedge;
+    const auto& mirrored = topology::traits(mesh.kinds[cell]).mirrored;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        out.corners[k] = corners[is_wedge ? static_cast<std::size_t>(mirrored[k]) : k];
+    return out;
+}
+
+void append_point(std::string& text, const Vec3& point, char separator) {
+    append_number(text, point.x());
+    text += separator;
+    append_number(text, point.y());
+    text += separator;
+    append_number(text, point.z());
+}
+
+void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
+    write_file(path, written_format_of(path).text(mesh));
+}
+
+void check_writable(const std::filesystem::path& path) {
+    written_format_of(path);
+    require_writable(path);
+}
+
+std::vector<std::string> writable_suffixes() {
+    std::vector<std::string> suffixes;
+    for (const auto& format : written_formats) suffixes.emplace_back(format.suffix);
+    return suffixes;
+}
+
+}  // namespace incise::io

@@ -1,0 +1,174 @@
+// VTK's writer of unstructured grids and its compressors, made safe where memory ends: as VTK has
+// them, the writer goes on to free pointers that it never set when its stream in memory is full,
+// and the compressors write through a null pointer. These throw std::bad_alloc at once. And made
+// faster where runs that write many frames would wait.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <SMP/Common/vtkSMPToolsAPI.h>
+#include <libdeflate.h>
+#include <vtkObject.h>
+#include <vtkOutputStream.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkZLibDataCompressor.h>
+
+#include <cstddef>
+#include <cstring>
+#include <ios>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "incise/io/files/base64.h"
+#include "incise/io/vtk/packed_blocks.h"
+
+namespace incise::io {
+
+/// As long as it lives, VTK does not print its complaints: exceptions say them.
+class SilentVtk {
+  public:
+    SilentVtk() : before_(vtkObject::GetGlobalWarningDisplay()) {
+        vtkObject::GlobalWarningDisplayOff();
+    }
+    ~SilentVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
+    SilentVtk(const SilentVtk&) = delete;
+    SilentVtk& operator=(const SilentVtk&) = delete;
+
+  private:
+    int before_;
+};
+
+/// As long as it lives, VTK makes no threads: the other cores are the simulation's, and where no
+/// more threads can be had VTK would fail.
+class SequentialVtk {
+  public:
+    SequentialVtk() : before_(vtk_threads().GetBackend()) {
+        vtk_threads().SetBackend("Sequential");
+    }
+    ~SequentialVtk() { vtk_threads().SetBackend(before_.c_str()); }
+    SequentialVtk(const SequentialVtk&) = delete;
+    SequentialVtk& operator=(const SequentialVtk&) = delete;
+
+  private:
+    // What vtkSMPTools calls, whose header is no C++20.
+    static vtk::detail::smp::vtkSMPToolsAPI& vtk_threads() {
+        return vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
+    }
+    std::string before_;
+};
+
+/// VTK's stream of base64, but for writing more than four digits at a time.
+class FastBase64Stream final : public vtkOutputStream {
+  public:
+    static vtkSmartPointer<FastBase64Stream> make() {
+        const auto made = vtkSmartPointer<FastBase64Stream>::Take(new FastBase64Stream);
+        made->InitializeObjectBase();
+        return made;
+    }
+    int StartWriting() override {
+        waiting_.clear();
+        return 1;
+    }
+    int Write(const void* data, std::size_t size) override {
+        waiting_.append(static_cast<const char*>(data), size);
+        const std::size_t count = waiting_.size() / 3 * 3;  // of one array, padded at its end only
+        const int is_written = encode(std::string_view(waiting_).substr(0, count));
+        waiting_.erase(0, count);
+        return is_written;
+    }
+    int EndWriting() override { return encode(waiting_); }
+
+  private:
+    int encode(std::string_view bytes) {
+        text_.clear();
+        append_base64(bytes, text_);
+        return WriteStream(text_.data(), text_.size());
+    }
+    std::string waiting_, text_;
+};
+
+class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
+  public:
+    static vtkSmartPointer<ThrowingGridWriter> make() {
+        const auto made = vtkSmartPointer<ThrowingGridWriter>::Take(new ThrowingGridWriter);
+        made->InitializeObjectBase();
+        made->SetDataStream(FastBase64Stream::make());
+        return made;
+    }
+
+  protected:
+    /// The first thing that is written.
+    int WriteHeader() override {
+        Stream->exceptions(std::ios::badbit);
+        return vtkXMLUnstructuredGridWriter::WriteHeader();
+    }
+};
+
+/// Of a compressor of VTK, which has room enough: it fails only for lack of memory. The name of its
+/// class stays VTK's, since files have it.
+template <class VtkCompressor>
+class ThrowingCompressor final : public VtkCompressor {
+  public:
+    /// @param known blocks that need not be compressed again, if any; must outlive it
+    static vtkSmartPointer<ThrowingCompressor> make(int level, PackedBlocks* known) {
+        const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor(known));
+        made->InitializeObjectBase();
+        made->SetCompressionLevel(level);
+        return made;
+    }
+
+  protected:
+    std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
+                               std::size_t space) override {
+        if (!packed) throw std::bad_alloc();
+        const auto compress = [&] {
+            const auto num_packed = VtkCompressor::CompressBuffer(data, size, packed, space);
+            if (num_packed == 0) throw std::bad_alloc();
+            return num_packed;
+        };
+        if (!known_) return compress();
+        const std::string_view block(reinterpret_cast<const char*>(data), size);
+        const auto bytes = known_->packed(
+            block, [&] { return std::string(reinterpret_cast<char*>(packed), compress()); });
+        std::memcpy(packed, bytes.data(), bytes.size());
+        return bytes.size();
+    }
+
+  private:
+    explicit ThrowingCompressor(PackedBlocks* known) : known_(known) {}
+
+    PackedBlocks* known_;
+};
+
+/// VTK's compressor of zlib streams, by libdeflate, which takes half the time. The name of its
+/// class stays VTK's, since files have it.
+class FastZlibCompressor : public vtkZLibDataCompressor {
+  protected:
+    std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
+                               std::size_t space) override {
+        if (!compressor_) compressor_.reset(libdeflate_alloc_compressor(CompressionLevel));
+        if (!compressor_) throw std::bad_alloc();
+        // It wants some bytes more than VTK gives it, and leaves them free.
+        bytes_.resize(libdeflate_zlib_compress_bound(compressor_.get(), size));
+        const auto num_packed =
+            libdeflate_zlib_compress(compressor_.get(), data, size, bytes_.data(), bytes_.size());
+        if (num_packed == 0 || num_packed > space)
+            return vtkZLibDataCompressor::CompressBuffer(data, size, packed, space);
+        std::memcpy(packed, bytes_.data(), num_packed);
+        return num_packed;
+    }
+
+  private:
+    struct Free {
+        void operator()(libdeflate_compressor* compressor) const {
+            libdeflate_free_compressor(compressor);
+        }
+    };
+    std::unique_ptr<libdeflate_compressor, Free> compressor_;
+    std::vector<unsigned char> bytes_;
+};
+
+}  // namespace incise::io

@@ -1,0 +1,174 @@
+// The cells of VTK's unstructured grids, in XML or legacy files, turned into a mesh.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/io/vtk/vtk_cells.h"
+
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_text.h"
+#include "incise/topology/error.h"
+
+namespace incise::io {
+
+namespace {
+
+using topology::CellKind;
+using enum CellForm::Use;
+
+constexpr CellForm forms[] = {
+    {0, "empty cell", 0, ignore},
+    {1, "vertex cell", 1, ignore},
+    {2, "vertex set", 0, ignore},
+    {3, "line", 2, ignore},
+    {4, "polyline", 0, ignore},
+    {5, "triangle", 3, ignore},
+    {6, "triangle strip", 0, ignore},
+    {7, "polygon", 0, ignore},
+    {8, "pixel", 4, ignore},
+    {9, "quadrilateral", 4, ignore},
+    {10, "tetrahedron", 4, keep, CellKind::tetrahedron},
+    {11, "voxel", 8, keep, CellKind::hexahedron, {0, 1, 3, 2, 4, 5, 7, 6}},
+    {12, "hexahedron", 8, keep, CellKind::hexahedron},
+    {13, "wedge", 6, keep, CellKind::wedge},
+    {14, "pyramid", 5, keep, CellKind::pyramid},
+    {15, "pentagonal prism", 10},
+    {16, "hexagonal prism", 12},
+    {21, "quadratic line", 3, ignore},
+    {22, "quadratic triangle", 6, ignore},
+    {23, "quadratic quadrilateral", 8, ignore},
+    {24, "quadratic tetrahedron", 10},
+    {25, "quadratic hexahedron", 20},
+    {26, "quadratic wedge", 15},
+    {27, "quadratic pyramid", 13},
+    {28, "biquadratic quadrilateral", 9, ignore},
+    {29, "triquadratic hexahedron", 27},
+    {30, "quadratic linear quadrilateral", 6, ignore},
+    {31, "quadratic linear wedge", 12},
+    {32, "biquadratic wedge", 18},
+    {33, "biquadratic hexahedron", 24},
+    {34, "biquadratic triangle", 7, ignore},
+    {35, "cubic line", 4, ignore},
+    {36, "quadratic polygon", 0, ignore},
+    {37, "triquadratic pyramid", 19},
+    {41, "convex point set", 0},
+    {42, "polyhedron", 0},
+    {51, "parametric curve", 0, ignore},
+    {52, "parametric surface", 0, ignore},
+    {53, "parametric triangular surface", 0, ignore},
+    {54, "parametric quadrilateral surface", 0, ignore},
+    {55, "parametric tetrahedral region", 0},
+    {56, "parametric hexahedral region", 0},
+    {60, "higher-order line", 0, ignore},
+    {61, "higher-order triangle", 0, ignore},
+    {62, "higher-order quadrilateral", 0, ignore},
+    {63, "higher-order polygon", 0, ignore},
+    {64, "higher-order tetrahedron", 0},
+    {65, "higher-order wedge", 0},
+    {66, "higher-order pyramid", 0},
+    {67, "higher-order hexahedron", 0},
+    {68, "Lagrange line", 0, ignore},
+    {69, "Lagrange triangle", 0, ignore},
+    {70, "Lagrange quadrilateral", 0, ignore},
+    {71, "Lagrange tetrahedron", 0},
+    {72, "Lagrange hexahedron", 0},
+    {73, "Lagrange wedge", 0},
+    {74, "Lagrange pyramid", 0},
+    {75, "Bezier line", 0, ignore},
+    {76, "Bezier triangle", 0, ignore},
+    {77, "Bezier quadrilateral", 0, ignore},
+    {78, "Bezier tetrahedron", 0},
+    {79, "Bezier hexahedron", 0},
+    {80, "Bezier wedge", 0},
+    {81, "Bezier pyramid", 0},
+};
+static_assert(std::is_sorted(std::begin(forms), std::end(forms),
+                             [](const auto& a, const auto& b) { return a.code < b.code; }));
+
+std::string quoted_list(const std::vector<std::string>& names) {
+    std::string list;
+    for (const auto& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+    return list;
+}
+
+}  // namespace
+
+void refuse_missing_vectors(const std::string& place, const std::string& name,
+                            const std::vector<std::string>& others) {
+    throw InputError(place + ": has no cell array " + in_quotes(name) + " of three components" +
+                     (others.empty()
+                          ? ", nor another; add it to the file's cell data"
+                          : "; its cell arrays of three components: " + quoted_list(others)));
+}
+
+void refuse_missing_regions(const std::string& place, const std::string& name,
+                            const std::vector<std::string>& others) {
+    throw InputError(
+        place + ": has no cell array " + in_quotes(name) + " to take the regions from" +
+        (others.empty() ? ", nor another of whole numbers; without a name all regions are 0"
+                        : "; its cell arrays of whole numbers: " + quoted_list(others)));
+}
+
+CellCollector make_vtk_collector(const std::string& file) { return {file, "VTK cell type"}; }
+
+void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& place) {
+    if (offsets.empty() || offsets.front() != 0)
+        throw InputError(place + ": the offsets of the cells do not begin with 0");
+    for (std::size_t i = 1; i < offsets.size(); ++i)
+        if (offsets[i] < offsets[i - 1])
+            throw InputError(place + ": cell " + std::to_string(i - 1) + ": ends at offset " +
+                             std::to_string(offsets[i]) + ", before it begins at " +
+                             std::to_string(offsets[i - 1]) + "; offsets must ascend");
+}
+
+void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& file,
+                  CellCollector& collector) {
+    topology::MeshData& mesh = file.mesh;
+    mesh.points_may_coincide = mesh.points_may_coincide || piece.is_frame;
+    const auto first_point = static_cast<std::int64_t>(mesh.points.size());
+    const auto num_points = static_cast<std::int64_t>(piece.coordinates.size() / 3);
+    mesh.points.reserve(mesh.points.size() + piece.coordinates.size() / 3);
+    for (std::size_t i = 0; i + 2 < piece.coordinates.size(); i += 3)
+        mesh.points.emplace_back(piece.coordinates[i], piece.coordinates[i + 1],
+                                 piece.coordinates[i + 2]);
+
+    const auto first_cell = static_cast<std::int64_t>(mesh.num_cells() + collector.num_ignored());
+    std::array<std::int64_t, topology::max_corners> nodes{};
+    for (std::size_t c = 0; c < piece.types.size(); ++c) {
+        const auto here = [&] { return place + ": cell " + std::to_string(c); };
+        const auto* form = find_form(forms, piece.types[c]);
+        if (form == nullptr)
+            throw InputError(here() + ": cell type " + std::to_string(piece.types[c]) +
+                             " is not one of VTK's; export linear elements");
+        if (form->use == refuse) collector.refuse(*form, here());
+        const auto begin = static_cast<std::size_t>(piece.offsets[c]);
+        const auto size = static_cast<std::size_t>(piece.offsets[c + 1]) - begin;
+        if (form->num_nodes != 0 && size != static_cast<std::size_t>(form->num_nodes))
+            throw InputError(here() + ": a " + form->name + " has " +
+                             std::to_string(form->num_nodes) + " nodes, this one has " +
+                             std::to_string(size));
+        if (form->use == ignore) {
+            collector.ignore(*form);
+            continue;
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            const auto node = piece.connectivity[begin + i];
+            if (node < 0 || node >= num_points)
+                throw InputError(here() + ": node index " + std::to_string(node) +
+                                 " is out of range (" + std::to_string(num_points) + " points)");
+            nodes[i] = first_point + node;
+            if (!mesh.points[static_cast<std::size_t>(nodes[i])].allFinite())
+                throw InputError(here() + ": its node " + std::to_string(node) +
+                                 " has a coordinate that is not finite");
+        }
+        const auto region =
+            piece.regions.empty() ? std::optional(0) : whole_number(piece.regions[c]);
+        if (!region)
+            throw InputError(here() + ": region " + shown(piece.regions[c]) +
+                             " is not a whole number of 32 bits; name another array as the "
+                             "region array");
+        collector.keep(*form, first_cell + static_cast<std::int64_t>(c),
+                       std::span(nodes).first(size), *region, mesh);
+        for (const auto& [name, values] : piece.vectors)
+            file.cell_vectors[name].emplace_back(values.data() + 3 * c);
+    }
+}
+
+}  // namespace incise::io

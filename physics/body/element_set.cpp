@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/body/element_set.h"
+
+#include <algorithm>
+#include <map>
+
+#include "incise/topology/error.h"
+
+namespace incise::physics {
+
+using topology::ChangeSet;
+using topology::ElementId;
+using topology::ElementRecord;
+using topology::FaceId;
+using topology::Mesh;
+using topology::NodeId;
+using topology::NodeRecord;
+
+namespace {
+
+template <class T>
+void sort_and_make_unique(std::vector<T>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+template <class Record, class Id>
+const Record* find_record(const std::vector<Record>& records, Id id) {
+    const auto place = std::lower_bound(records.begin(), records.end(), id,
+                                        [](const Record& r, Id i) { return r.id < i; });
+    return place != records.end() && place->id == id ? &*place : nullptr;
+}
+
+/// The parts that an edit has made, by the element that there was before it.
+std::map<ElementId, std::vector<ElementId>> parts_by_ancestor(const ChangeSet& changes) {
+    std::map<ElementId, std::vector<ElementId>> parts;
+    std::map<ElementId, ElementId> ancestors;  // of the parts
+    for (const ElementRecord& record : changes.elements_added) {
+        if (record.id.index() < changes.element_capacity_before || !record.parent.is_valid())
+            continue;
+        // The parent may be such a part itself, of a lower id.
+        const auto known = ancestors.find(record.parent);
+        const ElementId ancestor = known == ancestors.end() ? record.parent : known->second;
+        ancestors[record.id] = ancestor;
+        parts[ancestor].push_back(record.id);
+    }
+    return parts;
+}
+
+/// An element before an edit that divided it: tells where in it the nodes of its parts lie. Places
+/// at rest tell its corners, as the same edit may have copied or merged their nodes.
+class Ancestor {
+  public:
+    Ancestor(const Mesh& mesh, const ChangeSet& changes, ElementId e)
+        : mesh_(mesh), changes_(changes) {
+        const auto now = mesh.corners(e);
+        std::vector<NodeId> corners(now.begin(), now.end());
+        auto rewiring = std::lower_bound(
+            changes.rewired.begin(), changes.rewired.end(), e,
+            [](const topology::Rewiring& r, ElementId id) { return r.element < id; });
+        for (; rewiring != changes.rewired.end() && rewiring->element == e; ++rewiring)
+            corners[static_cast<std::size_t>(rewiring->corner)] = rewiring->from;
+        if (const auto* removed = find_record(changes.elements_removed, e))
+            corners = removed->corners;
+        for (const NodeId n : corners) rest_positions_.push_back(mesh.rest_position(n));
+    }
+
+    /// Whether a part's face lies in the ancestor's face of the same number. It cannot lie in
+    /// another one: parts keep the numbers of corners.
+    bool has_in_face(FaceId part) {
+        unsigned face = 0, corners = 0;
+        for (const int k : traits(mesh_.kind(part.element)).face(part.face)) {
+            face |= 1u << k;
+            corners |= surrounding(mesh_.corners(part.element)[static_cast<std::size_t>(k)]);
+        }
+        return (corners & ~face) == 0;
+    }
+
+  private:
+    // The corners of the ancestor between which the node lies, as bits; all bits for a stranger.
+    unsigned surrounding(NodeId n) {
+        const auto corner =
+            std::find(rest_positions_.begin(), rest_positions_.end(), mesh_.rest_position(n));
+        if (corner != rest_positions_.end()) return 1u << (corner - rest_positions_.begin());
+        const auto [place, is_new] = known_.try_emplace(n, ~0u);
+        const NodeRecord* record = find_record(changes_.nodes_added, n);
+        if (!is_new || !record) return place->second;
+        unsigned corners = 0;
+        for (int s = 0; s < record->num_sources; ++s)
+            corners |= surrounding(record->sources[static_cast<std::size_t>(s)].node);
+        return place->second = corners;
+    }
+
+    const Mesh& mesh_;
+    const ChangeSet& changes_;
+    std::vector<Vec3> rest_positions_;  // of the corners
+    std::map<NodeId, unsigned> known_;
+};
+
+}  // namespace
+
+ElementSet::ElementSet(std::vector<ElementId> elements) : members_(std::move(elements)) {
+    sort_and_make_unique(members_);
+}
+
+void ElementSet::apply(const Mesh&, const ChangeSet& changes) {
+    while (!members_.empty() && members_.back().index() >= changes.element_capacity_after)
+        members_.pop_back();
+    for (const ElementRecord& record : changes.elements_added)
+        // New ids lie above all others, so the list stays sorted. One that comes back is a member
+        // if it is still listed.
+        if (record.id.index() >= changes.element_capacity_before &&
+            std::binary_search(members_.begin(), members_.end(), record.parent))
+            members_.push_back(record.id);
+}
+
+FaceSet::FaceSet(std::vector<FaceId> faces) {
+    sort_and_make_unique(faces);
+    for (const FaceId f : faces) members_.push_back({f, {}});
+}
+
+void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
+    if (changes.element_capacity_after < changes.element_capacity_before) {
+        // Undone: the parts go, and what they took comes back.
+        const ElementId end(changes.element_capacity_after);
+        while (!members_.empty() && members_.back().face.element >= end) members_.pop_back();
+        for (Member& member : members_)
+            if (member.left_to >= end) member.left_to = {};
+        return;
+    }
+    std::vector<FaceId> born;
+    for (const auto& [e, parts] : parts_by_ancestor(changes)) {
+        auto member = std::lower_bound(
+            members_.begin(), members_.end(), e,
+            [](const Member& m, ElementId element) { return m.face.element < element; });
+        if (member == members_.end() || member->face.element != e) continue;
+        Ancestor ancestor(mesh, changes, e);
+        for (; member != members_.end() && member->face.element == e; ++member) {
+            if (member->left_to.is_valid()) continue;
+            for (const ElementId part : parts)
+                if (const FaceId f{part, member->face.face}; ancestor.has_in_face(f))
+                    born.push_back(f);
+            if (!ancestor.has_in_face(member->face)) member->left_to = parts.front();
+        }
+    }
+    // New ids lie above all others.
+    std::sort(born.begin(), born.end());
+    for (const FaceId f : born) members_.push_back({f, {}});
+}
+
+// Members that an undone edit took back may be listed beyond what is there: who asks passes over
+// them.
+void ElementSet::require_fit() const {
+    if (!std::ranges::all_of(members_, &ElementId::is_valid) || !std::ranges::is_sorted(members_))
+        throw InputError("a selection has elements that cannot be");
+}
+
+void FaceSet::require_fit(const Mesh& mesh) const {
+    for (const Member& m : members_) {
+        const ElementId e = m.face.element;
+        const bool can_be =
+            e.is_valid() && m.face.face >= 0 &&
+            (e.index() >= mesh.element_capacity() || m.face.face < mesh.num_faces(e));
+        if (!can_be) throw InputError("a selection has faces that cannot be");
+    }
+}
+
+}  // namespace incise::physics

@@ -1,0 +1,130 @@
+// Forces from outside: on nodes, on faces of the surface, on the volume.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "incise/physics/body/element_set.h"
+#include "incise/physics/body/node_set.h"
+#include "incise/physics/body/time_curve.h"
+#include "incise/physics/elements/element_store.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::physics {
+
+/// The same force, N, on each selected node. Copies of a node share its force by mass, so that
+/// opening a face neither adds force nor tears the copies apart. A node born between selected ones
+/// has no share: the force stays what it was, and where it was.
+struct NodalLoad {
+    NodeSet nodes = {};
+    Vec3 force = Vec3::Zero();
+    std::vector<double> shares = {};  ///< of the nodes' members; Loads keeps it
+    static void archive(auto& ar, auto& self) { ar(self.nodes, self.force, self.shares); }
+};
+
+/// Force per rest area, Pa, in a fixed direction, on faces of the boundary.
+struct TractionLoad {
+    FaceSet faces = {};
+    Vec3 traction = Vec3::Zero();
+    static void archive(auto& ar, auto& self) { ar(self.faces, self.traction); }
+};
+
+/// Pressure, Pa, positive inwards, on the current area along the current normal.
+struct PressureLoad {
+    FaceSet faces = {};
+    double pressure = 0.0;
+    static void archive(auto& ar, auto& self) { ar(self.faces, self.pressure); }
+};
+
+/// Force per rest volume, N/m3.
+struct BodyLoad {
+    ElementSet elements = {};
+    Vec3 force = Vec3::Zero();
+    static void archive(auto& ar, auto& self) { ar(self.elements, self.force); }
+};
+
+struct Load {
+    std::string name = {};
+    std::variant<NodalLoad, TractionLoad, PressureLoad, BodyLoad> kind = {};
+    TimeCurve<double> factor = {};  ///< scales the load in time; empty: 1
+
+    /// Throws InputError if it acts on what cannot be in the mesh.
+    void require_fit(const topology::Mesh& mesh) const;
+    static void archive(auto& ar, auto& self) { ar(self.name, self.kind, self.factor); }
+};
+
+/// What the loads need to know of the body.
+struct LoadedBody {
+    const topology::Mesh& mesh;
+    const ElementStore& elements;
+    std::span<const double> masses;  ///< lumped, kg, by node id
+};
+
+/// What one node has of all that a load acts on: a part of the members (nodal forces), m2
+/// (traction) or m3 (body forces).
+struct NodeShare {
+    std::uint32_t node;
+    double share;
+};
+
+/// A corner of a face under pressure, with all of the face's corners.
+struct PressedCorner {
+    std::uint32_t node;
+    std::uint32_t num_corners;  ///< 3 or 4
+    std::array<std::uint32_t, 4> corners;
+};
+
+/// All loads on a body.
+class Loads {
+  public:
+    /// Nodal loads that have shares keep them: those of a body that goes on.
+    Loads(std::vector<Load> loads, const LoadedBody& body);
+
+    std::span<const Load> all() const { return loads_; }
+    void add(Load load, const LoadedBody& body);
+    void remove(std::size_t i);
+    void set_factor(std::size_t i, TimeCurve<double> factor) {
+        loads_[i].factor = std::move(factor);
+    }
+
+    /// Finds what nodes bear, if there were edits: before add and visit_tangents.
+    /// Cost: nothing without edits, else in proportion to the selections.
+    void update(const LoadedBody& body);
+
+    /// Adds the forces (N, by node id) at `time` on the nodes of a range. Faces and elements that
+    /// are gone, and faces that have come to lie inside, carry nothing.
+    /// @param positions current, m, by node id
+    /// Cost: proportional to the loaded nodes there.
+    void add(NodeRange range, std::span<const Vec3> positions, double time,
+             std::span<Vec3> forces) const;
+
+    /// Hands over the symmetric part of minus the derivative of the forces by the positions: of
+    /// pressure, as the others do not depend on these.
+    void visit_tangents(std::span<const Vec3> positions, double time, TangentSink& sink) const;
+
+    /// Carries the selections through an edit that the body has followed: parts of loaded faces and
+    /// elements are loaded as these were.
+    /// @param touched nodes whose mass may have changed
+    void apply(const topology::ChangeSet& changes, const LoadedBody& body,
+               std::span<const topology::NodeId> touched);
+
+  private:
+    static void share_out(Load& load, const LoadedBody& body);
+    /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
+    struct Burden {
+        std::vector<NodeShare> shares;
+        std::vector<PressedCorner> pressed;
+    };
+    static Burden find_burden(const Load& load, const LoadedBody& body);
+
+    std::vector<Load> loads_;
+    std::vector<Burden> burdens_;  // of each load
+    bool is_up_to_date_ = false;   // the burdens, with the mesh
+};
+
+}  // namespace incise::physics

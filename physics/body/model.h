@@ -1,0 +1,315 @@
+// The body in motion: state, masses, forces, integrator. It follows the mesh through edits.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "incise/physics/body/loads.h"
+#include "incise/physics/body/node_lanes.h"
+#include "incise/physics/body/node_sums.h"
+#include "incise/physics/body/supports.h"
+#include "incise/physics/elements/element_store.h"
+#include "incise/physics/elements/stable_step.h"
+#include "incise/physics/elements/viscous_history.h"
+#include "incise/topology/archive.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::physics {
+
+/// What acts on a body besides its own elasticity.
+struct Surroundings {
+    Vec3 gravity = Vec3::Zero();  ///< m/s2
+    double damping = 0.0;         ///< mass-proportional, 1/s
+    std::vector<Support> supports;
+    std::vector<Load> loads;
+};
+
+/// Totals over the body. Angular momentum is about the origin.
+struct Totals {
+    double mass = 0.0;            ///< kg
+    double rest_volume = 0.0;     ///< m3
+    double kinetic_energy = 0.0;  ///< J, of the velocities as they stand
+    double elastic_energy = 0.0;  ///< J; of viscous elements that of the long-time moduli
+    double gravity_energy = 0.0;  ///< J, zero at the origin
+    Vec3 momentum = Vec3::Zero();
+    Vec3 angular_momentum = Vec3::Zero();
+    Vec3 centre_of_mass = Vec3::Zero();  ///< m
+    static void archive(auto& ar, auto& self) {
+        ar(self.mass, self.rest_volume, self.kinetic_energy, self.elastic_energy,
+           self.gravity_energy, self.momentum, self.angular_momentum, self.centre_of_mass);
+    }
+};
+
+/// What a constraint does to the body: force, N, and moment about the constraint's point, N m.
+struct Reaction {
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+
+    Reaction& operator+=(const Reaction& o) {
+        force += o.force;
+        moment += o.moment;
+        return *this;
+    }
+    static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
+};
+
+/// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
+/// node id; slots of dead nodes keep their last values, so that an undone edit finds them again.
+class Model {
+  public:
+    /// Starts at rest in the rest positions, with the forces of that state.
+    /// @param mesh must outlive the model, which reads it and never changes it
+    /// Throws InputError: see ElementStore, Supports.
+    Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings = {});
+
+    /// Goes on from what save() has written of a model of this mesh.
+    /// @param table  of that model; its fibres come from the archive
+    /// @param time   of the state, s
+    /// To the bit the same model then.
+    /// Throws InputError for the data of another mesh. Cost: that of a new model.
+    Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
+          double time);
+
+    /// How many threads compute, at least 1; of no influence on any result. At first one.
+    void set_num_threads(int n) { workers_ = Workers(n); }
+    int num_threads() const { return workers_.num_threads(); }
+
+    std::span<const Vec3> positions() const { return positions_; }            ///< m
+    std::span<const Vec3> velocities() const { return velocities_; }          ///< m/s
+    std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
+    std::span<const double> masses() const { return masses_; }                ///< kg
+
+    /// Replaces the state; sizes are those of node_capacity. The forces follow. Viscous elements
+    /// take it for an instantaneous strain, to which the moduli as entered answer.
+    void set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities, double time);
+
+    /// What viscous elements remember; empty if there are none. Like the positions it belongs to
+    /// the state: integrate() brings it to the positions that it leaves.
+    const ViscousHistory& history() const { return history_; }
+    /// Replaces it after set_state(); values as of history().values(). Forces are those of before
+    /// until compute_forces is called.
+    void set_history(std::span<const double> values) {
+        history_.set_values(values);
+        state_has_changed();
+    }
+
+    /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
+    /// and of the history as it stands.
+    void compute_forces(double time);
+
+    /// Does the work of totals() and min_volume_ratio() and, on elements that no edit touches
+    /// before it is called, of compute_forces() in one pass: for who needs both, as an edit's books
+    /// and the step around it do. Results are to the bit what they are without.
+    void compute_states_and_forces();
+
+    /// One step of semi-implicit Euler, from the forces last computed:
+    /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
+    /// to be at time + dt. Source: HEML 2015, eq. (32).
+    /// Throws MotionFailure, naming an element, the time and the likely cause, if the state is no
+    /// longer finite or a node has moved by more than the body's size in this step.
+    void integrate(double time, double dt);
+
+    /// For implicit integration and statics, which find the end of a step by themselves and hand it
+    /// over. A step may come in several parts: begin_step() goes before the first.
+    void begin_step();
+    /// Goes to the given positions and velocities (m, m/s, by node id), dt after the present ones;
+    /// infinite in statics. Viscous elements follow, whose energy comes back, J; forces are those
+    /// of before until compute_forces is called.
+    /// @param reactions of supports on their nodes, N, by node id, zero in free components
+    double take_step(std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                     std::span<const Vec3> reactions, double dt);
+    /// Adds to external_work() and dissipated_energy(), J.
+    void book(double external_work, double dissipated_energy);
+
+    /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
+    /// the edited mesh with the same state and history. Copied nodes copy their state, a node
+    /// between others takes a mean of theirs with the weights of the record, merged ones keep
+    /// momentum. Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of
+    /// mass and the elastic energy of all laws (not of springs), but lumped masses lose angular
+    /// momentum m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2
+    /// / 2, m being a quarter of the mass of the elements round the edge. Parts of an element
+    /// inherit its fibres and its history of viscosity. The inverse of an edit, applied before
+    /// anything moved, gives the former state back to the bit. Forces are those of before until
+    /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
+    /// the stars touched.
+    /// @param mesh  of the model
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+
+    /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
+    /// prescribes what another one does. Cost: O(#nodes) of it.
+    void add_support(Support support);
+    /// Removes constraint `i`; those behind it move up. Cost: O(n) in the nodes of all constraints.
+    void remove_support(std::size_t i);
+    /// Gives the grip of constraint `i` another way; see Support::grip.
+    void set_grip(std::size_t i, TimeCurve<Pose> grip) { supports_.set_grip(i, std::move(grip)); }
+
+    /// Adds a load at the end of the list. Forces are those of before until compute_forces is
+    /// called, as with the next two.
+    void add_load(Load load);
+    /// Removes load `i`; those behind it move up.
+    void remove_load(std::size_t i);
+    /// Gives load `i` another factor of time.
+    void set_load_factor(std::size_t i, TimeCurve<double> factor) {
+        loads_.set_factor(i, std::move(factor));
+    }
+    const Loads& loads() const { return loads_; }
+
+    /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
+    /// constraints and loads. Cost: O(n).
+    void save(topology::ArchiveWriter& ar) const;
+
+    const ElementStore& elements() const { return elements_; }
+    const Supports& supports() const { return supports_; }
+    double damping() const { return damping_; }  ///< 1/s
+    double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
+    std::span<const Vec3> outer_forces() const { return outer_forces_; }  ///< N, loads and gravity
+    /// Sets `forces` (N, by node id) to loads and gravity at other positions (m) and `time`.
+    /// @pre compute_forces or begin_step was called since the last edit
+    void outer_forces_at(std::span<const Vec3> positions, double time,
+                         std::span<Vec3> forces) const;
+    /// See Loads::visit_tangents; @pre likewise.
+    void visit_load_tangents(std::span<const Vec3> positions, double time,
+                             TangentSink& sink) const {
+        loads_.visit_tangents(positions, time, sink);
+    }
+    /// J; of viscous elements that of the long-time moduli.
+    double elastic_energy() const;
+    /// Grows with every change of what the body consists of: edits (undone ones count twice),
+    /// constraints and loads that are added or removed.
+    std::uint64_t structure_version() const { return structure_version_; }
+
+    /// How far the fastest node went in the last step, m.
+    double largest_move() const { return largest_move_; }
+
+    /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
+    double stable_step() const { return stable_step_.value(); }
+
+    /// What bounds the stiffness of a living node at rest, by which the stable step is found, N/m.
+    double stiffness_bound(std::size_t node) const {
+        return stable_step_.quotient(node) * masses_[node];
+    }
+
+    /// The same bound for the element alone, were its nodes no other's, seconds.
+    double own_step(ElementId e) const;
+
+    /// The element with the lowest id at the node that sets the stable step.
+    ElementId limiting_element() const {
+        return mesh_.anchor(NodeId(stable_step_.limiting_node()));
+    }
+    /// Energy that a strain of the order of one would take, J: what rounding errors of the elastic
+    /// energy are small against.
+    double stiffness_energy() const;
+
+    /// Not by several threads at the same time. Cost: O(#nodes + #elements) after nodes have moved;
+    /// after an edit without that what it touched, and a look at each range and block.
+    Totals totals() const;
+    double min_volume_ratio() const;
+    /// Present volume over that at rest, less 1. Not a number without elements.
+    double volume_change() const;
+    /// Of the node that is farthest from where it is at rest, m.
+    double max_displacement() const;
+    ElementResult element_result(ElementId e) const {
+        return elements_.block_of(mesh_, e).result(e, positions_, history_);
+    }
+
+    /// By element id, the direction of the fibres at rest, zero where there are none; empty if no
+    /// material has fibres. Parts of a divided element have that of the whole.
+    std::span<const Vec3> fibres() const { return elements_.fibres(); }
+
+    /// Density of what the elements of a region are made of, kg/m3.
+    double density(int region) const { return elements_.density(region); }
+
+    /// Work since the start, joules: of gravity, loads and supports; and what damping and viscosity
+    /// took. What viscous elements can still give back counts as taken until they do.
+    double external_work() const { return external_work_; }
+    double dissipated_energy() const { return dissipated_energy_; }
+
+    std::size_t num_supports() const { return supports_.size(); }
+    const std::string& support_name(std::size_t i) const { return supports_.name(i); }
+    /// What each support did to the body during the last step.
+    std::span<const Reaction> reactions() const { return reactions_; }
+
+    const topology::Mesh& mesh() const { return mesh_; }
+
+  private:
+    /// What a merge did to the node that went on: undone before anything moves, it gives both
+    /// nodes back what they had, to the bit.
+    struct Merge {
+        NodeId survivor;
+        Vec3 position_before, velocity_before, position_after, velocity_after;
+        static void archive(auto& ar, auto& self) {
+            ar(self.survivor, self.position_before, self.velocity_before, self.position_after,
+               self.velocity_after);
+        }
+    };
+
+    struct NodeStep {
+        Vec3 x, v;    ///< at its end
+        double work;  ///< that supports do, J
+    };
+    /// Integrates the nodes of a range, which touches no others.
+    /// @param reactions of all supports; added to
+    StepSums move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions);
+    /// Likewise one that is alive.
+    /// @param slowing 1/(1 + damping dt)
+    StepSums move_node(std::size_t n, double time, double dt, double slowing,
+                       std::span<Reaction> reactions);
+    /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
+    /// nothing, before `end`.
+    std::size_t num_free_nodes(std::size_t n, std::size_t end) const;
+    /// Leads the supported components of node `n` to where they have to be at time + dt.
+    /// @param free  what the node does without supports
+    /// @param force N, on the node without the supports
+    NodeStep support_node(std::size_t n, double time, double dt, const Vec3& force, NodeStep free,
+                          std::span<Reaction> reactions) const;
+    /// Adds what a support does to a component of a node at x, N, to its reaction.
+    void add_reaction(int support, int component, double force, const Vec3& x,
+                      std::span<Reaction> reactions) const;
+    void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
+                          std::span<Vec3> forces) const;
+
+    void restore_state(topology::ArchiveReader& ar, double time);
+    NodeSums sums_of(NodeRange range) const;
+    LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
+    void resize(std::size_t num_nodes);
+    /// To be called when nodes that elements had before have moved, or are as fast as they were no
+    /// more, or the history is another.
+    void state_has_changed();
+    void gather(NodeId n);
+    void carry_state(const topology::ChangeSet& changes);
+    void take_from_sources(const topology::NodeRecord& record);
+    void merge(NodeId absorbed, NodeId survivor);
+    bool take_back_merge(NodeId absorbed);
+
+    const topology::Mesh& mesh_;
+    topology::FollowedEpoch epoch_;
+    std::uint64_t structure_version_ = 0;
+    Workers workers_{1};
+    ElementStore elements_;
+    ViscousHistory history_;
+    Vec3 gravity_;
+    double damping_;
+    double body_size_;
+
+    std::vector<Vec3> positions_, velocities_, elastic_forces_, outer_forces_;
+    std::vector<double> masses_;
+    StableStep stable_step_;
+    mutable KeptNodeSums node_sums_;
+    Supports supports_;
+    Loads loads_;
+    std::vector<Reaction> reactions_;  // of each support
+    double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
+    std::map<NodeId, Merge> merges_;         // by the node that was absorbed
+    std::vector<StepSums> step_sums_;        // scratch, by range of nodes
+    std::vector<Reaction> range_reactions_;  // scratch, of all supports by range of nodes
+    std::vector<ElementId> star_;            // scratch
+    std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
+};
+
+}  // namespace incise::physics

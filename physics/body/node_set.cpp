@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/body/node_set.h"
+
+#include <algorithm>
+
+#include "incise/topology/error.h"
+
+namespace incise::physics {
+
+using topology::NodeId;
+
+NodeSet::NodeSet(std::vector<NodeId> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    for (const NodeId n : nodes) members_.push_back({n, n});
+}
+
+const NodeSet::Member* NodeSet::find(NodeId n) const {
+    const auto place = std::lower_bound(members_.begin(), members_.end(), n,
+                                        [](const Member& m, NodeId id) { return m.node < id; });
+    return place != members_.end() && place->node == n ? &*place : nullptr;
+}
+
+void NodeSet::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
+    if (members_.empty()) return;
+    while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
+        members_.pop_back();
+    for (const topology::NodeRecord& record : changes.nodes_added) {
+        // One that comes back is a member if it is still listed, whatever its sources.
+        if (record.id.index() < changes.node_capacity_before) continue;
+        bool all = true;
+        for (int s = 0; s < record.num_sources && all; ++s)
+            all = contains(record.sources[static_cast<std::size_t>(s)].node);
+        if (!all) continue;
+        // New ids lie above all others, so the list stays sorted.
+        const bool is_copy = record.num_sources == 1;
+        members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : NodeId()});
+    }
+}
+
+void NodeSet::require_fit(const topology::Mesh& mesh) const {
+    const auto is_there = [&](NodeId n) { return n.index() < mesh.node_capacity(); };
+    for (const Member& m : members_)
+        if (!m.node.is_valid() || !is_there(m.node))
+            throw InputError("a selection has nodes that are not there");
+    if (std::ranges::adjacent_find(members_, std::ranges::greater_equal(), &Member::node) !=
+        members_.end())
+        throw InputError("a selection of nodes is out of order");
+}
+
+}  // namespace incise::physics

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/elements/element_block.h"
+
+namespace incise::physics {
+
+std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions,
+                                                           std::vector<LocalVector>& places) const {
+    places.reserve(max_elements * topology::max_corners + 1);  // of any block
+    places.resize(nodes_.size() + 1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) places[i] = positions[nodes_[i]];
+    places.back() = {};
+    return places;
+}
+
+std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions) const {
+    thread_local std::vector<LocalVector> places;
+    return local_positions(positions, places);
+}
+
+std::size_t ElementBlock::add_slot(ElementId e) {
+    const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
+    const auto s = static_cast<std::size_t>(place - elements_.begin());
+    elements_.insert(place, e);
+    local_corners_.insert(local_corners_.begin() + static_cast<std::ptrdiff_t>(s * num_corners_),
+                          num_corners_, unnumbered);
+    is_numbered_ = false;
+    have_moved_ = true;
+    return s;
+}
+
+void ElementBlock::change_slot(std::size_t s) {
+    std::ranges::fill(local_corners(s), unnumbered);
+    is_numbered_ = false;
+}
+
+void ElementBlock::remove_slot(std::size_t s) {
+    elements_.erase(elements_.begin() + static_cast<std::ptrdiff_t>(s));
+    const auto first = local_corners_.begin() + static_cast<std::ptrdiff_t>(s * num_corners_);
+    local_corners_.erase(first, first + static_cast<std::ptrdiff_t>(num_corners_));
+    is_numbered_ = false;
+    have_moved_ = true;
+}
+
+void ElementBlock::number_nodes(std::span<std::uint16_t> local_numbers) {
+    if (is_numbered_) return;
+    const std::size_t num_had = nodes_.size();
+    for (std::size_t i = 0; i < num_had; ++i)
+        local_numbers[nodes_[i]] = static_cast<std::uint16_t>(i);
+    // For now nodes that it did not have come behind those that it had.
+    std::vector<std::size_t> changed;
+    for (std::size_t s = 0; s < elements_.size(); ++s) {
+        const std::span<std::uint16_t> numbers = local_corners(s);
+        if (numbers.front() != unnumbered) continue;
+        changed.push_back(s);
+        for (std::size_t k = 0; k < num_corners_; ++k) {
+            const std::uint32_t n = corners_of(s)[k];
+            if (local_numbers[n] == unnumbered) {
+                local_numbers[n] = static_cast<std::uint16_t>(nodes_.size());
+                nodes_.push_back(n);
+            }
+            numbers[k] = local_numbers[n];
+        }
+    }
+
+    std::vector<std::uint16_t> new_numbers(nodes_.size(), unnumbered);
+    for (const std::uint16_t number : local_corners_) new_numbers[number] = 0;  // it is in use
+    const auto first_new = nodes_.begin() + static_cast<std::ptrdiff_t>(num_had);
+    std::sort(first_new, nodes_.end());
+    std::inplace_merge(nodes_.begin(), first_new, nodes_.end());
+    std::erase_if(nodes_, [&](std::uint32_t n) {
+        if (new_numbers[local_numbers[n]] != unnumbered) return false;
+        local_numbers[n] = unnumbered;
+        return true;
+    });
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        std::uint16_t& number = local_numbers[nodes_[i]];
+        new_numbers[number] = static_cast<std::uint16_t>(i);
+        number = unnumbered;
+    }
+    for (std::uint16_t& number : local_corners_) number = new_numbers[number];
+
+    use_numbers(changed);
+    is_numbered_ = true;
+    have_moved_ = false;
+}
+
+}  // namespace incise::physics

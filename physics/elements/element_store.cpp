@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/elements/element_store.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "incise/physics/elements/kernel_block.h"
+#include "incise/topology/error.h"
+
+namespace incise::physics {
+
+using topology::CellKind;
+
+namespace {
+
+std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision) {
+    if (const auto* springs = std::get_if<MassSprings>(&material.method))
+        return std::make_shared<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
+                                                               material.density);
+    if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
+        return std::make_shared<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
+                                                           material.density);
+    const auto& links = std::get<HyperElasticLinks>(material.method);
+    const HemlKernel elastic{links.law, links.inversion_threshold, precision};
+    if (links.prony.empty())
+        return std::make_shared<KernelBlock<HemlKernel>>(elastic, material.density);
+    if (links.prony_rule == PronyRule::nodal)
+        return std::make_shared<KernelBlock<NodalViscousKernel>>(
+            NodalViscousKernel(elastic, links.prony), material.density);
+    return std::make_shared<KernelBlock<ViscousKernel>>(ViscousKernel(elastic, links.prony),
+                                                        material.density);
+}
+
+/// Numbers that an element of the material remembers, whatever its law.
+std::size_t history_size(const HyperElasticLinks& links) {
+    if (links.prony.empty()) return 0;
+    return links.prony_rule == PronyRule::nodal
+               ? NodalViscousKernel::history_size(links.prony.size())
+               : ViscousKernel::history_size(links.prony.size());
+}
+
+/// What to do where a material's method is not for this kind of cell.
+std::string remedy(CellKind kind) {
+    switch (kind) {
+        case CellKind::tetrahedron:
+            return "; the method hybmss needs hexahedra: give the region a material with method = "
+                   "\"heml\"";
+        case CellKind::hexahedron:
+            return "; the methods heml and mass-spring need tetrahedra: give the region a material "
+                   "with method = \"hybmss\"";
+        default:
+            return ", for which no method has forces; use tetrahedra or hexahedra";
+    }
+}
+
+/// Calls visit(range, begin, end) for each range of node ids of which there are some, with where
+/// they stand among `nodes`, which ascend.
+template <class Visit>
+void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
+    for (std::size_t begin = 0; begin < nodes.size();) {
+        const std::size_t range = nodes[begin] / nodes_per_range;
+        const auto end = std::lower_bound(nodes.begin() + static_cast<std::ptrdiff_t>(begin),
+                                          nodes.end(), (range + 1) * nodes_per_range);
+        const auto next = static_cast<std::size_t>(end - nodes.begin());
+        visit(range, begin, next);
+        begin = next;
+    }
+}
+
+}  // namespace
+
+ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
+    if (table.precision == Precision::single_precision)
+        for (const Material& material : table.materials)
+            if (std::holds_alternative<MassSprings>(material.method))
+                throw InputError(
+                    "mass springs have no forces in single precision; use double precision, or "
+                    "another method");
+    if (!table_.fibres.empty()) {
+        table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
+        fibres_.emplace(mesh, std::exchange(table_.fibres, {}));
+    }
+    for (const ElementId e : mesh.elements()) {
+        require_law(mesh, e);
+        insert(mesh, e);
+    }
+    number_nodes(mesh.node_capacity());
+}
+
+void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
+    const int region = mesh.region(e);
+    const std::string name = "element " + std::to_string(mesh.label(e));
+    if (!table_.of_region.contains(region))
+        throw UnsuitableMaterial(
+            region, name + " has region " + std::to_string(region) +
+                        ", for which there is no material; add one, or one without regions");
+    const Material& material = table_.materials[table_.of_region.at(region)];
+    const auto* hybrid = std::get_if<HybridSprings>(&material.method);
+    const CellKind kind = mesh.kind(e),
+                   wanted = hybrid ? CellKind::hexahedron : CellKind::tetrahedron;
+    if (kind != wanted)
+        throw UnsuitableMaterial(region, name + ", of region " + std::to_string(region) +
+                                             ", is a " + traits(kind).name + remedy(kind));
+    constexpr double rounding = 1e-12;
+    if (material.has_fibres() && !(std::abs(fibre_of(e).norm() - 1.0) <= rounding))
+        throw UnsuitableMaterial(
+            region, name + ", of region " + std::to_string(region) +
+                        ", has no direction of fibres of unit length, which its material needs");
+    if (!hybrid) return;
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        corners[k] = mesh.rest_position(mesh.corners(e)[k]);
+    if (const auto reason = why_no_cell(*hybrid, corners))
+        throw UnsuitableMaterial(region, name + " " + *reason);
+}
+
+std::size_t ElementStore::block_index(ElementId e, int region) const {
+    return e.index() / ElementBlock::max_elements * table_.materials.size() +
+           table_.of_region.at(region);
+}
+
+Vec3 ElementStore::fibre_of(ElementId e) const {
+    return fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero());
+}
+
+void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
+    const std::size_t index = block_index(e, mesh.region(e));
+    if (index >= blocks_.size()) blocks_.resize(index + 1);
+    if (!blocks_[index])
+        blocks_[index] =
+            make_block(table_.materials[table_.of_region.at(mesh.region(e))], table_.precision);
+    editable(index).insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    note_change(index);
+}
+
+void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
+    const std::size_t index = block_index(e, mesh.region(e));
+    editable(index).replace(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+    note_change(index);
+}
+
+ElementBlock& ElementStore::editable(std::size_t block) {
+    if (blocks_[block].use_count() > 1) blocks_[block] = blocks_[block]->clone();
+    return *blocks_[block];
+}
+
+void ElementStore::note_change(std::size_t block) {
+    if (block < known_.size()) known_[block] = {};
+    if (changed_blocks_.empty() || changed_blocks_.back() != block)
+        changed_blocks_.push_back(block);
+}
+
+void ElementStore::number_nodes(std::size_t num_nodes) {
+    std::sort(changed_blocks_.begin(), changed_blocks_.end());
+    const auto last = std::unique(changed_blocks_.begin(), changed_blocks_.end());
+    changed_blocks_.erase(last, changed_blocks_.end());
+
+    local_numbers_.resize(std::max(local_numbers_.size(), num_nodes), ElementBlock::unnumbered);
+    ranges_.resize(std::max(ranges_.size(), num_node_ranges(num_nodes)));
+    parts_.resize(blocks_.size());
+    const auto place_of = [](std::vector<Piece>& range, std::size_t block) {
+        return std::lower_bound(range.begin(), range.end(), block,
+                                [](const Piece& p, std::size_t b) { return p.block < b; });
+    };
+    for (const std::size_t b : changed_blocks_) {
+        ElementBlock& block = editable(b);
+        for_each_range(block.nodes(), [&](std::size_t r, std::size_t, std::size_t) {
+            ranges_[r].erase(place_of(ranges_[r], b));
+        });
+        block.number_nodes(local_numbers_);
+        for_each_range(block.nodes(), [&](std::size_t r, std::size_t begin, std::size_t end) {
+            ranges_[r].insert(place_of(ranges_[r], b), {b, begin, end});
+        });
+        parts_[b].resize(block.nodes().size() + 1);
+    }
+    ranges_.resize(num_node_ranges(num_nodes));
+    changed_blocks_.clear();
+}
+
+std::span<const std::byte> ElementStore::bytes_from(std::size_t block) const {
+    while (block < blocks_.size() && !blocks_[block]) ++block;
+    if (block == blocks_.size()) return {};
+    return blocks_[block]->bytes_of_elements();
+}
+
+void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
+                                  const Workers& workers) {
+    assert(ranges_.size() == num_node_ranges(positions.size()));
+    known_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (blocks_[b] && !known_[b].has_forces) compute_forces_of(b, positions, history);
+        known_[b].has_forces = false;
+    });
+}
+
+void ElementStore::compute_states_and_forces(std::span<const Vec3> positions,
+                                             const ViscousHistory& history,
+                                             const Workers& workers) {
+    known_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (!blocks_[b] || known_[b].state) return;
+        known_[b].state = blocks_[b]->state(positions);
+        compute_forces_of(b, positions, history);
+        known_[b].has_forces = true;
+    });
+}
+
+void ElementStore::compute_forces_of(std::size_t block, std::span<const Vec3> positions,
+                                     const ViscousHistory& history) {
+    assert(changed_blocks_.empty());
+    blocks_[block]->compute_forces(blocks_[block]->local_positions(positions), history,
+                                   parts_[block], bytes_from(block + 1));
+}
+
+void ElementStore::fetch(const Piece& piece) const {
+    constexpr std::size_t vectors_in_line = 64 / sizeof(LocalVector);
+    __builtin_prefetch(blocks_[piece.block]->nodes().data() + piece.begin);
+    const LocalVector* const part = parts_[piece.block].data();
+    for (std::size_t i = piece.begin; i < piece.end; i += vectors_in_line)
+        __builtin_prefetch(part + i);
+}
+
+void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const {
+    for (std::size_t n = range.begin; n < range.end; ++n) forces[n].setZero();
+    // What pieces read lies apart: of a body that the caches do not hold each would be waited for.
+    constexpr std::size_t ahead = 2;
+    const std::vector<Piece>& pieces = ranges_[range.number];
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        if (p + ahead < pieces.size()) fetch(pieces[p + ahead]);
+        const Piece& piece = pieces[p];
+        const std::uint32_t* const nodes = blocks_[piece.block]->nodes().data();
+        const LocalVector* const part = parts_[piece.block].data();
+        for (std::size_t i = piece.begin, end = piece.end; i < end; ++i)
+            forces[nodes[i]] += part[i].vector();
+    }
+}
+
+BlockState ElementStore::state(std::span<const Vec3> positions, const Workers& workers) const {
+    known_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (blocks_[b] && !known_[b].state) known_[b].state = blocks_[b]->state(positions);
+    });
+    BlockState all;
+    for (const Known& block : known_)
+        if (block.state) all += *block.state;
+    return all;
+}
+
+std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() const {
+    std::vector<std::shared_ptr<const ElementBlock>> shared;
+    std::copy_if(blocks_.begin(), blocks_.end(), std::back_inserter(shared),
+                 [](const auto& block) { return block != nullptr; });
+    return shared;
+}
+
+std::size_t ElementStore::history_size() const {
+    std::size_t most = 0;
+    for (const Material& material : table_.materials)
+        if (const auto* links = std::get_if<HyperElasticLinks>(&material.method))
+            most = std::max(most, physics::history_size(*links));
+    return most;
+}
+
+double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3> positions,
+                             double dt, Workers& workers, ViscousHistory& history) {
+    assert(changed_blocks_.empty());
+    energies_taken_.assign(blocks_.size(), 0.0);
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (!blocks_[b] || !blocks_[b]->has_history()) return;
+        thread_local std::vector<LocalVector> places_before;
+        energies_taken_[b] =
+            blocks_[b]->advance(blocks_[b]->local_positions(before, places_before),
+                                blocks_[b]->local_positions(positions), dt, history);
+    });
+    return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
+}
+
+void ElementStore::erase(ElementId e, int region) {
+    const std::size_t index = block_index(e, region);
+    editable(index).erase(e);
+    note_change(index);
+}
+
+}  // namespace incise::physics

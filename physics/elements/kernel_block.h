@@ -1,0 +1,371 @@
+// A block whose elements all use one kernel.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <utility>
+
+#include "incise/physics/elements/element_block.h"
+#include "incise/physics/elements/element_tangent.h"
+#include "incise/physics/sum.h"
+
+namespace incise::physics {
+
+/// A kernel whose elements have a history: ViscousKernel.
+template <class Kernel>
+concept HasHistory = requires(Kernel& kernel) {
+    kernel.begin_step(0.0);
+};
+
+/// A kernel that has to know the direction of fibres.
+template <class Kernel>
+concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, Vec3 fibre) {
+    kernel.precompute(X, fibre);
+};
+
+/// A kernel with a fast twin, `Kernel::Lanes`, that does the elastic forces of all elements of a
+/// block: HemlLanes. What a history adds to them comes from the kernel itself or, if it has any,
+/// its MemoryLanes.
+template <class Kernel>
+concept HasLanes = requires {
+    typename Kernel::Lanes;
+};
+
+/// One whose fast twin, in double precision, also has their energies, volumes and stresses.
+template <class Kernel>
+concept HasLanesOfResults = HasLanes<Kernel> &&
+    requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
+    lanes.state(kernel, x);
+    lanes.set_results(kernel, x, std::span<ElementResult>());
+};
+
+/// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
+/// forces for all elements of a block: ViscousLanes.
+template <class Kernel>
+concept HasMemoryLanes = requires {
+    typename Kernel::MemoryLanes;
+};
+
+/// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
+/// a kernel has to have, and element_tangent.h), or ViscousKernel for what it has besides.
+template <class Kernel>
+class KernelBlock final : public ElementBlock {
+  public:
+    static constexpr std::size_t num_corners = Kernel::num_corners;
+    using Corners = std::array<Vec3, num_corners>;
+
+    KernelBlock(const Kernel& kernel, double density)
+        : ElementBlock(num_corners), kernel_(kernel), density_(density) {}
+
+    std::shared_ptr<ElementBlock> clone() const override {
+        return std::make_shared<KernelBlock>(*this);
+    }
+
+    void compute_forces(std::span<const LocalVector> positions,
+                        [[maybe_unused]] const ViscousHistory& history,
+                        std::span<LocalVector> forces,
+                        [[maybe_unused]] std::span<const std::byte> next) const override {
+        assert(is_numbered_ && forces.size() > nodes_.size());
+        std::fill(forces.begin(), forces.end(), LocalVector{});
+        if constexpr (HasMemoryLanes<Kernel>) {
+            lanes_.add_forces(kernel_, positions.data(), forces.data(), memory_lanes_.bytes());
+            memory_lanes_.add_forces(kernel_, history, positions.data(), forces.data(), next);
+            return;
+        }
+        if constexpr (HasLanes<Kernel>)
+            lanes_.add_forces(kernel_, positions.data(), forces.data(), next);
+        if constexpr (!HasLanes<Kernel> || HasHistory<Kernel>)
+            for (std::size_t s = 0; s < elements_.size(); ++s) {
+                const Corners x = gather(s, positions);
+                Corners f;
+                if constexpr (HasHistory<Kernel>)
+                    f = kernel_.forces_of_memory(row(s).rest, x, history.of(elements_[s]));
+                else
+                    f = kernel_.forces(row(s).rest, x);
+                for (std::size_t k = 0; k < num_corners; ++k)
+                    forces[local_corners(s)[k]].vector() += f[k];
+            }
+    }
+
+    std::span<const std::byte> bytes_of_elements() const override {
+        if constexpr (HasLanes<Kernel>)
+            return lanes_.bytes();
+        else
+            return {};
+    }
+
+    void add_forces(const EndOfStep& end, std::span<Vec3> forces) const override {
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            const Corners f = at_end_of_step(s, end, [&](const auto&... state) {
+                return kernel_.forces(row(s).rest, state...);
+            });
+            for (std::size_t k = 0; k < num_corners; ++k) forces[row(s).nodes[k]] += f[k];
+        }
+    }
+
+    double potential(const EndOfStep& end) const override {
+        Sum sum;
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            sum += at_end_of_step(s, end, [&](const auto&... state) {
+                if constexpr (HasHistory<Kernel>)
+                    return kernel_.potential(row(s).rest, state...);
+                else
+                    return kernel_.energy(row(s).rest, state...);
+            });
+        return sum.value();
+    }
+
+    void visit_tangents(const EndOfStep& end, TangentKind kind, TangentSink& sink) const override {
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            auto K = at_end_of_step(s, end, [&](const auto&... state) {
+                return element_tangent(kernel_, row(s).rest, state...);
+            });
+            if (kind == TangentKind::positive) K = positive_part(K);
+            sink.add(row(s).nodes, {K.data(), static_cast<std::size_t>(K.size())});
+        }
+    }
+
+    bool has_history() const override { return HasHistory<Kernel>; }
+
+    double advance(std::span<const LocalVector> before, std::span<const LocalVector> positions,
+                   double dt, ViscousHistory& history) override {
+        assert(is_numbered_);
+        double energy = 0.0;
+        if constexpr (HasHistory<Kernel>) {
+            // The values of which only this function uses: others may share the block.
+            kernel_.begin_step(dt);
+            const auto advance_one = [&](std::size_t s) {
+                return kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
+                                       history.of(elements_[s]));
+            };
+            if constexpr (HasMemoryLanes<Kernel>)
+                energy = memory_lanes_.advance(kernel_, before.data(), positions.data(), history,
+                                               advance_one);
+            else
+                for (std::size_t s = 0; s < elements_.size(); ++s) energy += advance_one(s);
+        }
+        return energy;
+    }
+
+    BlockState state(std::span<const Vec3> positions) const override {
+        assert(is_numbered_);
+        if constexpr (HasLanesOfResults<Kernel>) {
+            const LocalVector* x = local_positions(positions).data();
+            BlockState state =
+                lanes_in_doubles([&](const auto& lanes) { return lanes.state(kernel_, x); });
+            if constexpr (HasHistory<Kernel>)
+                state.elastic_energy = kernel_.long_time_share * state.elastic_energy;
+            return state;
+        }
+        BlockState state;
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            const Corners x = gather(s, positions);
+            state.elastic_energy += kernel_.energy(row(s).rest, x);
+            state.min_volume_ratio =
+                std::min(state.min_volume_ratio, kernel_.volume_ratio(row(s).rest, x));
+        }
+        return state;
+    }
+
+    Sum rest_volume() const override {
+        assert(is_numbered_);
+        return rest_volume_;
+    }
+
+    double stiffness_energy() const override {
+        double sum = 0.0;
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            sum += kernel_.stiffness_energy(row(s).rest);
+        return sum;
+    }
+
+    ElementResult result(ElementId e, std::span<const Vec3> positions,
+                         const ViscousHistory& history) const override {
+        return result_of(slot_of(e), positions, history);
+    }
+
+    void results(std::span<const Vec3> positions, const ViscousHistory& history,
+                 std::span<ElementResult> results) const override {
+        assert(results.size() == elements_.size());
+        if constexpr (HasLanesOfResults<Kernel> && !HasHistory<Kernel>) {
+            for (std::size_t s = 0; s < elements_.size(); ++s)
+                results[s].volume = row(s).rest.volume;
+            const LocalVector* x = local_positions(positions).data();
+            return lanes_in_doubles(
+                [&](const auto& lanes) { lanes.set_results(kernel_, x, results); });
+        }
+        for (std::size_t s = 0; s < elements_.size(); ++s)
+            results[s] = result_of(s, positions, history);
+    }
+
+    const ElementShares& shares(ElementId e) const override { return row(slot_of(e)).shares; }
+    double rest_volume(ElementId e) const override { return row(slot_of(e)).rest.volume; }
+
+    void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                const Vec3& fibre) override {
+        const auto s = static_cast<std::ptrdiff_t>(add_slot(e));
+        row_of_.insert(row_of_.begin() + s, static_cast<std::uint32_t>(rows_.size()));
+        rows_.push_back(make_row(corners, rest_positions, fibre));
+        rest_volumes_.insert(rest_volumes_.begin() + s, rows_.back().rest.volume);
+    }
+
+    void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 const Vec3& fibre) override {
+        const std::size_t s = slot_of(e);
+        rows_[row_of_[s]] = make_row(corners, rest_positions, fibre);
+        rest_volumes_[s] = row(s).rest.volume;
+        change_slot(s);
+    }
+
+    void erase(ElementId e) override {
+        const std::size_t s = slot_of(e);
+        // The last row takes the place of the one that goes.
+        const auto last = static_cast<std::uint32_t>(rows_.size() - 1);
+        rows_[row_of_[s]] = rows_[last];
+        *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
+        rows_.pop_back();
+        row_of_.erase(row_of_.begin() + static_cast<std::ptrdiff_t>(s));
+        rest_volumes_.erase(rest_volumes_.begin() + static_cast<std::ptrdiff_t>(s));
+        remove_slot(s);
+    }
+
+  protected:
+    std::span<const std::uint32_t> corners_of(std::size_t s) const override { return row(s).nodes; }
+
+    void use_numbers(std::span<const std::size_t> changed) override {
+        rest_volume_ = {};
+        for (const double volume : rest_volumes_) rest_volume_ += volume;
+        if constexpr (HasLanes<Kernel>)
+            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, row(s).rest); });
+        if constexpr (HasMemoryLanes<Kernel>)
+            update(memory_lanes_, changed,
+                   [&](std::size_t s) { memory_lanes_.set(s, elements_[s], row(s).rest); });
+    }
+
+  private:
+    struct Row {
+        std::array<std::uint32_t, num_corners> nodes;
+        typename Kernel::Element rest;
+        ElementShares shares;
+    };
+
+    struct NoLanes {};
+    template <class K>
+    struct LanesOf {
+        using Type = NoLanes;
+    };
+    template <HasLanes K>
+    struct LanesOf<K> {
+        using Type = typename K::Lanes;
+    };
+    template <class K>
+    struct MemoryLanesOf {
+        using Type = NoLanes;
+    };
+    template <HasMemoryLanes K>
+    struct MemoryLanesOf<K> {
+        using Type = typename K::MemoryLanes;
+    };
+
+    const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
+
+    /// By set(s), which sets the element in slot s.
+    template <class Lanes, class Set>
+    void fill(Lanes& lanes, const Kernel& kernel, Set set) const {
+        lanes.assign(elements_.size(), kernel);
+        for (std::size_t s = 0; s < elements_.size(); ++s) set(s);
+        lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
+    }
+    template <class Lanes, class Set>
+    void update(Lanes& lanes, std::span<const std::size_t> changed, Set set) const {
+        if (have_moved_) return fill(lanes, kernel_, set);
+        for (const std::size_t s : changed) set(s);
+        lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
+    }
+
+    /// use(lanes), these made anew where those for forces are in floats.
+    template <class Use>
+    auto lanes_in_doubles(Use use) const {
+        if (kernel_.precision == Precision::double_precision) return use(lanes_);
+        Kernel in_doubles = kernel_;
+        in_doubles.precision = Precision::double_precision;
+        typename LanesOf<Kernel>::Type lanes;
+        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest); });
+        return use(lanes);
+    }
+
+    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
+                 [[maybe_unused]] const Vec3& fibre) const {
+        assert(corners.size() == num_corners);
+        Row row;
+        Corners X;
+        for (std::size_t k = 0; k < num_corners; ++k) {
+            row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
+            X[k] = rest_positions[corners[k].index()];
+        }
+        if constexpr (TakesFibre<Kernel>)
+            row.rest = kernel_.precompute(X, fibre);
+        else
+            row.rest = kernel_.precompute(X);
+        row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
+        const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
+        std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
+        return row;
+    }
+
+    /// evaluate(corners), or for a kernel with history evaluate(corners, kernel's end of step).
+    template <class Evaluate>
+    auto at_end_of_step(std::size_t s, const EndOfStep& end, Evaluate evaluate) const {
+        if constexpr (HasHistory<Kernel>)
+            return evaluate(gather(s, end.positions),
+                            kernel_.end_of_step(end.history.of(elements_[s]), end.dt));
+        else
+            return evaluate(gather(s, end.positions));
+    }
+
+    ElementResult result_of(std::size_t s, std::span<const Vec3> positions,
+                            const ViscousHistory& history) const {
+        const Corners x = gather(s, positions);
+        ElementResult result;
+        result.volume = row(s).rest.volume;
+        result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
+        result.energy = kernel_.energy(row(s).rest, x);
+        const Corners f = forces_of(s, x, history);
+        Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
+        for (std::size_t k = 1; k < num_corners; ++k) virial += f[k] * (x[k] - x[0]).transpose();
+        result.set_stress(virial);
+        return result;
+    }
+
+    Corners forces_of(std::size_t s, const Corners& x,
+                      [[maybe_unused]] const ViscousHistory& history) const {
+        if constexpr (HasHistory<Kernel>)
+            return kernel_.forces(row(s).rest, x, history.of(elements_[s]));
+        else
+            return kernel_.forces(row(s).rest, x);
+    }
+
+    Corners gather(std::size_t s, std::span<const Vec3> positions) const {
+        Corners x;
+        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[row(s).nodes[k]];
+        return x;
+    }
+    /// By local number.
+    Corners gather(std::size_t s, std::span<const LocalVector> positions) const {
+        Corners x;
+        for (std::size_t k = 0; k < num_corners; ++k)
+            x[k] = positions[local_corners(s)[k]].vector();
+        return x;
+    }
+
+    Kernel kernel_;
+    double density_;
+    std::vector<Row> rows_;              // in no order
+    std::vector<std::uint32_t> row_of_;  // by slot
+    std::vector<double> rest_volumes_;   // by slot, m3
+    typename LanesOf<Kernel>::Type lanes_;
+    typename MemoryLanesOf<Kernel>::Type memory_lanes_;
+    Sum rest_volume_;
+};
+
+}  // namespace incise::physics

@@ -1,0 +1,79 @@
+// A law that is not one of the library's own: that of a program which uses the library.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "incise/physics/laws/law_response.h"
+
+namespace incise::physics {
+
+/// Holds any isotropic law. Make it with custom_law(). A law of the library's own is some times
+/// faster: this one is asked one element at a time, by a call that the compiler cannot see through.
+class CustomLaw {
+  public:
+    /// What is asked of a law.
+    class Functions {
+      public:
+        virtual ~Functions() = default;
+        /// See LawResponse, with and without derivatives.
+        virtual LawResponse<double> response(const LinkStrain<double>& s, double J0) const = 0;
+        virtual LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const = 0;
+        virtual double rest_lambda() const = 0;  ///< Pa
+        virtual double rest_mu() const = 0;      ///< Pa
+    };
+
+    explicit CustomLaw(std::shared_ptr<const Functions> functions)
+        : functions_(std::move(functions)) {}
+
+    double rest_lambda() const { return functions_->rest_lambda(); }
+    double rest_mu() const { return functions_->rest_mu(); }
+    template <class T>
+    LawResponse<T> response(const LinkStrain<T>& s, double J0) const {
+        if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
+            return functions_->response(s, J0);
+        } else {
+            // Lanes, one after the other.
+            LawResponse<T> all{0.0, 0.0, 0.0, 0.0};
+            for (int lane = 0; lane < T::size; ++lane) {
+                using Number = std::remove_cvref_t<decltype(s.a.v[lane])>;
+                const LawResponse<double> one = functions_->response(
+                    LinkStrain<double>{s.a.v[lane], s.b.v[lane], s.J.v[lane]}, J0);
+                all.w.v[lane] = static_cast<Number>(one.w);
+                all.w_a.v[lane] = static_cast<Number>(one.w_a);
+                all.w_b.v[lane] = static_cast<Number>(one.w_b);
+                all.w_J.v[lane] = static_cast<Number>(one.w_J);
+            }
+            return all;
+        }
+    }
+
+  private:
+    std::shared_ptr<const Functions> functions_;
+};
+
+/// Makes a law of a struct that is written as those in law.h are: with rest_lambda(), rest_mu() and
+/// the template response(). examples/custom_law.cpp shows one.
+template <class L>
+CustomLaw custom_law(L law) {
+    class Held final : public CustomLaw::Functions {
+      public:
+        explicit Held(L held) : law_(std::move(held)) {}
+        LawResponse<double> response(const LinkStrain<double>& s, double J0) const override {
+            return law_.response(s, J0);
+        }
+        LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const override {
+            return law_.response(s, J0);
+        }
+        double rest_lambda() const override { return law_.rest_lambda(); }
+        double rest_mu() const override { return law_.rest_mu(); }
+
+      private:
+        L law_;
+    };
+    return CustomLaw(std::make_shared<const Held>(std::move(law)));
+}
+
+}  // namespace incise::physics

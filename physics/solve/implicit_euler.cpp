@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <sstream>
+
+#include "incise/physics/body/motion_failure.h"
+#include "incise/physics/solve/integrator.h"
+
+namespace incise::physics {
+
+void ImplicitEuler::step(Model& model, double time, double dt) {
+    model.begin_step();
+    newton_.follow(model);
+    part_of_step(model, time, dt, 0);
+}
+
+void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvings) {
+    const auto before = model.positions(), v = model.velocities();
+    const double damping = model.damping(), slowed = 1.0 + damping * dt;
+    x_.assign(before.begin(), before.end());
+    anchor_.resize(x_.size());
+    for (std::size_t n = 0; n < x_.size(); ++n) anchor_[n] = x_[n] + dt / slowed * v[n];
+    const NewtonReport report = newton_.solve(
+        model, {.time = time + dt, .dt = dt, .inertia = slowed / (dt * dt), .anchor = anchor_}, x_,
+        elastic_);
+    if (!report.has_converged) {
+        constexpr int most_halvings = 10;
+        if (halvings < most_halvings) {
+            part_of_step(model, time, 0.5 * dt, halvings + 1);
+            part_of_step(model, time + 0.5 * dt, 0.5 * dt, halvings + 1);
+            return;
+        }
+        std::ostringstream text;
+        text << "the implicit step to t = " << time + dt
+             << " s has no solution within reach: " << report.iterations << " iterations, "
+             << report.imbalance << " N out of balance of " << report.scale
+             << " N, also with a step of " << dt << " s";
+        throw MotionFailure(FailureCause::no_implicit_step, text.str());
+    }
+
+    outer_.resize(x_.size());
+    model.outer_forces_at(x_, time + dt, outer_);
+    velocities_.assign(v.begin(), v.end());
+    reactions_.assign(x_.size(), Vec3::Zero());
+    double work = 0.0, dissipated = 0.0;
+    for (std::size_t n = 0; n < x_.size(); ++n) {
+        const double mass = model.masses()[n];
+        if (mass == 0.0) continue;  // dead
+        const Vec3 way = x_[n] - before[n], v_new = way / dt, change = v_new - v[n];
+        const Vec3 force = elastic_[n] + outer_[n];
+        work += outer_[n].dot(way);
+        dissipated += damping * mass * dt * v_new.squaredNorm() - elastic_[n].dot(way);
+        for (int c = 0; c < 3; ++c) {
+            const double swing = 0.5 * mass * change[c] * change[c];
+            if (newton_.is_free(n, c)) {
+                dissipated += swing;
+                continue;
+            }
+            // At the mean velocity, as in Model::integrate.
+            reactions_[n][c] = mass * (change[c] / dt + damping * v_new[c]) - force[c];
+            work += reactions_[n][c] * way[c] - swing;
+        }
+        velocities_[n] = v_new;
+    }
+    const double energy = model.elastic_energy();
+    model.take_step(x_, velocities_, reactions_, dt);
+    // The work on the elements less what they keep: viscosity and the rule have taken it.
+    model.book(work, dissipated - (model.elastic_energy() - energy));
+}
+
+}  // namespace incise::physics

@@ -1,0 +1,73 @@
+// How a body gets from one moment to the next: explicitly, implicitly, or from one equilibrium to
+// the next.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "incise/physics/body/model.h"
+#include "incise/physics/solve/newton.h"
+
+namespace incise::physics {
+
+class Integrator {
+  public:
+    virtual ~Integrator() = default;
+
+    /// Takes the body from `time` to time + dt, s. Forces are then to be computed.
+    /// Throws PhysicsError if there is no way.
+    virtual void step(Model& model, double time, double dt) = 0;
+    /// Called after the edits of a step, `time` being its end. Whether it has moved the body.
+    virtual bool settle(Model&, double /*time*/) { return false; }
+
+    /// What it keeps from step to step, for one that goes on with a restored model; most keep
+    /// nothing.
+    virtual void save(topology::ArchiveWriter&) const {}
+    virtual void restore(topology::ArchiveReader&, const Model&) {}
+};
+
+/// Model::integrate: fast steps below the bound of stability.
+class SemiImplicitEuler final : public Integrator {
+  public:
+    void step(Model& model, double time, double dt) override { model.integrate(time, dt); }
+};
+
+/// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'), with the forces, viscous
+/// and damping ones too, of the end of the step. Stable at any dt; of first order; it damps what
+/// changes faster than dt. Steps that Newton's method does not solve are halved, up to ten times.
+/// Books: loads and supports work with their forces of the end of the step, and what the rule takes
+/// from the energy by itself counts as dissipated.
+class ImplicitEuler final : public Integrator {
+  public:
+    void step(Model& model, double time, double dt) override;
+
+  private:
+    void part_of_step(Model& model, double time, double dt, int halvings);
+
+    NewtonSolver newton_{false};
+    std::vector<Vec3> x_, velocities_, anchor_, elastic_, outer_, reactions_;  // by node id
+};
+
+/// Equilibrium at each moment: no inertia, no velocities, viscosity relaxed. From one moment to the
+/// next in one increment, or where Newton's method fails in smaller ones: supports and loads go
+/// with the time, and what was out of balance before (after a cut, or under loads that are there
+/// from the start) is let go in proportion. Its work counts as dissipated. Pieces that can move
+/// freely stay where they are; they must be in equilibrium under their loads.
+class Statics final : public Integrator {
+  public:
+    void step(Model& model, double time, double dt) override;
+    /// To the equilibrium of the edited body.
+    bool settle(Model& model, double time) override;
+    void save(topology::ArchiveWriter& ar) const override { newton_.save(ar); }
+    void restore(topology::ArchiveReader& ar, const Model& model) override {
+        newton_.restore(ar, model);
+    }
+
+  private:
+    void require_equilibrium_of_free_pieces(const Model& model, double time);
+
+    NewtonSolver newton_{true};
+    std::uint64_t structure_version_ = 0;  // of the model, at the last equilibrium
+    std::vector<Vec3> x_, velocities_, elastic_, outer_, reactions_, holding_, imbalance_,
+        next_elastic_, next_outer_;  // by node id
+};
+
+}  // namespace incise::physics

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "incise/physics/body/motion_failure.h"
+#include "incise/physics/solve/integrator.h"
+
+namespace incise::physics {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double smallest_increment = 1.0 / 1024.0;  // of a load step
+constexpr int few_iterations = 10;                   // the next increment may be larger
+
+}  // namespace
+
+bool Statics::settle(Model& model, double time) {
+    if (structure_version_ == model.structure_version()) return false;
+    step(model, time, 0.0);
+    return true;
+}
+
+void Statics::require_equilibrium_of_free_pieces(const Model& model, double time) {
+    if (newton_.free_pieces().empty()) return;
+    next_outer_.resize(x_.size());
+    model.outer_forces_at(x_, time, next_outer_);
+    // Where they are now, for those held in part may have been led elsewhere.
+    for (const FreePiece& piece : find_free_pieces(model.mesh(), x_, model.supports()))
+        require_equilibrium(model.mesh(), piece, x_, next_outer_);
+}
+
+void Statics::step(Model& model, double time, double dt) {
+    structure_version_ = model.structure_version();
+    newton_.follow(model);
+    model.begin_step();
+    x_.assign(model.positions().begin(), model.positions().end());
+    require_equilibrium_of_free_pieces(model, time + dt);
+
+    const std::size_t num_nodes = x_.size();
+    for (auto* field : {&velocities_, &elastic_, &reactions_, &holding_, &imbalance_})
+        field->assign(num_nodes, Vec3::Zero());
+    for (auto* field : {&outer_, &next_outer_}) field->resize(num_nodes);
+    model.elements().add_forces({x_, model.history(), infinite}, elastic_);
+    model.outer_forces_at(x_, time, outer_);
+    const auto free_part = [&](std::size_t n, const Vec3& force) {
+        Vec3 part = force;
+        for (int c = 0; c < 3; ++c)
+            if (!newton_.is_free(n, c)) part[c] = 0.0;
+        return part;
+    };
+    for (std::size_t n = 0; n < num_nodes; ++n)
+        imbalance_[n] = free_part(n, elastic_[n] + outer_[n]);
+
+    double done = 0.0, increment = 1.0;
+    while (done < 1.0) {
+        const double next = std::min(done + increment, 1.0), now = time + next * dt;
+        for (std::size_t n = 0; n < num_nodes; ++n) holding_[n] = (next - 1.0) * imbalance_[n];
+        x_.assign(model.positions().begin(), model.positions().end());
+        const NewtonReport report =
+            newton_.solve(model, {.time = now, .dt = infinite, .inertia = 0.0, .holding = holding_},
+                          x_, next_elastic_);
+        if (!report.has_converged) {
+            increment *= 0.5;
+            if (increment >= smallest_increment) continue;
+            std::ostringstream text;
+            text << "no equilibrium found at load time " << now << " s: " << report.iterations
+                 << " iterations, " << report.imbalance << " N out of balance of " << report.scale
+                 << " N, also with a " << 1.0 / smallest_increment
+                 << "th of the load step; the tissue may have become unstable there";
+            throw MotionFailure(FailureCause::no_equilibrium, text.str());
+        }
+        model.outer_forces_at(x_, now, next_outer_);
+        // Forces go in proportion to the way, so that their mean does the work.
+        double work = 0.0, released = 0.0;
+        const double held = 1.0 - 0.5 * (done + next);
+        for (std::size_t n = 0; n < num_nodes; ++n) {
+            if (model.masses()[n] == 0.0) continue;  // dead
+            const Vec3 way = x_[n] - model.positions()[n];
+            const Vec3 net = elastic_[n] + outer_[n], next_net = next_elastic_[n] + next_outer_[n];
+            reactions_[n] = free_part(n, next_net) - next_net;
+            work += 0.5 *
+                    (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n]).dot(way);
+            released += held * imbalance_[n].dot(way);
+        }
+        const double taken = model.take_step(x_, velocities_, reactions_, infinite);
+        model.book(work, released + taken);
+        std::swap(elastic_, next_elastic_);
+        std::swap(outer_, next_outer_);
+        done = next;
+        if (report.iterations <= few_iterations) increment *= 2.0;
+    }
+    require_equilibrium_of_free_pieces(model, time + dt);
+}
+
+}  // namespace incise::physics
