@@ -10,10 +10,10 @@
 #include "incise/app/cut_tools.h"
 #include "incise/app/help_formatter.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/sim/table_reader.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -5,10 +5,10 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/number_list.h"
+#include "incise/base/error.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/sim/diagnostics.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -16,8 +16,8 @@
 #include "incise/app/command_line.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/physics/elements/workers.h"
-#include "incise/topology/error.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <new>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/sim/body.h"
 #include "incise/sim/scenario_reader.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/files/number_text.h"
 #include "incise/sim/diagnostics.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::app {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "incise/app/messages.h"
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -7,10 +7,10 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/scenario_reader.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_check.h"
 

@@ -4,9 +4,9 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"
 

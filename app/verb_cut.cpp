@@ -9,6 +9,7 @@
 #include "incise/app/cut_tools.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
@@ -19,7 +20,6 @@
 #include "incise/sim/geometric_cut.h"
 #include "incise/sim/table_reader.h"
 #include "incise/sim/tool_build.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

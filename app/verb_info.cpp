@@ -7,8 +7,8 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_metrics.h"
 

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/sim/material_catalog.h"
 #include "incise/sim/table_reader.h"
 #include "incise/sim/tissue_catalog.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -9,11 +9,11 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/image/label_mesh.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/sim/table_reader.h"
-#include "incise/topology/error.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::app {

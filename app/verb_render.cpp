@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "incise/app/verbs.h"
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::app {
 

@@ -14,13 +14,13 @@
 #include "incise/app/stop_signals.h"
 #include "incise/app/stopped_run.h"
 #include "incise/app/verbs.h"
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/sim/body_problems.h"
 #include "incise/sim/run_writer.h"
 #include "incise/sim/simulation.h"
-#include "incise/topology/error.h"
 
 namespace incise::app {
 

@@ -10,8 +10,6 @@
 namespace incise::bench {
 namespace {
 
-using topology::ElementId;
-
 constexpr std::size_t batch = 100;
 
 void set_rate(benchmark::State& state) {

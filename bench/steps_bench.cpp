@@ -8,10 +8,7 @@
 namespace incise::bench {
 namespace {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 std::vector<NodeId> nodes_at_height(const Mesh& mesh, double z) {
     std::vector<NodeId> nodes;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/cutting/exact/cut_plan.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/tools/separator.h"
-#include "incise/topology/error.h"
 
 namespace incise::cutting {
 

@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "incise/cutting/element_boxes.h"
+#include "incise/base/types.h"
 #include "incise/cutting/exact/scars.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
+#include "incise/topology/spatial/element_boxes.h"
 
 namespace incise::cutting {
 
@@ -129,7 +129,7 @@ class Cutter {
     Split noted(Split done, std::optional<std::size_t> worker);
 
     UncutBody uncut_;
-    ElementBoxes boxes_;
+    topology::ElementBoxes boxes_;
     Scars scars_;
     std::vector<Cut> cuts_;             // by CutId
     topology::NodeField<Vec3> before_;  // positions before the present motion, by node id

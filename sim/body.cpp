@@ -9,13 +9,13 @@
 #include <span>
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/sim/body_problems.h"
 #include "incise/sim/elastic_constants.h"
 #include "incise/sim/selection.h"
 #include "incise/sim/single_precision.h"
 #include "incise/sim/step_limit.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 
@@ -119,7 +119,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
         return {};
     std::vector<Vec3> fibres(mesh.element_capacity(), Vec3::Zero());
     for (std::size_t i = 0; i < fibres.size(); ++i) {
-        const topology::ElementId e(i);
+        const ElementId e(i);
         if (!mesh.is_alive(e)) continue;
         const std::size_t material = table.of_region.at(mesh.region(e));
         if (!materials[material].has_fibres()) continue;
@@ -144,7 +144,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
 
 std::set<int> regions_of(const topology::Mesh& mesh) {
     std::set<int> regions;
-    for (const topology::ElementId e : mesh.elements()) regions.insert(mesh.region(e));
+    for (const ElementId e : mesh.elements()) regions.insert(mesh.region(e));
     return regions;
 }
 
@@ -276,7 +276,7 @@ std::string place_of_material(const Scenario& scenario, int region) {
 }
 
 /// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
-std::string out_of_reach(const ScriptedTool& tool, const cutting::Box& body) {
+std::string out_of_reach(const ScriptedTool& tool, const Box& body) {
     const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
     std::ostringstream text;
     text << "tool '" << tool.name << "' touches nothing where the body rests, between "
@@ -288,7 +288,7 @@ std::string out_of_reach(const ScriptedTool& tool, const cutting::Box& body) {
 /// @param mesh  without one, only what needs none is checked: the files of surfaces
 std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
                                       BodyProblems& problems, std::vector<std::string>& warnings) {
-    cutting::Box body;
+    Box body;
     if (mesh)
         for (const Vec3& x : mesh->rest_positions()) body.extend(x);
     // An end that is not known yet hides nothing.

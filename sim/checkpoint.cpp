@@ -6,12 +6,12 @@
 #include <optional>
 #include <system_error>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/checked_file.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_text.h"
 #include "incise/sim/measured_quantities.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 
@@ -115,7 +115,7 @@ SavedMoment::SavedMoment(const Simulation& simulation)
 void SavedMoment::write(const fs::path& folder, const Written& written, CheckpointKind kind) const {
     if (!fs::is_directory(folder_of_checkpoints(folder)))
         io::make_output_folder(folder_of_checkpoints(folder));
-    topology::ArchiveWriter ar;
+    ArchiveWriter ar;
     ar(std::string(INCISE_VERSION), state_format, scenario_->contents, fingerprint_, written,
        state_.bytes());
     io::write_checked_file(folder_of_checkpoints(folder) / CheckpointName{kind, step_}.text(),
@@ -147,7 +147,7 @@ void remove_checkpoints_of_stops(const fs::path& folder) {
 }
 
 Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
-    topology::ArchiveReader ar(bytes);
+    ArchiveReader ar(bytes);
     std::string version;
     name_place([&] { ar(version); });
     if (version != INCISE_VERSION)
@@ -209,7 +209,7 @@ void Checkpoint::restore(Simulation& simulation) const {
                          "that cuts it, has changed since; put the former one back, or begin anew "
                          "without --resume");
     name_place([&] {
-        topology::ArchiveReader ar(state_);
+        ArchiveReader ar(state_);
         simulation.restore(ar);
         const auto& frames = written_.frames;
         const auto is_late = [](const auto& a, const auto& b) { return !(a.time < b.time); };

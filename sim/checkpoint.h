@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/archive.h"
 #include "incise/io/files/written_bytes.h"
 #include "incise/io/vtk/series.h"
 #include "incise/sim/simulation.h"
-#include "incise/topology/archive.h"
 
 namespace incise::sim {
 
@@ -45,7 +45,7 @@ class SavedMoment {
   private:
     const Scenario* scenario_;
     std::uint64_t fingerprint_, step_;
-    topology::ArchiveWriter state_;
+    ArchiveWriter state_;
 };
 
 /// Throws OutputError.

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <optional>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/diagnostics.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -7,9 +7,6 @@
 
 namespace incise::sim {
 
-using topology::ElementId;
-using topology::NodeId;
-
 namespace {
 
 /// One value a row, from a function of the row that returns a vector or a number.

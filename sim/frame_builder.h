@@ -30,7 +30,7 @@ class FrameBuilder {
     bool has(Field field) const;
 
     std::vector<Field> fields_;
-    std::vector<topology::ElementId> elements_;         // by row
+    std::vector<ElementId> elements_;                   // by row
     std::optional<physics::ElementSnapshot> snapshot_;  // if a field asks for it
     io::Frame frame_;
 };

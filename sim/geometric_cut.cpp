@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/exact/cut_plan.h"
 #include "incise/cutting/exact/step_length.h"
@@ -17,7 +18,6 @@
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/cutting/tools/separator.h"
-#include "incise/topology/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -25,10 +25,7 @@ namespace incise::sim {
 
 using cutting::TissueMotion;
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 

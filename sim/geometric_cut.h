@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/surface_data.h"
-#include "incise/topology/types.h"
 
 namespace incise::sim {
 

@@ -84,9 +84,9 @@ class Ledger {
     /// order of the step: the integrator's energy swings with it.
     double energy_error() const;
 
-    void save(topology::ArchiveWriter& ar) const { list(ar, *this); }
+    void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Goes on from what was saved: on a ledger of the model as it was then.
-    void restore(topology::ArchiveReader& ar) { list(ar, *this); }
+    void restore(ArchiveReader& ar) { list(ar, *this); }
 
   private:
     static void list(auto& ar, auto& self) {

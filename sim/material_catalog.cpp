@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/sim/elastic_constants.h"
 #include "incise/sim/scenario_sections.h"
 #include "incise/sim/tissue_catalog.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "incise/base/error.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_format.h"
 #include "incise/sim/quantities.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

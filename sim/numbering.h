@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::sim {
 

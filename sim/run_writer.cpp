@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/io/vtk/frame.h"
 #include "incise/physics/elements/precision.h"
@@ -21,7 +22,6 @@
 #include "incise/sim/selection.h"
 #include "incise/sim/time_key.h"
 #include "incise/topology/cell_kind.h"
-#include "incise/topology/types.h"
 
 namespace incise::sim {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/vtk/series.h"
 #include "incise/sim/quantities.h"
 #include "incise/sim/scenario_sections.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <sstream>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::sim {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::sim {
 
@@ -43,15 +43,14 @@ struct Selection {
 
 /// Nodes for which everything given holds, at rest; in a region are all nodes of its elements, also
 /// those that it shares with another. Ascending.
-std::vector<topology::NodeId> select_nodes(const topology::Mesh& mesh, const Selection& where);
+std::vector<NodeId> select_nodes(const topology::Mesh& mesh, const Selection& where);
 
 /// Faces of the boundary whose element is in `where.regions` and for all of whose nodes the rest
 /// holds; ascending.
-std::vector<topology::FaceId> select_faces(const topology::Mesh& mesh, const Selection& where);
+std::vector<FaceId> select_faces(const topology::Mesh& mesh, const Selection& where);
 
 /// Elements that are in `where.regions` and for all of whose nodes the rest holds; ascending.
-std::vector<topology::ElementId> select_elements(const topology::Mesh& mesh,
-                                                 const Selection& where);
+std::vector<ElementId> select_elements(const topology::Mesh& mesh, const Selection& where);
 
 /// Throws InputError that says where the mesh is, if `count` is zero.
 /// @param what  such as "constraint 'clamp'"

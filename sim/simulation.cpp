@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/io/files/checked_file.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_format.h"
@@ -12,7 +13,6 @@
 #include "incise/sim/body.h"
 #include "incise/sim/remedies.h"
 #include "incise/sim/step_limit.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 
@@ -21,12 +21,12 @@ namespace {
 /// Of what the body is made of at the start, and of the files of tools.
 std::uint64_t fingerprint_of(const physics::Model& model, const std::vector<ToolSpec>& tools) {
     const topology::Mesh& mesh = model.mesh();
-    topology::ArchiveWriter ar;
+    ArchiveWriter ar;
     for (const Vec3& x : mesh.rest_positions()) ar(x);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const topology::ElementId e(i);
+        const ElementId e(i);
         ar(mesh.label(e), mesh.kind(e), mesh.region(e));
-        for (const topology::NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
+        for (const NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
         for (int f = 0; f < mesh.num_faces(e); ++f) ar(mesh.neighbor({e, f}).element);
     }
     for (const Vec3& fibre : model.fibres()) ar(fibre);
@@ -107,11 +107,11 @@ void Simulation::tell_edits() {
     }
 }
 
-void Simulation::save(topology::ArchiveWriter& ar) const {
+void Simulation::save(ArchiveWriter& ar) const {
     ar(world_.save(), edits_, last_step_, num_frames_);
 }
 
-void Simulation::restore(topology::ArchiveReader& ar) {
+void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
     ar(edits_, last_step_, num_frames_);
     if (!(time() < scenario_.dynamics.end_time))
@@ -152,7 +152,7 @@ void Simulation::warn_of_lost_elements() {
     constexpr double least_volume_ratio = 0.01;
     std::size_t num_crushed = 0;
     if (model().min_volume_ratio() < least_volume_ratio)
-        for (const topology::ElementId e : mesh().elements())
+        for (const ElementId e : mesh().elements())
             num_crushed += model().element_result(e).volume_ratio < least_volume_ratio;
     std::ostringstream text;
     text << "at the end, t = " << time() << " s, ";

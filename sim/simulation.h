@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/archive.h"
 #include "incise/sim/ledger.h"
 #include "incise/sim/scenario.h"
 #include "incise/sim/tool_build.h"
 #include "incise/sim/world.h"
-#include "incise/topology/archive.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::sim {
@@ -55,11 +55,11 @@ class Simulation {
 
     /// Everything that a simulation of the same scenario needs to go on from here to the same bits,
     /// called between two steps. Cost: that of World::save.
-    void save(topology::ArchiveWriter& ar) const;
+    void save(ArchiveWriter& ar) const;
     /// Goes on from what another simulation of this scenario saved; on one that has not moved yet.
     /// Throws InputError, saying what is wrong, for data that are not of this body or are damaged;
     /// the simulation is of no use then. Cost: that of World::restore.
-    void restore(topology::ArchiveReader& ar);
+    void restore(ArchiveReader& ar);
     /// Equal for simulations that begin with the same body: mesh, fibres, surfaces that cut.
     std::uint64_t fingerprint() const { return fingerprint_; }
 

@@ -12,7 +12,7 @@ namespace incise::sim {
 namespace {
 
 /// Least altitude over longest edge of a tetrahedron.
-double thinness(const topology::Mesh& mesh, topology::ElementId e) {
+double thinness(const topology::Mesh& mesh, ElementId e) {
     std::array<Vec3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
     double longest = 0.0;
@@ -27,8 +27,8 @@ std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) 
     constexpr double least_thinness = 1e-2;  // below it floats lose strains of a few per cent
     std::size_t num_thin = 0;
     double thinnest = 1.0;
-    topology::ElementId thinnest_element;
-    for (const topology::ElementId e : mesh.elements()) {
+    ElementId thinnest_element;
+    for (const ElementId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         const double ratio = thinness(mesh, e);
         if (ratio >= least_thinness) continue;

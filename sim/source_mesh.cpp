@@ -3,12 +3,12 @@
 
 #include <set>
 
+#include "incise/base/error.h"
 #include "incise/io/files/memory.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/sim/body_problems.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"
 

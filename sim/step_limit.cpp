@@ -3,8 +3,8 @@
 
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/sim/body_problems.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 

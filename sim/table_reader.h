@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/sim/diagnostics.h"
 #include "incise/sim/document.h"
 #include "incise/sim/limits.h"
-#include "incise/topology/types.h"
 
 namespace incise::sim {
 

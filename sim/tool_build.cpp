@@ -7,11 +7,11 @@
 #include <sstream>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/io/surface/surface_reader.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 
@@ -45,16 +45,16 @@ Extent extent_of(const cutting::ToolShape& shape) {
 /// Holds the points of the tool's frame all along the path. A point at the distance r from the
 /// frame's origin that turns by an angle leaves the straight way between its ends by at most
 /// r angle^2 / 8: its acceleration over a path of length 1 is r angle^2.
-cutting::Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
-    cutting::Box swept;
+Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
+    Box swept;
     Pose before = path.keys().front().value;
     for (const auto& [time, after] : path.keys()) {
         const double angle = before.rotation.angularDistance(after.rotation);
         for (const Vec3& x : points) {
-            cutting::Box way(before.to_world(x));
+            Box way(before.to_world(x));
             way.extend(after.to_world(x));
             const Vec3 bulge = Vec3::Constant(x.norm() * angle * angle / 8.0);
-            swept.extend(cutting::Box(way.min() - bulge, way.max() + bulge));
+            swept.extend(Box(way.min() - bulge, way.max() + bulge));
         }
         before = after;
     }
@@ -82,7 +82,7 @@ cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnin
 }  // namespace
 
 CutMode usual_mode(const topology::Mesh& mesh) {
-    for (const topology::ElementId e : mesh.elements())
+    for (const ElementId e : mesh.elements())
         if (mesh.kind(e) != topology::CellKind::tetrahedron) return CutMode::separate;
     return CutMode::split;
 }
@@ -93,7 +93,7 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
     const bool splits =
         blade ? blade->mode == CutMode::split : std::holds_alternative<CutSpec>(spec.kind);
     if (!splits) return spec;
-    for (const topology::ElementId e : mesh.elements())
+    for (const ElementId e : mesh.elements())
         if (mesh.kind(e) == topology::CellKind::tetrahedron) return spec;
     throw InputError("tool '" + spec.name +
                      "' splits tetrahedra, and the mesh has none; use a blade with mode = "
@@ -109,13 +109,13 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     return {spec.name, std::move(shape), ToolPath(spec.path), std::move(surface)};
 }
 
-bool may_meet(const ScriptedTool& tool, const cutting::Box& box) {
+bool may_meet(const ScriptedTool& tool, const Box& box) {
     if (tool.surface) return tool.surface->may_meet(box);
     const Extent extent = extent_of(tool.shape);
-    const cutting::Box swept = swept_box(tool.path, extent.points);
+    const Box swept = swept_box(tool.path, extent.points);
     // With room for what rounding takes.
     const Vec3 margin = Vec3::Constant(extent.radius + 1e-12 * swept.diagonal().norm());
-    return box.intersects(cutting::Box(swept.min() - margin, swept.max() + margin));
+    return box.intersects(Box(swept.min() - margin, swept.max() + margin));
 }
 
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "incise/cutting/element_boxes.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/sim/scenario.h"
 #include "incise/sim/tool_path.h"
 #include "incise/topology/mesh.h"
+#include "incise/topology/spatial/element_boxes.h"
 
 namespace incise::sim {
 
@@ -37,7 +37,7 @@ struct ScriptedTool {
 ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings);
 
 /// False only if nothing of the tool is ever in the box. Cost: that of its path, or of its surface.
-bool may_meet(const ScriptedTool& tool, const cutting::Box& box);
+bool may_meet(const ScriptedTool& tool, const Box& box);
 
 /// Throws InputError if the tool is to divide elements and meets one on its path that it cannot
 /// divide, where the body rests: a run would stop there. Its path after `end_time`, s, is not

@@ -13,7 +13,6 @@ namespace incise::sim {
 using cutting::Blade;
 using cutting::CutMode;
 using topology::Mesh;
-using topology::NodeId;
 
 World::World(WorldDef def) : parts_(std::make_unique<Parts>(std::move(def))) {}
 World::World(World&&) noexcept = default;

@@ -12,12 +12,12 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/sim/ledger.h"
 #include "incise/topology/boundary_surface.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/pose.h"
@@ -164,7 +164,7 @@ class World {
     ConstraintId add_constraint(physics::Support constraint);
     /// Takes hold of nodes where they are now. `pose` is that of the thing that holds them, m: the
     /// nodes go where its frame goes. Throws as add_constraint().
-    ConstraintId grasp(std::string name, std::vector<topology::NodeId> nodes, const Pose& pose);
+    ConstraintId grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose);
     /// Where the frame of a grasp is to be at the end of the next step. Without a call it rests.
     /// Throws InputError for a constraint that is no grasp.
     void set_grasp_pose(ConstraintId grasp, const Pose& pose);

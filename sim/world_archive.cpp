@@ -16,7 +16,7 @@ using cutting::CutMode;
 
 namespace {
 
-double read_time(topology::ArchiveReader& ar) {
+double read_time(ArchiveReader& ar) {
     const auto time = ar.read<double>();
     if (!(time >= 0.0 && std::isfinite(time)))
         throw InputError("its time is " + io::format_number(time) + " s");
@@ -25,7 +25,7 @@ double read_time(topology::ArchiveReader& ar) {
 
 }  // namespace
 
-World::Parts::Parts(const Parts& former, topology::ArchiveReader& ar)
+World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     : mesh(topology::load_mesh(ar)),
       time(read_time(ar)),
       model(mesh, former.model.elements().materials(), ar, time),
@@ -53,7 +53,7 @@ void World::Parts::require_sound_grasps() const {
     if (!fits) throw InputError("its constraints and loads are those of another world");
 }
 
-void World::Parts::save(topology::ArchiveWriter& ar) const {
+void World::Parts::save(ArchiveWriter& ar) const {
     topology::save(mesh, ar);
     ar(time);
     model.save(ar);
@@ -87,7 +87,7 @@ constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
 /// Of what is plain of the materials: two laws with the same moduli at rest are not told apart.
 std::uint64_t fingerprint_of(const physics::Model& model) {
     const physics::MaterialTable& table = model.elements().materials();
-    topology::ArchiveWriter ar;
+    ArchiveWriter ar;
     for (const physics::Material& material : table.materials) {
         ar(material.density, static_cast<std::uint64_t>(material.method.index()));
         if (const auto* links = std::get_if<physics::HyperElasticLinks>(&material.method)) {
@@ -110,14 +110,14 @@ std::uint64_t fingerprint_of(const physics::Model& model) {
 }  // namespace
 
 std::string World::save() const {
-    topology::ArchiveWriter ar;
+    ArchiveWriter ar;
     ar(state_mark, state_format, parts_->solver, fingerprint_of(parts_->model));
     parts_->save(ar);
     return ar.bytes();
 }
 
 void World::restore(std::string_view bytes) {
-    topology::ArchiveReader ar(bytes);
+    ArchiveReader ar(bytes);
     const auto mark = ar.read<std::uint32_t>();
     const auto format = ar.read<std::uint32_t>();
     if (mark != state_mark) throw InputError("this is no saved world");

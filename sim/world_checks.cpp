@@ -7,15 +7,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/topology/error.h"
 
 namespace incise::sim {
 
 using cutting::Blade;
 using cutting::Carver;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 
@@ -65,7 +64,7 @@ struct LoadRequirement {
         require(std::isfinite(load.pressure));
     }
     void operator()(const physics::BodyLoad& load) const {
-        for (const topology::ElementId e : load.elements.members()) require_element(e);
+        for (const ElementId e : load.elements.members()) require_element(e);
         if (load.elements.members().empty()) throw InputError(what + ": it has no element");
         require(load.force.allFinite());
     }
@@ -74,14 +73,14 @@ struct LoadRequirement {
     void require(bool is_sound) const {
         if (!is_sound) throw InputError(what + ": its value is not finite");
     }
-    void require_element(topology::ElementId e) const {
+    void require_element(ElementId e) const {
         if (!e.is_valid() || e.index() >= mesh.element_capacity() || !mesh.is_alive(e))
             throw InputError(what + ": there is no element " + std::to_string(e.value));
     }
     void require_faces(const physics::FaceSet& faces) const {
         if (faces.members().empty()) throw InputError(what + ": it has no face");
         for (const auto& member : faces.members()) {
-            const topology::FaceId f = member.face;
+            const FaceId f = member.face;
             require_element(f.element);
             if (f.face < 0 || f.face >= mesh.num_faces(f.element) || mesh.neighbor(f).is_valid())
                 throw InputError(what + ": face " + std::to_string(f.face) + " of element " +

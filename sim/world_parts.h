@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
+#include "incise/base/archive.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/sim/numbering.h"
 #include "incise/sim/world.h"
-#include "incise/topology/archive.h"
 
 namespace incise::sim {
 
@@ -45,8 +45,8 @@ struct World::Parts {
 
     explicit Parts(WorldDef def);
     /// What save() wrote of a world that was made as `former` was.
-    Parts(const Parts& former, topology::ArchiveReader& ar);
-    void save(topology::ArchiveWriter& ar) const;
+    Parts(const Parts& former, ArchiveReader& ar);
+    void save(ArchiveWriter& ar) const;
     void prepare_tools();
     void require_sound_grasps() const;
 

@@ -29,7 +29,7 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     physics::MaterialTable table{std::move(def.materials), std::move(def.material_of_region),
                                  std::move(def.fibres), def.precision};
     if (table.of_region.empty() && !table.materials.empty())
-        for (const topology::ElementId e : mesh.elements()) table.of_region[mesh.region(e)] = 0;
+        for (const ElementId e : mesh.elements()) table.of_region[mesh.region(e)] = 0;
     return table;
 }
 
@@ -39,7 +39,7 @@ cutting::UncutBody uncut_body(const physics::Model& model) {
     const Mesh& mesh = model.mesh();
     cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
     const double stable_step = model.stable_step();
-    for (const topology::ElementId e : mesh.elements()) {
+    for (const ElementId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);

@@ -9,10 +9,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
+#include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "incise/base/error.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {

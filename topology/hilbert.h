@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::topology {
 

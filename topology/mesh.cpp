@@ -6,7 +6,7 @@
 #include <bit>
 #include <cassert>
 
-#include "incise/topology/groups.h"
+#include "incise/base/disjoint_set.h"
 
 namespace incise::topology {
 
@@ -180,7 +180,7 @@ double rest_area(const Mesh& mesh, FaceId f) {
 
 // Elements are taken in ascending order, in which neighbours lie near each other in memory.
 Components components(const Mesh& mesh) {
-    Groups groups(mesh.element_capacity());
+    DisjointSet groups(mesh.element_capacity());
     for (const ElementId e : mesh.elements()) {
         std::int32_t own = e.value;
         for (int f = 0; f < mesh.num_faces(e); ++f) {

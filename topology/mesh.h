@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
 #include "incise/topology/cell_map.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh_data.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "incise/topology/archive.h"
+#include "incise/base/archive.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cassert>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::topology {
 

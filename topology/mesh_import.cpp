@@ -4,7 +4,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/hilbert.h"
 #include "incise/topology/mesh.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_check.h"
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <span>
 
+#include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
 #include "incise/topology/mesh_data.h"
-#include "incise/topology/types.h"
 
 namespace incise::topology {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/mesh_edit.h"
 
 namespace incise::topology {

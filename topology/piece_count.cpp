@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "incise/topology/groups.h"
+#include "incise/base/disjoint_set.h"
 
 namespace incise::topology {
 
@@ -42,10 +42,11 @@ bool has(const std::vector<ElementRecord>& records, ElementId e) {
 
 // By the faces that were joined before and still are, the touched elements search for each other,
 // each from where it is, all at once, until no more than one group of them has anywhere left to go.
-Groups PieceCount::search(const Mesh& mesh, const ChangeSet& changes,
-                          const std::vector<ElementId>& touched, std::vector<ElementId>& found) {
+DisjointSet PieceCount::search(const Mesh& mesh, const ChangeSet& changes,
+                               const std::vector<ElementId>& touched,
+                               std::vector<ElementId>& found) {
     const std::vector<FaceId> new_faces = sides_of(changes.faces_closed);
-    Groups groups(touched.size());
+    DisjointSet groups(touched.size());
     std::vector<ElementId> queue;
     std::vector<int> num_waiting(touched.size());  // in the queue, by group
     const auto waiting = [&](std::int32_t g) -> int& {
@@ -91,7 +92,7 @@ void PieceCount::apply(const Mesh& mesh, const ChangeSet& changes) {
     for (std::size_t i = 0; i < touched.size(); ++i)
         group_of(touched[i]) = static_cast<std::int32_t>(i);
     std::vector<ElementId> found;
-    Groups before = search(mesh, changes, touched, found), after = before;
+    DisjointSet before = search(mesh, changes, touched, found), after = before;
     for (const FacePair& pair : changes.faces_opened)
         before.join(group_of(pair.a.element), group_of(pair.b.element));
     for (const FacePair& pair : changes.faces_closed)

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "incise/base/disjoint_set.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/groups.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
@@ -27,8 +27,8 @@ class PieceCount {
   private:
     /// Which of the touched elements, by their places in the list, have hung together all the time,
     /// as far as it takes to count pieces. `found` receives the others that it came through.
-    Groups search(const Mesh& mesh, const ChangeSet& changes, const std::vector<ElementId>& touched,
-                  std::vector<ElementId>& found);
+    DisjointSet search(const Mesh& mesh, const ChangeSet& changes,
+                       const std::vector<ElementId>& touched, std::vector<ElementId>& found);
     std::int32_t& group_of(ElementId e) { return group_of_[e.index()]; }
 
     int value_;

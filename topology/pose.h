@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise {
 

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::render {
 

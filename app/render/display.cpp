@@ -16,7 +16,7 @@
 #include <string>
 #include <system_error>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::render {
 

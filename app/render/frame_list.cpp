@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::render {
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
+#include "incise/base/error.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::render {
 

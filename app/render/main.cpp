@@ -20,8 +20,8 @@
 #include "incise/app/render/frame_reader.h"
 #include "incise/app/render/options.h"
 #include "incise/app/render/scene.h"
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
-#include "incise/topology/error.h"
 
 namespace incise::render {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::render {
 

@@ -27,7 +27,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::render {
 

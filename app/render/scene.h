@@ -11,7 +11,7 @@
 #include <string>
 
 #include "incise/app/render/coloring.h"
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::render {
 

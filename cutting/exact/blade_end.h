@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/surfaces/swept_edge.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

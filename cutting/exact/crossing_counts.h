@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/resting_blade.h"
 #include "incise/cutting/exact/scars.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
@@ -26,12 +26,11 @@ namespace incise::cutting {
 /// @param is_passed_to_b  (i): whether a way from the middle's neighbour ring[i] to b by the middle
 ///                        crosses the surface; asked where the rim is in their face
 template <class HasBorder, class IsPassed>
-void place_on_side(CutFront& front, topology::NodeId a, topology::NodeId b, topology::NodeId middle,
-                   const std::vector<topology::NodeId>& ring, HasBorder has_border,
-                   IsPassed is_passed_to_b) {
+void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
+                   const std::vector<NodeId>& ring, HasBorder has_border, IsPassed is_passed_to_b) {
     const bool is_crossed = front.is_crossed(a, b);
     for (std::size_t i = 0; i < ring.size(); ++i) {
-        const topology::NodeId n = ring[i];
+        const NodeId n = ring[i];
         const bool at_a = front.is_crossed(a, n), at_b = front.is_crossed(b, n);
         bool is_crossed_to_n = at_b;
         if (const std::optional<bool> border = has_border(middle, b, n))
@@ -50,9 +49,8 @@ void place_on_side(CutFront& front, topology::NodeId a, topology::NodeId b, topo
 /// @param reach  see CutFront::put_on
 /// @param point  (node): where it is, a MovingPoint
 template <class PointOf>
-void place_for_resting(const RestingBlade& blade, Edge edge, topology::NodeId middle,
-                       const std::vector<topology::NodeId>& ring, double reach, Scars& scars,
-                       PointOf point) {
+void place_for_resting(const RestingBlade& blade, Edge edge, NodeId middle,
+                       const std::vector<NodeId>& ring, double reach, Scars& scars, PointOf point) {
     CutFront& front = blade.front;
     if (front.is_on(edge.a) && front.is_on(edge.b))
         front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,
@@ -61,12 +59,12 @@ void place_for_resting(const RestingBlade& blade, Edge edge, topology::NodeId mi
         std::swap(edge.a, edge.b);
     place_on_side(
         front, edge.a, edge.b, middle, ring,
-        [&](topology::NodeId p, topology::NodeId q, topology::NodeId r) {
+        [&](NodeId p, NodeId q, NodeId r) {
             return blade.is_inside({point(p), point(q), point(r)});
         },
         [](std::size_t) { return false; });
     // Its cut ends beyond the middle, and goes through an edge that would have been divided.
-    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](topology::NodeId n) {
+    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](NodeId n) {
         return !front.is_on(n) && front.is_crossed(middle, n);
     });
     if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))

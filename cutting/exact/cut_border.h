@@ -11,7 +11,7 @@
 namespace incise::cutting {
 
 /// Where a node is after the step, m.
-using PositionOf = std::function<Vec3(topology::NodeId)>;
+using PositionOf = std::function<Vec3(NodeId)>;
 
 /// Forgets the nodes of the front round which the cut is finished: a later passage there is another
 /// cut. Kept are those near the border at which the sweep has ended, as the cut may go on there:

@@ -6,10 +6,6 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
-using topology::FaceId;
-using topology::NodeId;
-
 namespace {
 
 /// Share of an edge up to which a place on it is found where the blade's edge is bent.

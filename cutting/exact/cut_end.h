@@ -27,30 +27,30 @@ class CutEnd {
     /// An edge of a face, from behind the blade's edge to ahead of it, and where it crosses that.
     struct CrossedEdge {
         Edge edge;
-        topology::ElementId element;  ///< one of those that have it
+        ElementId element;  ///< one of those that have it
         Passage passage;
     };
     /// Of faces on the cut, each once. Nodes nearer to the blade's edge than a share of an edge
     /// that crosses it, and than `farthest`, m at rest, count as at the blade's edge from now on.
-    std::vector<CrossedEdge> crossed_edges(std::span<const topology::FaceId> faces, double share,
+    std::vector<CrossedEdge> crossed_edges(std::span<const FaceId> faces, double share,
                                            double farthest);
 
     /// The node counts as at the blade's edge.
-    void put_at(topology::NodeId n) { nodes_.insert(n); }
-    bool is_at(topology::NodeId n) const { return nodes_.contains(n); }
+    void put_at(NodeId n) { nodes_.insert(n); }
+    bool is_at(NodeId n) const { return nodes_.contains(n); }
 
     /// Whether no part of a face on the cut is ahead of the blade's edge, once what crosses that is
     /// divided there.
-    bool is_behind(topology::FaceId f) const;
+    bool is_behind(FaceId f) const;
 
   private:
     std::optional<Passage> passage(const Edge& edge) const;
-    double distance_ahead(topology::NodeId n) const { return blade_.distance_ahead(position_(n)); }
+    double distance_ahead(NodeId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;
     const BladeEnd& blade_;
     PositionOf position_;
-    std::unordered_set<topology::NodeId> nodes_;  // at the blade's edge
+    std::unordered_set<NodeId> nodes_;  // at the blade's edge
 };
 
 /// The same blade, if its cut is behind it, else one that goes on away from its cut: a blade may

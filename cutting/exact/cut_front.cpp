@@ -7,9 +7,7 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
     const auto [place, is_new] = nodes_.try_emplace(n, Node{is_exact, reach, rank, n});
@@ -78,7 +76,7 @@ void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
 }
 
 bool CutFront::is_on(const topology::Mesh& mesh) const {
-    std::unordered_set<topology::NodeId> followers;
+    std::unordered_set<NodeId> followers;
     const auto is_sound = [&](const auto& node) {
         const NodeId n = node.first, twin = node.second.next_twin;
         return n.is_valid() && n.index() < mesh.node_capacity() && is_on(twin) &&

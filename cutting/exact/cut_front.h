@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_edit.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
@@ -35,22 +35,22 @@ class CutFront {
     /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
     /// it, on one side. `reach` is the size of the elements there, m; `rank`, see Scars::take_rank.
     /// Of a node that is on the cut already only the reach can change, to more.
-    void put_on(topology::NodeId n, bool is_exact, double reach, std::uint64_t rank);
-    bool is_on(topology::NodeId n) const { return nodes_.contains(n); }
-    bool is_near(topology::NodeId n) const {
+    void put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank);
+    bool is_on(NodeId n) const { return nodes_.contains(n); }
+    bool is_near(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() && !place->second.is_exact;
     }
 
     /// The same surface has cut here before: what it left joined between such nodes stays so.
-    void settle(topology::NodeId n) { nodes_.at(n).is_settled = true; }
-    bool is_settled(topology::NodeId n) const {
+    void settle(NodeId n) { nodes_.at(n).is_settled = true; }
+    bool is_settled(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() && place->second.is_settled;
     }
 
     /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
-    std::uint64_t rank(topology::NodeId n) const {
+    std::uint64_t rank(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.rank : 0;
     }
@@ -58,23 +58,23 @@ class CutFront {
     /// The next of the nodes that a node on the cut has become by the faces of this cut that have
     /// opened since it came to it: from one to the next they make a ring. The node itself if it is
     /// the only one.
-    topology::NodeId next_twin(topology::NodeId n) const {
+    NodeId next_twin(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.next_twin : n;
     }
 
     /// Size of the elements at a node on the cut, m; 0 for others.
-    double reach(topology::NodeId n) const {
+    double reach(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.reach : 0.0;
     }
 
-    bool is_crossed(topology::NodeId a, topology::NodeId b) const;
-    void toggle(topology::NodeId a, topology::NodeId b);
+    bool is_crossed(NodeId a, NodeId b) const;
+    void toggle(NodeId a, NodeId b);
 
     /// Where an element is: whether the way from there to one of its corners crosses the cut.
     struct Place {
-        topology::NodeId corner;
+        NodeId corner;
         bool is_crossed = false;
     };
 
@@ -82,14 +82,12 @@ class CutFront {
     /// where its corner is that is not on the cut. One that has no such corner is where it was
     /// made; if it had one then, where the last of its corners is that came to count as on the cut,
     /// being near it. Nothing if all were made on the cut and it is not known.
-    std::optional<Place> place_of(topology::ElementId e,
-                                  std::span<const topology::NodeId, 4> corners) const;
+    std::optional<Place> place_of(ElementId e, std::span<const NodeId, 4> corners) const;
 
     /// Keeps where the halves of elements are that were divided by `middle`, between `a` and `b`,
     /// once the crossings of its edges are counted: a half that has lost the corner which told is
     /// on the other side of the cut through the middle.
-    void place_halves(const topology::Mesh& mesh, topology::NodeId a, topology::NodeId b,
-                      topology::NodeId middle,
+    void place_halves(const topology::Mesh& mesh, NodeId a, NodeId b, NodeId middle,
                       std::span<const topology::MeshEdit::DividedElement> elements);
 
     /// Whether the mesh has had all nodes and elements of it, and twins make rings.
@@ -97,8 +95,8 @@ class CutFront {
 
     /// Elements of small pieces that are not to come off before it is known whether they hang on
     /// the rest of their side.
-    const std::vector<topology::ElementId>& waiting() const { return waiting_; }
-    void set_waiting(std::vector<topology::ElementId> elements) { waiting_ = std::move(elements); }
+    const std::vector<ElementId>& waiting() const { return waiting_; }
+    void set_waiting(std::vector<ElementId> elements) { waiting_ = std::move(elements); }
 
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }
@@ -120,10 +118,10 @@ class CutFront {
                bool has_opened_faces_of_it = false);
     /// The nodes for which keep(node) is false, in ascending order.
     template <class Keep>
-    std::vector<topology::NodeId> nodes_unless(Keep keep) const;
+    std::vector<NodeId> nodes_unless(Keep keep) const;
     /// Forgets that they are on the cut, which edges to nodes off it are crossed, and where
     /// elements at them are.
-    void forget(const topology::Mesh& mesh, const std::vector<topology::NodeId>& nodes);
+    void forget(const topology::Mesh& mesh, const std::vector<NodeId>& nodes);
 
     /// Of the nodes on the cut, how many are so since the last call of set_reviewed(); whether
     /// anything has changed since.
@@ -144,7 +142,7 @@ class CutFront {
         bool is_exact = false;
         double reach = 0.0;
         std::uint64_t rank = 0;
-        topology::NodeId next_twin;
+        NodeId next_twin;
         bool is_settled = false;
         static void archive(auto& ar, auto& self) {
             ar(self.is_exact, self.reach, self.rank, self.next_twin, self.is_settled);
@@ -156,19 +154,19 @@ class CutFront {
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
     std::uint64_t number_ = 0;
-    std::unordered_map<topology::NodeId, Node> nodes_;
+    std::unordered_map<NodeId, Node> nodes_;
     // Both directions of each crossed edge.
-    std::unordered_map<topology::NodeId, std::vector<topology::NodeId>> crossed_;
+    std::unordered_map<NodeId, std::vector<NodeId>> crossed_;
     // Of elements whose corners are all on the cut.
-    std::unordered_map<topology::ElementId, LocalPlace> places_;
-    std::vector<topology::ElementId> waiting_;
+    std::unordered_map<ElementId, LocalPlace> places_;
+    std::vector<ElementId> waiting_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };
 
 template <class Keep>
-std::vector<topology::NodeId> CutFront::nodes_unless(Keep keep) const {
-    std::vector<topology::NodeId> nodes;
+std::vector<NodeId> CutFront::nodes_unless(Keep keep) const {
+    std::vector<NodeId> nodes;
     for (const auto& [n, node] : nodes_)
         if (!keep(n)) nodes.push_back(n);
     std::sort(nodes.begin(), nodes.end());

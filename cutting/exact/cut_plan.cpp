@@ -7,9 +7,9 @@ namespace incise::cutting {
 
 topology::ChangeSet execute(const CutPlan& plan, topology::Mesh& mesh) {
     topology::MeshEdit edit(mesh);
-    for (const topology::ElementId e : plan.elements_to_remove)
+    for (const ElementId e : plan.elements_to_remove)
         if (mesh.is_alive(e)) edit.remove(e);
-    for (const topology::FaceId f : plan.faces_to_open)
+    for (const FaceId f : plan.faces_to_open)
         if (mesh.is_alive(f.element) && mesh.neighbor(f).is_valid()) edit.open(f);
     return edit.commit();
 }

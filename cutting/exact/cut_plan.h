@@ -10,8 +10,8 @@
 namespace incise::cutting {
 
 struct CutPlan {
-    std::vector<topology::ElementId> elements_to_remove;
-    std::vector<topology::FaceId> faces_to_open;
+    std::vector<ElementId> elements_to_remove;
+    std::vector<FaceId> faces_to_open;
 
     bool is_empty() const { return elements_to_remove.empty() && faces_to_open.empty(); }
 };

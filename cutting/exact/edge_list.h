@@ -9,12 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::cutting {
-
-using topology::ElementId;
-using topology::NodeId;
 
 /// An edge of the mesh, the lower node first.
 struct Edge {

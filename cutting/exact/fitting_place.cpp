@@ -6,9 +6,7 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 

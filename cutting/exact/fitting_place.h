@@ -12,8 +12,8 @@ namespace incise::cutting {
 
 /// An edge to be divided, and the elements round it, all of which become two.
 struct EdgeRing {
-    topology::NodeId a, b;
-    std::span<const topology::ElementId> elements;
+    NodeId a, b;
+    std::span<const ElementId> elements;
 };
 
 struct FitLimits {

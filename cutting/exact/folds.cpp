@@ -7,8 +7,6 @@
 
 namespace incise::cutting {
 
-using topology::NodeId;
-
 namespace {
 
 /// Cosine of the angle from which on a bend is a fold: 18 degrees.
@@ -71,7 +69,7 @@ bool NodesOnSurface::contains(NodeId n) const {
     return place != nodes_.end() && place->node == n;
 }
 
-bool NodesOnSurface::have_face_of(const topology::Mesh& mesh, topology::ElementId e) const {
+bool NodesOnSurface::have_face_of(const topology::Mesh& mesh, ElementId e) const {
     return mesh.kind(e) == topology::CellKind::tetrahedron &&
            std::ranges::count_if(mesh.corners(e), [&](NodeId n) { return contains(n); }) >= 3;
 }

@@ -45,9 +45,9 @@ class NodesOnSurface {
                    std::span<const EdgeList::Entry> edges, double rounding);
 
     bool is_empty() const { return nodes_.empty(); }
-    bool contains(topology::NodeId n) const;
+    bool contains(NodeId n) const;
     /// Whether one of the faces of the element has its nodes on the surface.
-    bool have_face_of(const topology::Mesh& mesh, topology::ElementId e) const;
+    bool have_face_of(const topology::Mesh& mesh, ElementId e) const;
 
     auto begin() const { return nodes_.begin(); }  // in ascending order
     auto end() const { return nodes_.end(); }

@@ -6,9 +6,6 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
-using topology::NodeId;
-
 bool NearNodes::has(const EdgeEnd& end, const Vec3& normal_at_rest) {
     const Vec3 x = mesh_.rest_position(end.node), edge = mesh_.rest_position(end.other) - x;
     const double distance = end.from * edge.norm();

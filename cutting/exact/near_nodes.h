@@ -12,9 +12,9 @@ namespace incise::cutting {
 
 /// An end of an edge that the surface passes through, and where, seen from there.
 struct EdgeEnd {
-    topology::NodeId node, other;
-    topology::ElementId element;  ///< one of those that have the edge
-    double place, from;           ///< as in Passage
+    NodeId node, other;
+    ElementId element;   ///< one of those that have the edge
+    double place, from;  ///< as in Passage
 };
 
 /// How near a node has to be to count as on the surface.
@@ -48,8 +48,8 @@ class NearNodes {
     const NearLimits limits_;
     /// By node id, m, when the node was first asked for. Divisions make no edge at a node longer:
     /// a new one lies within a triangle that has two of them.
-    std::unordered_map<topology::NodeId, double> longest_edges_;
-    std::vector<topology::ElementId> star_;  // scratch
+    std::unordered_map<NodeId, double> longest_edges_;
+    std::vector<ElementId> star_;  // scratch
 };
 
 }  // namespace incise::cutting

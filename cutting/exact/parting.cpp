@@ -16,15 +16,12 @@
 namespace incise::cutting {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 
-/// Groups of more volume than this share of the cube of the edges there are pieces, not crumbs:
-/// less than two elements have before they are divided.
+/// DisjointSet of more volume than this share of the cube of the edges there are pieces, not
+/// crumbs: less than two elements have before they are divided.
 constexpr double largest_crumb = 0.1;
 
 double rest_volume(const Mesh& mesh, ElementId e) {
@@ -83,9 +80,9 @@ class Crumbs {
     const std::vector<ElementId>& touched_;
     const std::vector<FaceId>& parted_;
     const Course& course_;
-    std::unordered_set<topology::ElementId> large_;  // elements of large pieces
-    std::map<FaceId, double> times_;                 // of those asked for
-    std::set<FaceId> kept_;                          // joined, of the parted ones
+    std::unordered_set<ElementId> large_;  // elements of large pieces
+    std::map<FaceId, double> times_;       // of those asked for
+    std::set<FaceId> kept_;                // joined, of the parted ones
     std::vector<ElementId> elements_, waiting_;
 };
 

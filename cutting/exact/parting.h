@@ -6,27 +6,27 @@
 #include <optional>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/scars.h"
 #include "incise/cutting/exact/sides.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
 /// What to open, and what stays joined all the same.
 struct Parting {
-    std::vector<topology::FaceId> faces;
-    std::vector<topology::ElementId> crumbs;
-    std::vector<topology::ElementId> waiting;  ///< see CutFront::waiting
+    std::vector<FaceId> faces;
+    std::vector<ElementId> crumbs;
+    std::vector<ElementId> waiting;  ///< see CutFront::waiting
 };
 
 /// How the surface has come to the faces of the mesh.
 struct Course {
     /// When the last of what parts the face came about.
-    std::function<double(topology::FaceId)> time_of_parting;
+    std::function<double(FaceId)> time_of_parting;
     /// Whether the border at which the sweep has ended runs through the face.
-    std::function<bool(topology::FaceId)> ends_in;
+    std::function<bool(FaceId)> ends_in;
 };
 
 /// The faces that part the two sides (Sides::parted_faces), without those between settled nodes
@@ -43,8 +43,7 @@ struct Course {
 /// @param is_reached  whether a face that parts the two sides is to open at all; empty: all are
 /// @param course  nothing if there are no crumbs: an exact cut leaves none
 Parting parting(const topology::Mesh& mesh, const CutFront& front, const Scars& scars,
-                const std::vector<topology::ElementId>& touched, const PlaceOnCut& place_on_cut,
-                const std::function<bool(topology::FaceId)>& is_reached,
-                const std::optional<Course>& course);
+                const std::vector<ElementId>& touched, const PlaceOnCut& place_on_cut,
+                const std::function<bool(FaceId)>& is_reached, const std::optional<Course>& course);
 
 }  // namespace incise::cutting

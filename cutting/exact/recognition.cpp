@@ -84,7 +84,7 @@ class Recognizer {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     const Scars& scars_;
-    std::unordered_set<topology::NodeId> moving_;  // nodes that move, and those next to such
+    std::unordered_set<NodeId> moving_;  // nodes that move, and those next to such
 };
 
 }  // namespace

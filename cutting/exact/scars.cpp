@@ -17,18 +17,18 @@ bool is_same(const Scar& a, const Scar& b, double size) {
 
 }  // namespace
 
-void Scars::add(topology::NodeId n, const Scar& scar) {
+void Scars::add(NodeId n, const Scar& scar) {
     if (!has(n, scar, scar.to_surface.norm())) scars_[n].push_back(scar);
 }
 
-const Scar* Scars::find(topology::NodeId n, const Scar& scar, double size) const {
+const Scar* Scars::find(NodeId n, const Scar& scar, double size) const {
     const auto known = of(n);
     const auto place = std::find_if(known.begin(), known.end(),
                                     [&](const Scar& other) { return is_same(other, scar, size); });
     return place == known.end() ? nullptr : &*place;
 }
 
-std::span<const Scar> Scars::of(topology::NodeId n) const {
+std::span<const Scar> Scars::of(NodeId n) const {
     const auto place = scars_.find(n);
     return place == scars_.end() ? std::span<const Scar>{} : std::span<const Scar>(place->second);
 }

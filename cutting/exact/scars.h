@@ -8,10 +8,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
@@ -30,7 +30,7 @@ struct Scar {
 
 /// A node, and where it is, m.
 struct PlacedNode {
-    topology::NodeId node;
+    NodeId node;
     Vec3 place;
 };
 
@@ -40,14 +40,14 @@ struct PlacedNode {
 /// once the body has moved, nothing is at the same place.
 class Scars {
   public:
-    void add(topology::NodeId n, const Scar& scar);
+    void add(NodeId n, const Scar& scar);
     /// The scar that a cut left that passed by the node as `scar` says; null if none did.
     /// @param size  of the elements there, m, which rounding is measured by
-    const Scar* find(topology::NodeId n, const Scar& scar, double size) const;
-    bool has(topology::NodeId n, const Scar& scar, double size) const {
+    const Scar* find(NodeId n, const Scar& scar, double size) const;
+    bool has(NodeId n, const Scar& scar, double size) const {
         return find(n, scar, size) != nullptr;
     }
-    std::span<const Scar> of(topology::NodeId n) const;
+    std::span<const Scar> of(NodeId n) const;
     bool is_empty() const { return scars_.empty(); }
 
     /// Nodes of all cuts are numbered in the order in which they come to count as on one.
@@ -55,16 +55,16 @@ class Scars {
 
     /// The element stayed with the other side of the cut of this number (CutFront::number), as
     /// there was too little of it.
-    void add_crumb(topology::ElementId e, std::uint64_t cut) {
+    void add_crumb(ElementId e, std::uint64_t cut) {
         auto& first = crumbs_.emplace(e, cut).first->second;
         first = std::min(first, cut);
     }
     /// Whether it did so at a cut that began before the one of this number.
-    bool is_earlier_crumb(topology::ElementId e, std::uint64_t cut) const {
+    bool is_earlier_crumb(ElementId e, std::uint64_t cut) const {
         const auto place = crumbs_.find(e);
         return place != crumbs_.end() && place->second < cut;
     }
-    bool is_crumb(topology::ElementId e) const { return crumbs_.contains(e); }
+    bool is_crumb(ElementId e) const { return crumbs_.contains(e); }
 
     /// The middle has been made on the edge between two nodes: a cut that passes by one of them and
     /// goes through the edge beyond the middle, or passes by both, passes by the middle.
@@ -80,8 +80,8 @@ class Scars {
   private:
     void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
 
-    std::unordered_map<topology::NodeId, std::vector<Scar>> scars_;
-    std::unordered_map<topology::ElementId, std::uint64_t> crumbs_;
+    std::unordered_map<NodeId, std::vector<Scar>> scars_;
+    std::unordered_map<ElementId, std::uint64_t> crumbs_;
     std::uint64_t next_rank_ = 1;
 };
 

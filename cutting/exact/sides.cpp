@@ -9,10 +9,7 @@
 namespace incise::cutting {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
              const PlaceOnCut& place_on_cut)
@@ -31,7 +28,7 @@ std::vector<FaceId> Sides::parted_faces() const {
 /// Of the touched elements, and of those next to them that have no corner off the cut.
 void Sides::collect_faces(const std::vector<ElementId>& touched) {
     std::vector<ElementId> pending = touched;
-    std::unordered_set<topology::ElementId> followed;
+    std::unordered_set<ElementId> followed;
     while (!pending.empty()) {
         const ElementId e = pending.back();
         pending.pop_back();

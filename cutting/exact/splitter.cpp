@@ -28,11 +28,8 @@
 namespace incise::cutting {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
 using topology::MeshEdit;
-using topology::NodeId;
 
 namespace {
 
@@ -198,7 +195,7 @@ class Splitter {
     std::vector<MovingPoint> new_points_;
     double now_ = 0.0;  // the time of what is being done
     // When nodes came to the cut, in this step.
-    std::unordered_map<topology::NodeId, double> came_on_;
+    std::unordered_map<NodeId, double> came_on_;
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;

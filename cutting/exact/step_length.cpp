@@ -40,7 +40,7 @@ double own_step_length(const std::array<Vec3, 4>& corners) {
 double step_length(const topology::Mesh& mesh) {
     // At each node 2 / sqrt(s / m) with s the sum of V (1/h) sum_j (1/h_j), m that of V / 4.
     std::vector<double> stiffness(mesh.node_capacity(), 0.0), volume(mesh.node_capacity(), 0.0);
-    for (const topology::ElementId e : mesh.elements()) {
+    for (const ElementId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
@@ -58,8 +58,8 @@ double step_length(const topology::Mesh& mesh) {
 }
 
 double mean_edge_length(const topology::Mesh& mesh) {
-    std::vector<std::pair<topology::NodeId, topology::NodeId>> edges;
-    for (const topology::ElementId e : mesh.elements()) {
+    std::vector<std::pair<NodeId, NodeId>> edges;
+    for (const ElementId e : mesh.elements()) {
         const topology::CellTraits& cell = traits(mesh.kind(e));
         const auto corners = mesh.corners(e);
         for (std::size_t k = 0; k < static_cast<std::size_t>(cell.num_edges); ++k)
@@ -77,7 +77,7 @@ double mean_edge_length(const topology::Mesh& mesh) {
 UncutBody uncut_body(const topology::Mesh& mesh) {
     UncutBody body{mean_edge_length(mesh), {}};
     const double length = step_length(mesh);
-    for (const topology::ElementId e : mesh.elements()) body.step_length[mesh.region(e)] = length;
+    for (const ElementId e : mesh.elements()) body.step_length[mesh.region(e)] = length;
     return body;
 }
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "incise/base/types.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -12,9 +12,7 @@
 namespace incise::cutting {
 
 using topology::CellKind;
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 void refuse_to_divide(const Mesh& mesh, ElementId e) {
     throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
+#include "incise/base/error.h"
 #include "incise/cutting/surfaces/cut_surface.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -20,19 +20,18 @@ struct UndividableElement : InputError {
 };
 
 /// Throws UndividableElement.
-[[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, topology::ElementId e);
+[[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, ElementId e);
 
 /// The element of lowest id that the surface crosses where the mesh is at rest and that is no
 /// tetrahedron; nothing if there is none. Cost: O(#elements), and of those that are no tetrahedra
 /// and that the surface may meet a look at their edges.
-std::optional<topology::ElementId> first_undividable(const topology::Mesh& mesh,
-                                                     const CutSurface& surface);
+std::optional<ElementId> first_undividable(const topology::Mesh& mesh, const CutSurface& surface);
 
 /// Elements that surfaces do not cross at rest and that are not tetrahedra, but that they come near
 /// to.
 struct NearMisses {
-    std::set<topology::ElementId> elements;
-    topology::ElementId nearest;                                ///< one of them, if there are any
+    std::set<ElementId> elements;
+    ElementId nearest;                                          ///< one of them, if there are any
     double distance = std::numeric_limits<double>::infinity();  ///< of the nearest, m
 
     bool is_empty() const { return elements.empty(); }

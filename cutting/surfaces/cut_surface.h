@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/surfaces/space_time.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

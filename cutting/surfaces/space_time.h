@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::cutting {
 

@@ -6,8 +6,6 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
-
 namespace {
 
 /// Squared distance of two segments p0p1 and q0q1, either of which may be a point.

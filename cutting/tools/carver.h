@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/topology/pose.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
@@ -33,8 +33,7 @@ bool meets(const CarverShape& shape, const Vec3& a, const Vec3& b);
 /// Elements whose centre the shape covers at some moment of the step, while both tool and tissue
 /// move: the centre's path in the tool's frame is taken as straight. In ascending order.
 /// Cost: follows what is near the tool's way, if the motion has boxes; else O(#elements).
-std::vector<topology::ElementId> covered_elements(const TissueMotion& tissue,
-                                                  const CarverShape& shape, const Pose& before,
-                                                  const Pose& after);
+std::vector<ElementId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
+                                        const Pose& before, const Pose& after);
 
 }  // namespace incise::cutting

@@ -9,8 +9,6 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
 
 namespace {

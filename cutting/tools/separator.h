@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 
@@ -20,8 +20,7 @@ namespace incise::cutting {
 /// ends at the blade, within one element of where it went. An element that had several neighbours
 /// is not cut off alone: it would be a crumb, its centre beyond the blade and the rest of it not.
 /// Cost: follows what is near the blade's way, if the motion has boxes; else O(#elements).
-std::vector<topology::FaceId> faces_to_open(const TissueMotion& tissue,
-                                            std::span<const Vec3> before,
-                                            std::span<const Vec3> after);
+std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Vec3> before,
+                                  std::span<const Vec3> after);
 
 }  // namespace incise::cutting

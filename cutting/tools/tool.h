@@ -6,11 +6,11 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/tools/carver.h"
 #include "incise/topology/surface_data.h"
-#include "incise/topology/types.h"
 
 namespace incise::cutting {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::organs {
 

@@ -10,8 +10,8 @@
 #include "data/organs/mesh_smoothing.h"
 #include "data/organs/organ_shapes.h"
 #include "data/organs/tetrahedral_mesher.h"
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/validate.h"
 

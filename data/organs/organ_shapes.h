@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::organs {
 

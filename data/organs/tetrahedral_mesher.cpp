@@ -14,7 +14,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::organs {
 

@@ -14,9 +14,9 @@
 #include <system_error>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/file_descriptor.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

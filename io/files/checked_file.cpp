@@ -3,10 +3,10 @@
 
 #include <lzma.h>
 
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/input_file.h"
-#include "incise/topology/archive.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 
@@ -25,7 +25,7 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t before) {
 void write_checked_file(const std::filesystem::path& path, std::string_view bytes) {
     std::string file(first_line);
     file += bytes;
-    topology::ArchiveWriter end;
+    ArchiveWriter end;
     end(checksum(file));
     file += end.bytes();
     write_file(path, file);
@@ -37,7 +37,7 @@ std::string read_checked_file(const std::filesystem::path& path) {
     if (file.bytes.size() < first_line.size() + checksum_size) refuse("is cut short");
     const std::size_t end = file.bytes.size() - checksum_size;
     const std::string_view all = file.bytes;
-    topology::ArchiveReader stored(all.substr(end));
+    ArchiveReader stored(all.substr(end));
     if (stored.read<std::uint64_t>() != checksum(all.substr(0, end)))
         refuse("is damaged: its checksum is wrong");
     if (!all.starts_with(first_line)) refuse("has a format that this version does not know");

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::io {
 

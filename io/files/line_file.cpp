@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

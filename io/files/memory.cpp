@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::io {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "incise/base/error.h"
 #include "incise/io/files/checked_file.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/scalar_type.h"
-#include "incise/topology/types.h"
 
 namespace incise::io {
 

@@ -10,12 +10,12 @@
 #include <limits>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/memory.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/files/unpack.h"
 #include "incise/io/image/image_header.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "incise/topology/types.h"
+#include "incise/base/types.h"
 
 namespace incise::io {
 

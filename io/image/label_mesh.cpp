@@ -6,9 +6,9 @@
 #include <functional>
 #include <limits>
 
+#include "incise/base/error.h"
 #include "incise/io/files/memory.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

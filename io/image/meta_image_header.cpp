@@ -5,11 +5,11 @@
 #include <bit>
 #include <map>
 
+#include "incise/base/error.h"
 #include "incise/io/files/line_words.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/image/image_header.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -3,10 +3,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/unpack.h"
 #include "incise/io/image/image_header.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::io {
 

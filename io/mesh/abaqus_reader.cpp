@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/abaqus_element.h"
 #include "incise/io/mesh/abaqus_lines.h"
 #include "incise/io/mesh/cell_form.h"
 #include "incise/io/mesh/element_sets.h"
 #include "incise/io/mesh/node_tags.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

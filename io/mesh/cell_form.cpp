@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/mesh/cell_form.h"
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::io {
 

@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/mesh/cell_form.h"
 #include "incise/io/mesh/node_tags.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

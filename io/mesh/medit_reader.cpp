@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "incise/base/error.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/mesh/cell_form.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

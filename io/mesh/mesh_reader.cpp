@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "incise/base/error.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
@@ -17,7 +18,6 @@
 #include "incise/io/vtk/frame_index.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_repair.h"
 
 namespace incise::io {

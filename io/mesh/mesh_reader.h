@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::io {

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/line_words.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/mesh/cell_form.h"
 #include "incise/io/mesh/node_tags.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/line_words.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/surface/surface_collector.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

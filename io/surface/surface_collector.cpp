@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <string_view>
 
+#include "incise/base/error.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/surface/obj_reader.h"
 #include "incise/io/surface/off_reader.h"
 #include "incise/io/surface/ply_reader.h"
 #include "incise/io/surface/stl_reader.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::io {
 

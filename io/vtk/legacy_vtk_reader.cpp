@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/vtk/vtk_cells.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/vtk/vtu_writer.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/vtk/vtk_cells.h"
 
+#include "incise/base/error.h"
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/io/files/base64.h"
 #include "incise/io/files/number_text.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/vtk/frame_index.h"
 #include "incise/io/vtk/vtk_cells.h"
 #include "incise/io/vtk/vtk_xml_array.h"
-#include "incise/topology/error.h"
 
 namespace incise::io {
 

@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <map>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::physics {
 
 using topology::ChangeSet;
-using topology::ElementId;
 using topology::ElementRecord;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 using topology::NodeRecord;
 
 namespace {

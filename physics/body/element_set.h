@@ -13,10 +13,10 @@ namespace incise::physics {
 /// finds them again: ask the mesh who is alive.
 class ElementSet {
   public:
-    ElementSet(std::vector<topology::ElementId> elements = {});
+    ElementSet(std::vector<ElementId> elements = {});
 
     /// In ascending order.
-    const std::vector<topology::ElementId>& members() const { return members_; }
+    const std::vector<ElementId>& members() const { return members_; }
 
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
@@ -25,7 +25,7 @@ class ElementSet {
     static void archive(auto& ar, auto& self) { ar(self.members_); }
 
   private:
-    std::vector<topology::ElementId> members_;
+    std::vector<ElementId> members_;
 };
 
 /// Where an edit divides the element of a face, the set goes on to just the faces of the parts that
@@ -33,14 +33,14 @@ class ElementSet {
 class FaceSet {
   public:
     struct Member {
-        topology::FaceId face;
+        FaceId face;
         /// Valid when a division took the face to other elements as a whole: the first part that
         /// the edit made. What now has the member's number lies inside the former element.
-        topology::ElementId left_to;
+        ElementId left_to;
         static void archive(auto& ar, auto& self) { ar(self.face, self.left_to); }
     };
 
-    FaceSet(std::vector<topology::FaceId> faces = {});
+    FaceSet(std::vector<FaceId> faces = {});
 
     /// In ascending order of faces.
     const std::vector<Member>& members() const { return members_; }

@@ -6,12 +6,9 @@
 #include <cassert>
 #include <map>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::physics {
-
-using topology::FaceId;
-using topology::NodeId;
 
 namespace {
 

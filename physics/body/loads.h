@@ -111,7 +111,7 @@ class Loads {
     /// elements are loaded as these were.
     /// @param touched nodes whose mass may have changed
     void apply(const topology::ChangeSet& changes, const LoadedBody& body,
-               std::span<const topology::NodeId> touched);
+               std::span<const NodeId> touched);
 
   private:
     static void share_out(Load& load, const LoadedBody& body);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/physics/body/motion_failure.h"
-#include "incise/topology/error.h"
 
 namespace incise::physics {
 
@@ -21,8 +21,7 @@ double diagonal(const topology::Mesh& mesh) {
 }
 
 /// Throws InputError, as the next one does.
-MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh,
-                          topology::ArchiveReader& ar) {
+MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh, ArchiveReader& ar) {
     const bool has_fibres = std::ranges::any_of(table.materials, &Material::has_fibres);
     ar(table.fibres);
     if (table.fibres.size() != (has_fibres ? mesh.element_capacity() : 0))
@@ -30,7 +29,7 @@ MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh,
     return table;
 }
 
-Surroundings read_surroundings(const topology::Mesh& mesh, topology::ArchiveReader& ar) {
+Surroundings read_surroundings(const topology::Mesh& mesh, ArchiveReader& ar) {
     Surroundings surroundings;
     ar(surroundings.gravity, surroundings.damping, surroundings.supports, surroundings.loads);
     for (const Support& support : surroundings.supports) support.require_fit(mesh);
@@ -389,21 +388,20 @@ void Model::remove_load(std::size_t i) {
     ++structure_version_;
 }
 
-void Model::save(topology::ArchiveWriter& ar) const {
+void Model::save(ArchiveWriter& ar) const {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
     ar(copy(fibres()), gravity_, damping_, copy(supports_.all()), copy(loads_.all()));
     ar(positions_, velocities_, copy(history_.values()), reactions_, external_work_,
        dissipated_energy_, largest_move_, body_size_, structure_version_, merges_);
 }
 
-Model::Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
-             double time)
+Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time)
     // Braces, as they read the archive from left to right.
     : Model{mesh, read_fibres(std::move(table), mesh, ar), read_surroundings(mesh, ar)} {
     restore_state(ar, time);
 }
 
-void Model::restore_state(topology::ArchiveReader& ar, double time) {
+void Model::restore_state(ArchiveReader& ar, double time) {
     std::vector<Vec3> positions, velocities;
     std::vector<double> history;
     std::vector<Reaction> reactions;

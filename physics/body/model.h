@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/archive.h"
 #include "incise/physics/body/loads.h"
 #include "incise/physics/body/node_lanes.h"
 #include "incise/physics/body/node_sums.h"
@@ -16,7 +17,6 @@
 #include "incise/physics/elements/element_store.h"
 #include "incise/physics/elements/stable_step.h"
 #include "incise/physics/elements/viscous_history.h"
-#include "incise/topology/archive.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
@@ -73,8 +73,7 @@ class Model {
     /// @param time   of the state, s
     /// To the bit the same model then.
     /// Throws InputError for the data of another mesh. Cost: that of a new model.
-    Model(const topology::Mesh& mesh, MaterialTable table, topology::ArchiveReader& ar,
-          double time);
+    Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time);
 
     /// How many threads compute, at least 1; of no influence on any result. At first one.
     void set_num_threads(int n) { workers_ = Workers(n); }
@@ -162,7 +161,7 @@ class Model {
 
     /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
     /// constraints and loads. Cost: O(n).
-    void save(topology::ArchiveWriter& ar) const;
+    void save(ArchiveWriter& ar) const;
 
     const ElementStore& elements() const { return elements_; }
     const Supports& supports() const { return supports_; }
@@ -274,7 +273,7 @@ class Model {
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
                           std::span<Vec3> forces) const;
 
-    void restore_state(topology::ArchiveReader& ar, double time);
+    void restore_state(ArchiveReader& ar, double time);
     NodeSums sums_of(NodeRange range) const;
     LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
     void resize(std::size_t num_nodes);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "incise/base/sum.h"
 #include "incise/physics/body/model.h"
-#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

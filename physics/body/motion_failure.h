@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "incise/topology/error.h"
-#include "incise/topology/types.h"
+#include "incise/base/error.h"
+#include "incise/base/types.h"
 
 namespace incise::physics {
 
@@ -28,8 +28,8 @@ enum class FailureCause {
 struct MotionFailure : PhysicsError {
     MotionFailure(FailureCause why, const std::string& text) : PhysicsError(text), cause(why) {}
     FailureCause cause;
-    topology::ElementId element = {};  ///< one at the place of the failure; invalid if not known
-    topology::NodeId node = {};        ///< the node that is lost; invalid if there is none
+    ElementId element = {};  ///< one at the place of the failure; invalid if not known
+    NodeId node = {};        ///< the node that is lost; invalid if there is none
 };
 
 /// The failure of an explicit step that began at `time` and took `dt`, s: of a body whose state is

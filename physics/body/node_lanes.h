@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "incise/base/types.h"
 #include "incise/physics/elements/processor.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::physics {
-
-using topology::NodeId;
 
 NodeSet::NodeSet(std::vector<NodeId> nodes) {
     std::sort(nodes.begin(), nodes.end());

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 
@@ -16,21 +16,21 @@ namespace incise::physics {
 class NodeSet {
   public:
     struct Member {
-        topology::NodeId node;
+        NodeId node;
         /// The member of the first selection that it is, or is a copy of; invalid for one born
         /// between others and for its copies.
-        topology::NodeId origin;
+        NodeId origin;
         static void archive(auto& ar, auto& self) { ar(self.node, self.origin); }
     };
 
     NodeSet() = default;
-    NodeSet(std::vector<topology::NodeId> nodes);
+    NodeSet(std::vector<NodeId> nodes);
 
     /// In ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }
     /// Null for a node that is no member.
-    const Member* find(topology::NodeId n) const;
-    bool contains(topology::NodeId n) const { return find(n) != nullptr; }
+    const Member* find(NodeId n) const;
+    bool contains(NodeId n) const { return find(n) != nullptr; }
 
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 

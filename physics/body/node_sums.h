@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "incise/base/sum.h"
 #include "incise/physics/elements/workers.h"
-#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::physics {
-
-using topology::NodeId;
 
 Vec3 Support::target(const topology::Mesh& mesh, NodeId n, double time) const {
     if (!grip.is_empty()) return grip.at(time).to_world(gripped.at(n));

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/pose.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 
@@ -25,15 +25,15 @@ struct Support {
     std::string name = {};
     NodeSet nodes = {};
     std::array<bool, 3> components{true, true, true};
-    TimeCurve<Vec3> displacement = {};              ///< u, metres; empty: none
-    TimeCurve<double> angle = {};                   ///< radians about the axis; empty: none
-    Vec3 point = Vec3::Zero();                      ///< p, on the axis
-    Vec3 axis = Vec3::UnitZ();                      ///< unit vector
-    TimeCurve<Pose> grip = {};                      ///< empty: none
-    std::map<topology::NodeId, Vec3> gripped = {};  ///< by member, m, in the frame of the grip
+    TimeCurve<Vec3> displacement = {};    ///< u, metres; empty: none
+    TimeCurve<double> angle = {};         ///< radians about the axis; empty: none
+    Vec3 point = Vec3::Zero();            ///< p, on the axis
+    Vec3 axis = Vec3::UnitZ();            ///< unit vector
+    TimeCurve<Pose> grip = {};            ///< empty: none
+    std::map<NodeId, Vec3> gripped = {};  ///< by member, m, in the frame of the grip
 
     /// Where the node is to be at `time`.
-    Vec3 target(const topology::Mesh& mesh, topology::NodeId n, double time) const;
+    Vec3 target(const topology::Mesh& mesh, NodeId n, double time) const;
 
     /// @param mesh after the edit
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
@@ -47,12 +47,12 @@ struct Support {
 };
 
 /// A grip on nodes where they are now: positions (m, by node id), in the frame of `pose`.
-Support make_grip(std::string name, std::vector<topology::NodeId> nodes,
-                  std::span<const Vec3> positions, const Pose& pose);
+Support make_grip(std::string name, std::vector<NodeId> nodes, std::span<const Vec3> positions,
+                  const Pose& pose);
 
 /// Two supports that prescribe the same component of a node.
 struct SupportConflict {
-    topology::NodeId node;
+    NodeId node;
     std::size_t component;
     std::size_t first, second;  ///< indices of the supports, in ascending order
 };
@@ -87,7 +87,7 @@ class Supports {
                    : nullptr;
     }
     /// Sets the prescribed components of `x` to where they are to be at `time`.
-    void place(const std::array<int, 3>& support_of, const topology::Mesh& mesh, topology::NodeId n,
+    void place(const std::array<int, 3>& support_of, const topology::Mesh& mesh, NodeId n,
                double time, Vec3& x) const;
 
     /// See Model::add_support.
@@ -100,7 +100,7 @@ class Supports {
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
   private:
-    void index(const topology::Mesh& mesh, topology::NodeId n);
+    void index(const topology::Mesh& mesh, NodeId n);
     void index_all(const topology::Mesh& mesh);
 
     std::vector<Support> supports_;

@@ -12,9 +12,6 @@
 
 namespace incise::physics {
 
-using topology::ElementId;
-using topology::NodeId;
-
 namespace {
 
 /// What one element brings to one of its edges.

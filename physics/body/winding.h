@@ -16,7 +16,7 @@ namespace incise::physics {
 /// nothing keeps apart, make somewhat more than one turn round the cut's end and are not meant.
 struct Winding {
     std::size_t num_edges = 0;
-    topology::ElementId element;  ///< the one of the lowest id at such an edge; if there are any
+    ElementId element;  ///< the one of the lowest id at such an edge; if there are any
 };
 
 /// At the given positions (m, by node id). Edges of other kinds of cells, and of flat or inverted

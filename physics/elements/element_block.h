@@ -11,16 +11,14 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/sum.h"
+#include "incise/base/types.h"
 #include "incise/physics/elements/element_result.h"
 #include "incise/physics/elements/element_states.h"
 #include "incise/physics/elements/local_nodes.h"
 #include "incise/physics/elements/viscous_history.h"
-#include "incise/physics/sum.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
-
-using topology::NodeId;
 
 /// What one element brings to its corners for good; a pure function of its rest shape.
 struct ElementShares {

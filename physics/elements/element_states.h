@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/sum.h"
 #include "incise/physics/elements/element_result.h"
-#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/physics/elements/kernel_block.h"
-#include "incise/topology/error.h"
 
 namespace incise::physics {
 

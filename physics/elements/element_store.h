@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/error.h"
+#include "incise/base/sum.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/elements/precision.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/physics/laws/material.h"
-#include "incise/physics/sum.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/error.h"
 #include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
 

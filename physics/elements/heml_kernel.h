@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "incise/base/types.h"
 #include "incise/physics/elements/heml_lanes.h"
 #include "incise/physics/elements/precision.h"
 #include "incise/physics/laws/law.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 

@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
+#include "incise/base/sum.h"
 #include "incise/physics/elements/element_states.h"
 #include "incise/physics/elements/local_nodes.h"
 #include "incise/physics/elements/processor.h"
 #include "incise/physics/laws/law.h"
-#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

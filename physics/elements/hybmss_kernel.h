@@ -11,10 +11,10 @@
 #include <optional>
 #include <string>
 
+#include "incise/base/types.h"
 #include "incise/physics/elements/hybmss_lanes.h"
 #include "incise/physics/elements/precision.h"
 #include "incise/physics/laws/material.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 

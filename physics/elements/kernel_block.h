@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "incise/base/sum.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/elements/element_tangent.h"
-#include "incise/physics/sum.h"
 
 namespace incise::physics {
 

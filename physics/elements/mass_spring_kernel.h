@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "incise/base/types.h"
 #include "incise/topology/geometry.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
 

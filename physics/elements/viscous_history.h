@@ -8,13 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
 namespace incise::physics {
-
-using topology::ElementId;
 
 /// For each element its stress after the last step, without viscosity, and that of each term of its
 /// material's Prony series, pascals, per volume at rest; what tensors these are is the kernel's

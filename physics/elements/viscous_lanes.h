@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/function_ref.h"
 #include "incise/physics/elements/local_nodes.h"
 #include "incise/physics/elements/processor.h"
 #include "incise/physics/elements/viscous_history.h"
-#include "incise/physics/function_ref.h"
 #include "incise/physics/laws/law.h"
 
 namespace incise::physics {

@@ -8,7 +8,7 @@
 #include <exception>
 #include <memory>
 
-#include "incise/physics/function_ref.h"
+#include "incise/base/function_ref.h"
 
 namespace incise::physics {
 

@@ -13,9 +13,7 @@
 
 namespace incise::physics {
 
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 namespace {

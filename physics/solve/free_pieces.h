@@ -14,7 +14,7 @@ namespace incise::physics {
 
 /// A piece that can move as a rigid body, and the ways in which it can.
 struct FreePiece {
-    std::vector<topology::NodeId> nodes;
+    std::vector<NodeId> nodes;
     std::size_t num_elements = 0;
     Vec3 centre = Vec3::Zero();  ///< of its nodes, m
     /// Turns about the centre: a unit in column k turns the piece about its principal axis k, by so
@@ -25,7 +25,7 @@ struct FreePiece {
     Eigen::Matrix<double, 6, Eigen::Dynamic> modes;
     /// As few components as take these ways from it (statically determinate): held there, it
     /// stays where it is, and the reactions are zero as long as its loads are in equilibrium.
-    std::vector<std::pair<topology::NodeId, int>> pins;
+    std::vector<std::pair<NodeId, int>> pins;
 
     /// What holds it; the rest serves messages about a piece just found.
     static void archive(auto& ar, auto& self) { ar(self.nodes, self.pins); }

@@ -20,8 +20,8 @@ class Integrator {
 
     /// What it keeps from step to step, for one that goes on with a restored model; most keep
     /// nothing.
-    virtual void save(topology::ArchiveWriter&) const {}
-    virtual void restore(topology::ArchiveReader&, const Model&) {}
+    virtual void save(ArchiveWriter&) const {}
+    virtual void restore(ArchiveReader&, const Model&) {}
 };
 
 /// Model::integrate: fast steps below the bound of stability.
@@ -56,10 +56,8 @@ class Statics final : public Integrator {
     void step(Model& model, double time, double dt) override;
     /// To the equilibrium of the edited body.
     bool settle(Model& model, double time) override;
-    void save(topology::ArchiveWriter& ar) const override { newton_.save(ar); }
-    void restore(topology::ArchiveReader& ar, const Model& model) override {
-        newton_.restore(ar, model);
-    }
+    void save(ArchiveWriter& ar) const override { newton_.save(ar); }
+    void restore(ArchiveReader& ar, const Model& model) override { newton_.restore(ar, model); }
 
   private:
     void require_equilibrium_of_free_pieces(const Model& model, double time);

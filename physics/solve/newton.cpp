@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "incise/physics/sum.h"
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
+#include "incise/base/sum.h"
 
 namespace incise::physics {
 
@@ -25,7 +25,7 @@ constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 /// Pins of a piece that is held in part go with its supports, by the mean of what these go.
 void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec3>& increments) {
     Vec3 sum = Vec3::Zero(), count = Vec3::Zero();
-    for (const topology::NodeId n : piece.nodes)
+    for (const NodeId n : piece.nodes)
         if (const auto* support_of = model.supports().of_node(n.index()))
             for (int c = 0; c < 3; ++c)
                 if ((*support_of)[static_cast<std::size_t>(c)] >= 0) {
@@ -65,14 +65,14 @@ void NewtonSolver::prepare(const Model& model) {
     structure_version_ = model.structure_version();
 }
 
-void NewtonSolver::save(topology::ArchiveWriter& ar) const {
+void NewtonSolver::save(ArchiveWriter& ar) const {
     ar(structure_version_.value_or(never), free_pieces_);
 }
 
-void NewtonSolver::restore(topology::ArchiveReader& ar, const Model& model) {
+void NewtonSolver::restore(ArchiveReader& ar, const Model& model) {
     const auto structure_version = ar.read<std::uint64_t>();
     ar(free_pieces_);
-    const auto is_there = [&](topology::NodeId n) {
+    const auto is_there = [&](NodeId n) {
         return n.is_valid() && n.index() < model.mesh().node_capacity();
     };
     for (const FreePiece& piece : free_pieces_) {
@@ -181,7 +181,7 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
         if (const auto* support_of = model.supports().of_node(n);
             support_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.supports().place(*support_of, model.mesh(), topology::NodeId(n), time, target);
+            model.supports().place(*support_of, model.mesh(), NodeId(n), time, target);
             increments_[n] = target - x[n];
             supports_move = supports_move || !increments_[n].isZero(0.0);
         }

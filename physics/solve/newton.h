@@ -46,8 +46,8 @@ class NewtonSolver {
     /// the tangent is found anew.
     void follow(const Model& model);
     /// What follow() made of positions that are gone: the pins of free pieces.
-    void save(topology::ArchiveWriter& ar) const;
-    void restore(topology::ArchiveReader& ar, const Model& model);
+    void save(ArchiveWriter& ar) const;
+    void restore(ArchiveReader& ar, const Model& model);
 
     /// @param x  m, by node id: start and result. Without convergence, where it got to
     /// @param elastic_forces  N, by node id: those at the result, of the end of the step

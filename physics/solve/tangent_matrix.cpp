@@ -7,7 +7,6 @@
 namespace incise::physics {
 
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 
@@ -19,7 +18,7 @@ std::vector<NodePair> coupled_nodes(const Mesh& mesh,
                                     std::span<const std::array<bool, 3>> is_free) {
     const auto moves = [&](NodeId n) { return is_free[n.index()] != std::array<bool, 3>{}; };
     std::vector<NodePair> pairs;
-    for (const topology::ElementId e : mesh.elements()) {
+    for (const ElementId e : mesh.elements()) {
         for (const NodeId a : mesh.corners(e))
             for (const NodeId b : mesh.corners(e))
                 if (a <= b && moves(a) && moves(b))

@@ -18,8 +18,6 @@ namespace incise::cutting {
 namespace {
 
 using test::Random;
-using topology::FaceId;
-using topology::NodeId;
 
 TEST(BladeEnd, TellsWhatIsAheadOfAStraightEdge) {
     // Slantwise: only the motion across the edge counts.

@@ -18,7 +18,6 @@ namespace incise::cutting {
 namespace {
 
 using test::Random;
-using topology::ElementId;
 using topology::Mesh;
 
 /// Distance of a point outside the shape from it, 0 inside: written anew, from the definitions.

@@ -15,7 +15,6 @@
 namespace incise::cutting {
 
 using physics::Model;
-using topology::ElementId;
 using topology::Mesh;
 
 namespace {

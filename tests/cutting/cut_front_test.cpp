@@ -24,8 +24,6 @@ const topology::Mesh& any_mesh() {
 
 using test::Random;
 using topology::ChangeSet;
-using topology::ElementId;
-using topology::NodeId;
 
 NodeId node(std::size_t i) { return NodeId(i); }
 

@@ -22,10 +22,8 @@ namespace {
 using physics::Model;
 using test::Random;
 using topology::ChangeSet;
-using topology::ElementId;
 using topology::Mesh;
 using topology::MeshData;
-using topology::NodeId;
 
 /// A body in motion through which a program of cuts goes.
 class Patient {

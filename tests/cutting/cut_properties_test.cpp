@@ -30,7 +30,6 @@ using test::GeneratedBody;
 using test::MeshSnapshot;
 using topology::ChangeSet;
 using topology::Mesh;
-using topology::NodeId;
 
 using Grid = std::array<int, 3>;
 

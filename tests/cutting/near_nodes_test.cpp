@@ -12,9 +12,6 @@
 namespace incise::cutting {
 namespace {
 
-using topology::ElementId;
-using topology::NodeId;
-
 /// A share of the edge, seen from each end in turn.
 EdgeEnd random_end(const topology::Mesh& mesh, std::mt19937_64& random) {
     std::uniform_int_distribution<std::size_t> any_element(0, mesh.element_capacity() - 1);

@@ -17,8 +17,6 @@ namespace incise::cutting {
 namespace {
 
 using test::Random;
-using topology::ElementId;
-using topology::NodeId;
 
 /// A straight edge that goes right through the body in a plane.
 struct Blade {

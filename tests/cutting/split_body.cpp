@@ -16,11 +16,8 @@
 
 namespace incise::cutting {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::FacePair;
 using topology::Mesh;
-using topology::NodeId;
 using topology::SurfaceData;
 
 namespace {

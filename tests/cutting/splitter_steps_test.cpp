@@ -9,7 +9,7 @@
 #include <set>
 
 #include "blade_path.h"
-#include "incise/topology/archive.h"
+#include "incise/base/archive.h"
 #include "incise/topology/mesh_metrics.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
@@ -71,7 +71,7 @@ struct Faces {
         const double hair = 1e-8 * body.box().diagonal().norm();
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
             for (int f = 0; f < 4; ++f) {
-                const topology::FaceId face{topology::ElementId(i), f};
+                const FaceId face{ElementId(i), f};
                 Triangle triangle;
                 for (std::size_t p = 0; p < 3; ++p)
                     for (std::size_t c = 0; c < 3; ++c)
@@ -195,9 +195,9 @@ TEST(SplitByBlade, GoesOnFromItsArchiveToTheSameCut) {
                 for (const auto& part : sweep(path.from, path.to, 40)) {
                     body.cut(*part, front, guarded(body.mesh, default_snap), body.positions);
                     if (!is_archived) continue;
-                    topology::ArchiveWriter ar;
+                    ArchiveWriter ar;
                     ar(front);
-                    front = topology::ArchiveReader(ar.bytes()).read<CutFront>();
+                    front = ArchiveReader(ar.bytes()).read<CutFront>();
                     EXPECT_TRUE(front.is_on(body.mesh));
                 }
                 return Faces(body);

@@ -18,9 +18,7 @@ namespace incise::cutting {
 namespace {
 
 using test::Random;
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 using topology::SurfaceData;
 
 /// Largest distance of an opened face's node from the surface, where the body is now.

@@ -21,7 +21,6 @@ namespace {
 
 using test::MeshSnapshot;
 using test::Random;
-using topology::NodeId;
 
 TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
     for (const auto* family : test::tetrahedral_families()) {
@@ -332,7 +331,7 @@ TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
 bool are_sides_joined(const topology::Mesh& mesh) {
     const topology::Components components = topology::components(mesh);
     std::set<int> left, right;
-    for (const topology::ElementId e : mesh.elements()) {
+    for (const ElementId e : mesh.elements()) {
         for (const NodeId n : mesh.corners(e)) {
             const double x = mesh.rest_position(n).x();
             if (x == 0.0) left.insert(components.of_element[e.index()]);

@@ -11,10 +11,10 @@
 #include <limits>
 #include <set>
 
+#include "incise/base/error.h"
 #include "incise/cutting/exact/step_length.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/mesh_metrics.h"
 #include "incise/topology/validate.h"
@@ -28,11 +28,8 @@ namespace {
 
 using test::MeshSnapshot;
 using test::Random;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
 using topology::MeshData;
-using topology::NodeId;
 
 constexpr int num_seeds = test::num_cases(12);
 

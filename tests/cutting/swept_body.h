@@ -18,10 +18,7 @@
 namespace incise::cutting {
 
 using topology::ChangeSet;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 using Edge = std::vector<Vec3>;
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::fuzz {
 

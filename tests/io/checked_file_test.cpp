@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/output_folder.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

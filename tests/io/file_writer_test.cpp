@@ -10,11 +10,11 @@
 #include <csignal>
 #include <functional>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/checked_file.h"
 #include "incise/io/files/file_descriptor.h"
 #include "incise/io/files/line_file.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/image/label_image.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

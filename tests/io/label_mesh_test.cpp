@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/validate.h"

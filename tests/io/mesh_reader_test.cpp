@@ -9,10 +9,10 @@
 #include <fstream>
 #include <random>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/temporary_folder.h"
 

@@ -14,9 +14,9 @@
 #include <array>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_text.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

@@ -5,12 +5,12 @@
 #include <random>
 #include <string>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/abaqus_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
 #include "incise/io/mesh/medit_reader.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
-#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/mesh_consistency.h"
 #include "tests/support/mutation.h"

@@ -23,7 +23,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

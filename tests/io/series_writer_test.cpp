@@ -9,10 +9,10 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/vtk/series.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/surface/obj_reader.h"
 #include "incise/io/surface/off_reader.h"
 #include "incise/io/surface/ply_reader.h"
 #include "incise/io/surface/stl_reader.h"
-#include "incise/topology/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/io/surface_samples.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "tests/io/reader_samples.h"
 #include "tests/support/temporary_folder.h"
 

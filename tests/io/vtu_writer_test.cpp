@@ -18,8 +18,8 @@
 #include <limits>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {

@@ -16,8 +16,6 @@
 
 namespace incise::physics {
 
-using topology::FaceId;
-
 /// What supports hold and what loads load, in ascending order.
 struct Selections {
     std::vector<NodeId> held, moved;

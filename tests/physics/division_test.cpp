@@ -16,11 +16,8 @@ namespace incise::physics {
 namespace {
 
 using topology::ChangeSet;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
 using topology::MeshEdit;
-using topology::NodeId;
 
 struct Edge {
     ElementId element;

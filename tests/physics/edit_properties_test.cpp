@@ -8,7 +8,7 @@
 #include <optional>
 #include <ostream>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/generated_body.h"
@@ -24,12 +24,9 @@ namespace {
 using test::GeneratedBody;
 using test::MeshSnapshot;
 using topology::ChangeSet;
-using topology::ElementId;
-using topology::FaceId;
 using topology::FacePair;
 using topology::Mesh;
 using topology::MeshEdit;
-using topology::NodeId;
 
 enum class Act { remove, open, close, divide };
 

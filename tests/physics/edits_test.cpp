@@ -10,8 +10,8 @@
 #include <numeric>
 #include <string_view>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_snapshot.h"
@@ -25,10 +25,7 @@ namespace {
 
 using test::MeshSnapshot;
 using topology::ChangeSet;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 const std::vector<std::string> no_violations;
 

@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_bodies.h"
 

@@ -12,7 +12,6 @@ namespace incise::physics {
 namespace {
 
 using topology::Mesh;
-using topology::NodeId;
 
 Support hold(std::vector<std::size_t> nodes, std::array<bool, 3> components = {true, true, true}) {
     Support support;

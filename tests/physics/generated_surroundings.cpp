@@ -8,10 +8,7 @@
 
 namespace incise::physics {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 namespace {
 

@@ -17,10 +17,7 @@
 namespace incise::physics {
 namespace {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 constexpr double tolerance = 1e-7;  // relative
 

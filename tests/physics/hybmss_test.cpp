@@ -6,9 +6,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "incise/base/error.h"
 #include "incise/physics/elements/spectrum.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/physics/hybmss_cells.h"
 
 namespace incise::physics {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/num_cases.h"
 #include "tests/physics/test_bodies.h"
@@ -15,9 +15,7 @@ namespace incise::physics {
 namespace {
 
 using topology::CellKind;
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 std::vector<NamedMaterial> materials() {
     const auto all = materials_of_all_methods();

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/physics/body/winding.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_bodies.h"
 
@@ -235,9 +235,9 @@ TEST(Winding, IsNotWhereLipsOverlap) {
                     .mesh;
     // The one on whose far side angles jump from pi to -pi.
     const Vec3 axis = Vec3::Ones().normalized(), across = Vec3(1, -1, 0).normalized();
-    for (const topology::ElementId e : living_elements(mesh)) {
+    for (const ElementId e : living_elements(mesh)) {
         Vec3 centre = Vec3::Zero();
-        for (const topology::NodeId n : mesh.corners(e)) centre += 0.25 * mesh.rest_position(n);
+        for (const NodeId n : mesh.corners(e)) centre += 0.25 * mesh.rest_position(n);
         const double angle = std::atan2(axis.cross(across).dot(centre), across.dot(centre));
         if (std::abs(angle) < 2.8) continue;
         topology::MeshEdit edit(mesh);

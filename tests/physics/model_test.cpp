@@ -6,18 +6,16 @@
 
 #include <algorithm>
 
-#include "incise/topology/archive.h"
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
 namespace {
 
 using topology::CellKind;
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 std::string message_of(const auto& action) {
     try {
@@ -153,7 +151,7 @@ TEST(Model, HasTheTotalsAndForcesOfItsPresentState) {
     };
     set_state(model, start);
     expect_present("set");
-    topology::ArchiveWriter archive;
+    ArchiveWriter archive;
     model.save(archive);
     const auto saved_figures = figures_of(model.totals());
     const std::vector<Vec3> saved_forces(model.elastic_forces().begin(),
@@ -166,7 +164,7 @@ TEST(Model, HasTheTotalsAndForcesOfItsPresentState) {
     const std::vector<Vec3> reactions(next.positions.size(), Vec3::Zero());
     model.take_step(next.positions, next.velocities, reactions, 1e-4);
     expect_present("step taken");
-    topology::ArchiveReader reader(archive.bytes());
+    ArchiveReader reader(archive.bytes());
     const Model restored(mesh, table, reader, 0.0);
     EXPECT_EQ(figures_of(restored.totals()), saved_figures);
     EXPECT_TRUE(std::ranges::equal(restored.elastic_forces(), saved_forces));

@@ -10,9 +10,7 @@
 namespace incise::physics {
 namespace {
 
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 Mat3 stretch_and_shear() {
     Mat3 F;

@@ -6,9 +6,9 @@
 
 #include <limits>
 
+#include "incise/base/error.h"
 #include "incise/physics/elements/spectrum.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "tests/physics/test_bodies.h"
 
 namespace incise::physics {

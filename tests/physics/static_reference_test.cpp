@@ -21,10 +21,7 @@ namespace {
 
 using test::CutReference;
 using test::StaticSolution;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 constexpr double displacement_tolerance = 1e-9;  // of the largest displacement
 constexpr double reaction_tolerance = 1e-9;      // of the reaction

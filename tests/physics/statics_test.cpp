@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_bodies.h"
 
@@ -15,10 +15,7 @@ namespace incise::physics {
 namespace {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 NodeSet nodes_at(const Mesh& mesh, double x) {
     return NodeSet(nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.x() - x) < 1e-9; }));

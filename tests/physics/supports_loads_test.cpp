@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_bodies.h"
 
@@ -15,10 +15,7 @@ namespace incise::physics {
 namespace {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 constexpr double density = 1000.0;
 

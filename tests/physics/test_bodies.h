@@ -146,9 +146,9 @@ inline Support holding(std::string name, NodeSet nodes,
 
 /// Living nodes whose rest position is where `is_inside` says.
 template <class Predicate>
-std::vector<topology::NodeId> nodes_where(const topology::Mesh& mesh, Predicate is_inside) {
-    std::vector<topology::NodeId> nodes;
-    for (const topology::NodeId n : mesh.nodes())
+std::vector<NodeId> nodes_where(const topology::Mesh& mesh, Predicate is_inside) {
+    std::vector<NodeId> nodes;
+    for (const NodeId n : mesh.nodes())
         if (is_inside(mesh.rest_position(n))) nodes.push_back(n);
     return nodes;
 }
@@ -156,9 +156,9 @@ inline NodeSet left_end(const topology::Mesh& mesh) {
     return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
 }
 
-inline std::vector<topology::ElementId> living_elements(const topology::Mesh& mesh) {
-    std::vector<topology::ElementId> elements;
-    for (const topology::ElementId e : mesh.elements()) elements.push_back(e);
+inline std::vector<ElementId> living_elements(const topology::Mesh& mesh) {
+    std::vector<ElementId> elements;
+    for (const ElementId e : mesh.elements()) elements.push_back(e);
     return elements;
 }
 

@@ -127,8 +127,7 @@ void expect_accuracy_of_body(Precision precision, double rounding, double least_
             EXPECT_NEAR(model.totals().elastic_energy / should.volume, should.energy_density,
                         doubles + 1e-17 / (r * r * r) * modulus);
             EXPECT_LE(
-                (model.element_result(topology::ElementId(0)).cauchy_stress - should.cauchy_stress)
-                    .norm(),
+                (model.element_result(ElementId(0)).cauchy_stress - should.cauchy_stress).norm(),
                 doubles);
             for (std::size_t k = 0; k < 4; ++k)
                 EXPECT_LE(

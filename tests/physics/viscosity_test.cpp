@@ -236,7 +236,7 @@ TEST(Viscosity, CreepsUnderASuddenLoad) {
         s.supports.push_back(
             holding("plane", NodeSet(nodes_where(mesh, [c](const Vec3& x) { return x[c] == 0.0; })),
                     {c == 0, c == 1, c == 2}));
-    std::vector<topology::FaceId> loaded;
+    std::vector<FaceId> loaded;
     for (const auto f : topology::boundary_faces(mesh)) {
         bool is_on_end = true;
         for (int p = 0; p < 3; ++p)

@@ -12,7 +12,6 @@ namespace incise::physics {
 namespace {
 
 using topology::ChangeSet;
-using topology::ElementId;
 using topology::Mesh;
 using topology::MeshEdit;
 

@@ -13,10 +13,7 @@ namespace incise::physics {
 namespace {
 
 using topology::CellKind;
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 constexpr double side = 0.1;
 

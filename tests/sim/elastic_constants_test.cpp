@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 
 namespace incise::sim {
 namespace {

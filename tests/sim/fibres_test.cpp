@@ -3,11 +3,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "run_folder.h"
 
 namespace incise::sim {
@@ -83,7 +83,7 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     Simulation simulation(scenario);
     const topology::Mesh& mesh = simulation.mesh();
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const auto c = static_cast<std::size_t>(mesh.label(topology::ElementId(i)));
+        const auto c = static_cast<std::size_t>(mesh.label(ElementId(i)));
         const Vec3 given(vectors_of(frame).data() + 3 * c);
         EXPECT_LE((simulation.model().fibres()[i] - given.normalized()).norm(), 1e-15);
     }
@@ -96,18 +96,17 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     Simulation again(
         folder.scenario(body_file + fibred_material + "fibre_array = \"fibre\"\n" + pulled));
     std::map<std::vector<double>, Vec3> expected;  // by place
-    const auto place = [](const topology::Mesh& m, topology::ElementId e) {
+    const auto place = [](const topology::Mesh& m, ElementId e) {
         std::vector<double> corners;
         for (const auto n : m.corners(e))
             for (const double x : m.rest_position(n)) corners.push_back(x);
         return corners;
     };
-    for (const topology::ElementId e : mesh.elements())
+    for (const ElementId e : mesh.elements())
         expected[place(mesh, e)] = simulation.model().fibres()[e.index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     for (std::size_t i = 0; i < again.mesh().element_capacity(); ++i)
-        EXPECT_EQ(again.model().fibres()[i],
-                  expected.at(place(again.mesh(), topology::ElementId(i))));
+        EXPECT_EQ(again.model().fibres()[i], expected.at(place(again.mesh(), ElementId(i))));
 }
 
 TEST(FibredBody, LeavesFramesOfOthersAlone) {

@@ -7,10 +7,10 @@
 #include <functional>
 #include <limits>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/checked_file.h"
 #include "incise/io/files/input_file.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "run_folder.h"
 #include "support/mesh_families.h"
@@ -193,7 +193,7 @@ TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
 
 TEST_F(ForgedRun, IsRefusedIfAnotherBuildOfThisVersionHasWrittenIt) {
     std::string bytes = good_;
-    const auto version = topology::ArchiveReader(good_).read<std::string>();
+    const auto version = ArchiveReader(good_).read<std::string>();
     ++bytes[sizeof(std::uint64_t) + version.size()];  // the format is behind it
     const std::string message = refusal_of([&] { resume(bytes); });
     EXPECT_NE(message.find("was written by another build of version "), std::string::npos);
@@ -204,7 +204,7 @@ TEST_F(ForgedRun, IsRefusedWhereItsBooksAreNotThoseOfItsEdits) {
     using Forge = std::function<void(EditRecord&)>;
     const auto refusal = [&](const Forge& forge) {
         const auto bytes_of = [](const EditRecord& edit) {
-            topology::ArchiveWriter ar;
+            ArchiveWriter ar;
             ar(edit);
             return ar.bytes();
         };

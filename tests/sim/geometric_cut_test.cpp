@@ -4,18 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "incise/base/error.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/sim/tool_build.h"
-#include "incise/topology/error.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_families.h"
 
 namespace incise::sim {
 namespace {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
 
 constexpr int num_seeds = 6;

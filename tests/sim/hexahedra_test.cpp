@@ -3,9 +3,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "incise/base/error.h"
 #include "incise/sim/body.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/validate.h"
 #include "run_folder.h"
 #include "support/mesh_families.h"

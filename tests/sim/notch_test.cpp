@@ -23,9 +23,7 @@
 namespace incise::sim {
 namespace {
 
-using topology::ElementId;
 using topology::Mesh;
-using topology::NodeId;
 
 /// A block that is held at z = 0 and at its other end, which is moved in z by `pull` times the
 /// height; notched in the middle of the height from x = 0 to `depth`, right through in y.

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "run_folder.h"
 
 namespace incise::sim {

@@ -5,11 +5,11 @@
 
 #include <functional>
 
+#include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/validate.h"
 #include "run_folder.h"
 #include "support/mesh_families.h"
@@ -24,7 +24,7 @@ using support::files_of;
 using support::read_text;
 
 std::string state_of(const Simulation& simulation) {
-    topology::ArchiveWriter ar;
+    ArchiveWriter ar;
     simulation.save(ar);
     for (const std::string& warning : simulation.warnings()) ar(warning);
     return ar.bytes();

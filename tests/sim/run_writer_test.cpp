@@ -10,11 +10,11 @@
 #include <set>
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/sim/frame_builder.h"
 #include "incise/sim/quantities.h"
-#include "incise/topology/error.h"
 #include "run_folder.h"
 
 namespace incise::sim {
@@ -249,8 +249,8 @@ TEST_F(RunFiles, FramesHoldTheState) {
     const auto& model = simulation_.model();
     const io::Frame frame = build_frame(model, simulation_.time(), scenario_.output.fields);
     EXPECT_EQ(frame.time, 0.2);
-    std::vector<topology::NodeId> nodes;
-    std::vector<topology::ElementId> elements;
+    std::vector<NodeId> nodes;
+    std::vector<ElementId> elements;
     const auto data = topology::to_mesh_data(mesh(), model.positions(), &nodes, &elements);
     EXPECT_EQ(frame.mesh.points, data.points);
     EXPECT_EQ(frame.mesh.corners, data.corners);
@@ -261,7 +261,7 @@ TEST_F(RunFiles, FramesHoldTheState) {
     double mass = 0.0;
     Vec3 momentum = Vec3::Zero();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const topology::NodeId n = nodes[i];
+        const NodeId n = nodes[i];
         const Vec3 &x = model.positions()[n.index()], &X = mesh().rest_position(n);
         EXPECT_EQ(frame.mesh.points[i], x);
         const double m = values<double>(points, "mass")[i];

@@ -10,18 +10,15 @@
 #include <set>
 #include <string>
 
+#include "incise/base/error.h"
 #include "incise/sim/body.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "support/mesh_families.h"
 
 namespace incise::sim {
 namespace {
 
-using topology::ElementId;
-using topology::FaceId;
 using topology::Mesh;
-using topology::NodeId;
 
 /// A cube of side 4 in 4 x 4 x 4 bricks, region 1 where x < 2, else 2.
 const Mesh& cube(topology::CellKind kind) {

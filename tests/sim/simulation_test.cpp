@@ -7,9 +7,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/base/error.h"
 #include "incise/sim/body_problems.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "run_folder.h"
 #include "support/num_cases.h"
 

@@ -114,9 +114,9 @@ TEST(Tool, MayMeetWhateverItComesToWhileItTurns) {
         const ScriptedTool tool = build_tool(spec, warnings);
         for (int i = 0; i <= 1000; ++i) {
             const Vec3 x = tool.path.pose(i / 1000.0).to_world({2, 0, 0});
-            EXPECT_TRUE(may_meet(tool, cutting::Box(x, x))) << angle << " " << i;
+            EXPECT_TRUE(may_meet(tool, Box(x, x))) << angle << " " << i;
         }
-        EXPECT_FALSE(may_meet(tool, cutting::Box(Vec3(5, -9, -9), Vec3(6, 9, 9))));
+        EXPECT_FALSE(may_meet(tool, Box(Vec3(5, -9, -9), Vec3(6, 9, 9))));
     }
 }
 

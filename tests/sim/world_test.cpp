@@ -20,7 +20,6 @@ namespace incise::sim {
 namespace {
 
 using cutting::Blade;
-using topology::NodeId;
 
 constexpr double size = 0.1;  // of the cube, m
 
@@ -351,8 +350,8 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] { world.release({9}); }, "there is no constraint 9"},
         {[&] { world.remove_load({4}); }, "there is no load 4"},
         {[&] {
-             world.add_load({.name = "wind",
-                             .kind = physics::TractionLoad{{{{topology::ElementId(3), 9}}}, {}}});
+             world.add_load(
+                 {.name = "wind", .kind = physics::TractionLoad{{{{ElementId(3), 9}}}, {}}});
          },
          "is not on the surface"},
         {[&] { world.restore(""); }, "end too early"}};

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/num_cases.h"
 

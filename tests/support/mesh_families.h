@@ -59,7 +59,7 @@ class Random {
 };
 
 /// Faces between two elements; of its two sides the lower one.
-std::vector<topology::FaceId> inner_faces(const topology::Mesh& mesh);
+std::vector<FaceId> inner_faces(const topology::Mesh& mesh);
 /// Pairs of boundary faces at the same rest positions: what an opened face left.
 std::vector<topology::FacePair> open_pairs(const topology::Mesh& mesh);
 

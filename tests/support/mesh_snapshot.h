@@ -12,9 +12,9 @@ struct MeshSnapshot {
     std::uint64_t epoch;
     std::size_t num_nodes, num_elements, element_capacity;
     std::vector<Vec3> rest_positions;
-    std::vector<topology::ElementId> anchors;
-    std::vector<std::vector<topology::NodeId>> corners;    // of living elements
-    std::vector<std::vector<topology::FaceId>> neighbors;  // of living elements
+    std::vector<ElementId> anchors;
+    std::vector<std::vector<NodeId>> corners;    // of living elements
+    std::vector<std::vector<FaceId>> neighbors;  // of living elements
     bool operator==(const MeshSnapshot&) const = default;
 
     explicit MeshSnapshot(const topology::Mesh& mesh)
@@ -24,9 +24,9 @@ struct MeshSnapshot {
           element_capacity(mesh.element_capacity()),
           rest_positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-            anchors.push_back(mesh.anchor(topology::NodeId(n)));
+            anchors.push_back(mesh.anchor(NodeId(n)));
         for (std::size_t i = 0; i < element_capacity; ++i) {
-            const topology::ElementId e(i);
+            const ElementId e(i);
             corners.emplace_back();
             neighbors.emplace_back();
             if (!mesh.is_alive(e)) continue;

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/mesh_data.h"
-#include "incise/topology/types.h"
 
 namespace incise::test {
 

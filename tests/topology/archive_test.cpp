@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/archive.h"
+#include "incise/base/archive.h"
 
 #include <gtest/gtest.h>
 

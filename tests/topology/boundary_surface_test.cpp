@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
+#include "incise/base/error.h"
 #include "incise/topology/boundary_surface.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"

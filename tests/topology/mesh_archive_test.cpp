@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "incise/topology/error.h"
+#include "incise/base/error.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_families.h"

@@ -5,8 +5,8 @@
 
 #include <limits>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/mesh.h"
 #include "support/mesh_families.h"
 

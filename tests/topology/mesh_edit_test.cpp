@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/error.h"
 
 namespace incise::topology {
 namespace {

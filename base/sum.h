@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace incise::physics {
+namespace incise {
 
 /// Compensated sum: what rounding loses is added up by itself (after Neumaier, with Knuth's sum of
 /// two numbers and its error, which has no branch). The error stays at a few units in the last
@@ -65,4 +65,4 @@ class Sums {
     Terms sums_{}, lost_{};
 };
 
-}  // namespace incise::physics
+}  // namespace incise

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/element_boxes.h"
+#include "incise/topology/spatial/element_boxes.h"
 
-namespace incise::cutting {
+namespace incise::topology {
 
-using topology::ElementId;
 using topology::Mesh;
 
 ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) {
@@ -28,7 +27,7 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
     const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
     for (std::size_t i = g * group_size; i < end; ++i)
         if (const ElementId e(i); mesh.is_alive(e))
-            for (const topology::NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+            for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
     groups_[g] = box;
     // Only ever larger, until all are made anew: a group may have lost elements.
     supergroups_[g / supergroup_size].extend(box);
@@ -65,4 +64,4 @@ void ElementBoxes::apply(const Mesh& mesh, std::span<const Vec3> positions,
         if (g < groups_.size()) update_group(mesh, positions, g);
 }
 
-}  // namespace incise::cutting
+}  // namespace incise::topology

@@ -7,13 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/types.h"
 
-namespace incise::cutting {
-
-using Box = Eigen::AlignedBox3d;
+namespace incise::topology {
 
 /// Boxes round groups of elements with neighbouring ids, which lie near each other, and round
 /// groups of groups. They stay right while the body moves, for they grow by as much as any node
@@ -77,9 +75,9 @@ void ElementBoxes::for_each_near(const topology::Mesh& mesh, MayMeet may_meet, V
             if (groups_[g].isEmpty() || !may_meet(grown(groups_[g]))) continue;
             const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
             for (std::size_t i = g * group_size; i < end; ++i)
-                if (const topology::ElementId e(i); mesh.is_alive(e)) visit(e);
+                if (const ElementId e(i); mesh.is_alive(e)) visit(e);
         }
     }
 }
 
-}  // namespace incise::cutting
+}  // namespace incise::topology

@@ -14,9 +14,8 @@ namespace incise {
 /// A point or vector in three dimensions.
 using Vec3 = Eigen::Vector3d;
 
-}  // namespace incise
-
-namespace incise::topology {
+/// A box whose sides are along the axes; empty at first.
+using Box = Eigen::AlignedBox3d;
 
 /// An id that indexes arrays of its own kind and nothing else. Ids are given out in ascending
 /// order and stay with their node or element through all edits; an id is never handed on to
@@ -46,12 +45,12 @@ struct FaceId {
     static void archive(auto& ar, auto& self) { ar(self.element, self.face); }
 };
 
-}  // namespace incise::topology
+}  // namespace incise
 
 /// @cond
 template <class Tag>
-struct std::hash<incise::topology::Id<Tag>> {
-    std::size_t operator()(incise::topology::Id<Tag> id) const noexcept {
+struct std::hash<incise::Id<Tag>> {
+    std::size_t operator()(incise::Id<Tag> id) const noexcept {
         return std::hash<std::int32_t>()(id.value);
     }
 };

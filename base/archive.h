@@ -21,10 +21,10 @@
 #include <variant>
 #include <vector>
 
-#include "incise/topology/error.h"
-#include "incise/topology/types.h"
+#include "incise/base/error.h"
+#include "incise/base/types.h"
 
-namespace incise::topology {
+namespace incise {
 
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -226,4 +226,4 @@ class ArchiveReader {
     std::string_view rest_;
 };
 
-}  // namespace incise::topology
+}  // namespace incise

@@ -8,13 +8,15 @@
 #include <numeric>
 #include <vector>
 
-namespace incise::topology {
+namespace incise {
 
 /// The numbers from 0 to size - 1, each in a group of its own until groups are joined. The lowest
 /// of a group stands for it (disjoint sets, with paths halved).
-class Groups {
+class DisjointSet {
   public:
-    explicit Groups(std::size_t size) : lower_(size) { std::iota(lower_.begin(), lower_.end(), 0); }
+    explicit DisjointSet(std::size_t size) : lower_(size) {
+        std::iota(lower_.begin(), lower_.end(), 0);
+    }
 
     /// The lowest of the group of `i`.
     std::int32_t find(std::int32_t i) {
@@ -33,4 +35,4 @@ class Groups {
     std::vector<std::int32_t> lower_;
 };
 
-}  // namespace incise::topology
+}  // namespace incise

@@ -5,7 +5,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace incise::physics {
+namespace incise {
 
 template <class Signature>
 class FunctionRef;
@@ -30,4 +30,4 @@ class FunctionRef<Result(Arguments...)> {
     Result (*call_)(const void* object, Arguments... arguments);
 };
 
-}  // namespace incise::physics
+}  // namespace incise
