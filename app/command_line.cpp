@@ -13,7 +13,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/sim/table_reader.h"
+#include "incise/scenario/table_reader.h"
 
 namespace incise::app {
 
@@ -267,12 +267,12 @@ void refuse_empty_words(CLI::App& app) {
 /// A first word that is no verb, told in our own words.
 void check_verb(int argc, const char* const* argv) {
     if (argc < 2)
-        throw InputError("a verb is missing: one of " + sim::list_of(verbs) +
+        throw InputError("a verb is missing: one of " + scenario::list_of(verbs) +
                          "; incise --help tells more");
     const std::string_view word = argv[1];
     if (word.starts_with('-')) return;
-    if (const auto complaint = sim::complaint(word, {verbs}))
-        throw InputError("verb " + sim::in_quotes(word) + ": " + *complaint);
+    if (const auto complaint = scenario::complaint(word, {verbs}))
+        throw InputError("verb " + scenario::in_quotes(word) + ": " + *complaint);
 }
 
 }  // namespace

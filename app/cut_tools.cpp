@@ -8,7 +8,7 @@
 #include "incise/base/error.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/io/surface/surface_reader.h"
-#include "incise/sim/diagnostics.h"
+#include "incise/scenario/diagnostics.h"
 
 namespace incise::app {
 
@@ -39,7 +39,7 @@ struct Reader {
     const CutToolOption& option;
 
     [[noreturn]] void fail(const std::string& wrong) const {
-        throw InputError(argument.option + ": " + sim::in_quotes(argument.text) + wrong);
+        throw InputError(argument.option + ": " + scenario::in_quotes(argument.text) + wrong);
     }
     Numbers numbers() const { return parse_numbers(argument.option, argument.text, option.form); }
     double radius(double r) const {
@@ -49,20 +49,20 @@ struct Reader {
         return r;
     }
 
-    sim::PlaneCut plane() const {
+    app::PlaneCut plane() const {
         const Numbers x = numbers();
         const Vec3 normal = point(x, 3);
         if (normal.isZero(0.0)) fail(" has a normal of zero length; give the plane a direction");
         return {point(x, 0), normal};
     }
 
-    sim::SweepCut sweep() const {
-        sim::SweepCut sweep;
+    app::SweepCut sweep() const {
+        app::SweepCut sweep;
         for (const auto text : parts_of(argument.text, '|')) {
             const auto name = "pose " + std::to_string(sweep.poses.size() + 1);
             auto edge = parse_points(argument.option + ": " + name, text);
             if (edge.size() < 2)
-                throw InputError(argument.option + ": " + name + ", " + sim::in_quotes(text) +
+                throw InputError(argument.option + ": " + name + ", " + scenario::in_quotes(text) +
                                  ", has 1 point; an edge needs at least 2, with ; between");
             if (!sweep.poses.empty() && sweep.poses.front().size() != edge.size())
                 throw InputError(argument.option + ": " + name + " has " +
@@ -75,12 +75,12 @@ struct Reader {
         return sweep;
     }
 
-    sim::ShapeRemoval sphere() const {
+    app::ShapeRemoval sphere() const {
         const Numbers x = numbers();
         return {cutting::Sphere{radius(x[3])}, point(x, 0)};
     }
 
-    sim::ShapeRemoval box() const {
+    app::ShapeRemoval box() const {
         const Numbers x = numbers();
         for (std::size_t c = 0; c < 3; ++c)
             if (!(x[c] < x[c + 3]))
@@ -90,7 +90,7 @@ struct Reader {
         return {cutting::Cuboid{high - low}, 0.5 * (low + high)};
     }
 
-    sim::ShapeRemoval capsule() const {
+    app::ShapeRemoval capsule() const {
         const Numbers x = numbers();
         const Vec3 from = point(x, 0), to = point(x, 3), middle = 0.5 * (from + to);
         return {cutting::Capsule{from - middle, to - middle, radius(x[6])}, middle};
@@ -128,7 +128,7 @@ ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
                 file.warnings.push_back(defect);
             for (const auto& warning : file.warnings)
                 parsed.warnings.push_back(prefixed(argument.text + ": ", warning));
-            parsed.tool.kind = sim::SurfaceCut{std::move(file.surface)};
+            parsed.tool.kind = app::SurfaceCut{std::move(file.surface)};
         }
     }
     // Long sweeps would drown the messages that name them.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/app/geometric_cut.h"
 #include "incise/app/verbs.h"
-#include "incise/sim/geometric_cut.h"
 
 namespace incise::app {
 
@@ -20,7 +20,7 @@ struct CutToolOption {
 std::span<const CutToolOption> cut_tool_options();
 
 struct ParsedCutTool {
-    sim::CutTool tool;
+    app::CutTool tool;
     std::vector<std::string> warnings;  ///< about the surface's file; they name it
 };
 

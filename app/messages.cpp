@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/sim/body.h"
-#include "incise/sim/scenario_reader.h"
+#include "incise/scenario/body.h"
+#include "incise/scenario/scenario_reader.h"
 
 namespace incise::app {
 
@@ -32,10 +32,10 @@ std::string joined(std::span<const std::string> lines) {
     return text;
 }
 
-void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& errors,
+void add_body_findings(const scenario::Scenario& scenario, std::vector<std::string>& errors,
                        std::vector<std::string>& warnings) {
     try {
-        const sim::BodyFindings body = sim::check_body(scenario);
+        const scenario::BodyFindings body = scenario::check_body(scenario);
         errors.insert(errors.end(), body.errors.begin(), body.errors.end());
         warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
     } catch (const MemoryError& error) {
@@ -46,9 +46,9 @@ void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& 
     }
 }
 
-sim::Scenario load_scenario(const std::filesystem::path& file,
-                            std::span<const std::string> overrides) {
-    auto report = sim::read_scenario(file, overrides);
+scenario::Scenario load_scenario(const std::filesystem::path& file,
+                                 std::span<const std::string> overrides) {
+    auto report = scenario::read_scenario(file, overrides);
     if (!report.errors.empty()) add_body_findings(report.scenario, report.errors, report.warnings);
     for (const auto& warning : report.warnings) print_warning(warning);
     if (!report.errors.empty()) throw InputError(joined(report.errors));

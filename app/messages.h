@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "incise/sim/scenario.h"
+#include "incise/scenario/scenario.h"
 
 namespace incise::app {
 
@@ -25,12 +25,12 @@ std::string prefixed(std::string_view prefix, std::string_view text);
 
 /// Appends what is at fault or odd with the body that the scenario describes. If memory
 /// does not suffice for it, throws MemoryError or std::bad_alloc where there are no errors before.
-void add_body_findings(const sim::Scenario& scenario, std::vector<std::string>& errors,
+void add_body_findings(const scenario::Scenario& scenario, std::vector<std::string>& errors,
                        std::vector<std::string>& warnings);
 
 /// The scenario, its warnings printed. If there are errors, throws InputError with them and those
 /// of the body that it describes, one a line.
-sim::Scenario load_scenario(const std::filesystem::path& file,
-                            std::span<const std::string> overrides = {});
+scenario::Scenario load_scenario(const std::filesystem::path& file,
+                                 std::span<const std::string> overrides = {});
 
 }  // namespace incise::app

@@ -6,7 +6,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/files/number_text.h"
-#include "incise/sim/diagnostics.h"
+#include "incise/scenario/diagnostics.h"
 
 namespace incise::app {
 
@@ -33,14 +33,15 @@ std::vector<double> parse_numbers(const std::string& what, std::string_view text
     };
     const std::size_t given = parts.size() == 1 && parts.front().empty() ? 0 : parts.size();
     if (given != wanted)
-        fail(sim::in_quotes(text) + " has " + std::to_string(given) +
+        fail(scenario::in_quotes(text) + " has " + std::to_string(given) +
              (given == 1 ? " number" : " numbers"));
     std::vector<double> numbers;
     for (const auto part : parts) {
         const auto number = io::parse_number<double>(part);
-        if (!number) fail(sim::in_quotes(part) + " in " + sim::in_quotes(text) + " is no number");
+        if (!number)
+            fail(scenario::in_quotes(part) + " in " + scenario::in_quotes(text) + " is no number");
         if (!(std::abs(*number) <= largest_coordinate))
-            fail(sim::in_quotes(part) + " in " + sim::in_quotes(text) +
+            fail(scenario::in_quotes(part) + " in " + scenario::in_quotes(text) +
                  " is not allowed, numbers lie between -" + io::format_number(largest_coordinate) +
                  " and " + io::format_number(largest_coordinate));
         numbers.push_back(*number);

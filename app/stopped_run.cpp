@@ -37,7 +37,7 @@ std::string resuming_command(const RunOptions& options) {
     return text + " --resume";
 }
 
-StoppedRun stopped_run(const std::filesystem::path& folder, const sim::Scenario& scenario) {
+StoppedRun stopped_run(const std::filesystem::path& folder, const scenario::Scenario& scenario) {
     if (!std::filesystem::is_directory(folder / "checkpoints"))
         throw InputError(folder.string() +
                          ": there is no run with checkpoints to resume; check --out, or begin anew "
@@ -46,7 +46,7 @@ StoppedRun stopped_run(const std::filesystem::path& folder, const sim::Scenario&
     std::vector<std::string> warnings;
     auto checkpoint = [&] {
         try {
-            return sim::Checkpoint::newest(folder, warnings);
+            return runner::Checkpoint::newest(folder, warnings);
         } catch (const InputError&) {
             for (const std::string& warning : warnings) print_warning(warning);
             throw;

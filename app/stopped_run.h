@@ -7,8 +7,8 @@
 
 #include "incise/app/verbs.h"
 #include "incise/io/files/output_folder.h"
-#include "incise/sim/checkpoint.h"
-#include "incise/sim/scenario.h"
+#include "incise/runner/checkpoint.h"
+#include "incise/scenario/scenario.h"
 
 namespace incise::app {
 
@@ -18,10 +18,10 @@ std::string resuming_command(const RunOptions& options);
 /// What is there of a run to be resumed: nobody else writes there from now on.
 struct StoppedRun {
     io::OutputFolder folder;
-    sim::Checkpoint checkpoint;
+    runner::Checkpoint checkpoint;
 };
 /// The run of this scenario in the folder; damaged checkpoints are warned of.
 /// Throws InputError if there is none, or another run is writing there.
-StoppedRun stopped_run(const std::filesystem::path& folder, const sim::Scenario& scenario);
+StoppedRun stopped_run(const std::filesystem::path& folder, const scenario::Scenario& scenario);
 
 }  // namespace incise::app

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/app/progress.h"
-#include "incise/app/throughput.h"
 #include "incise/app/verbs.h"
+#include "incise/bench/throughput.h"
 #include "incise/io/files/atomic_file.h"
 
 namespace incise::app {
@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json as_json(const Throughput& throughput) {
-    const MachineSpeed& machine = throughput.machine;
+ordered_json as_json(const bench::Throughput& throughput) {
+    const bench::MachineSpeed& machine = throughput.machine;
     ordered_json json;
     json["version"] = INCISE_VERSION;
     json["machine"] = {{"processor", machine.processor},
@@ -29,7 +29,7 @@ ordered_json as_json(const Throughput& throughput) {
                                              {"gbytes_per_second", limit.gigabytes_per_second}});
     json["tissue"] = throughput.tissue;
     json["steps"] = ordered_json::array();
-    for (const StepRate& rate : throughput.steps) {
+    for (const bench::StepRate& rate : throughput.steps) {
         ordered_json row = {{"method", rate.method},
                             {"law", rate.law.empty() ? ordered_json(nullptr) : rate.law},
                             {"elements", rate.elements},
@@ -58,7 +58,7 @@ ordered_json as_json(const Throughput& throughput) {
         json["steps"].push_back(std::move(row));
     }
     json["edits"] = ordered_json::array();
-    for (const EditRate& rate : throughput.edits)
+    for (const bench::EditRate& rate : throughput.edits)
         json["edits"].push_back({{"method", rate.method},
                                  {"kind", rate.kind},
                                  {"item", rate.item},
@@ -66,7 +66,7 @@ ordered_json as_json(const Throughput& throughput) {
                                  {"items", rate.items},
                                  {"microseconds_per_item", rate.microseconds}});
     json["edited"] = ordered_json::array();
-    for (const EditedRate& rate : throughput.edited)
+    for (const bench::EditedRate& rate : throughput.edited)
         json["edited"].push_back({{"method", rate.method},
                                   {"edits", rate.edits},
                                   {"elements_before", rate.elements_before},
@@ -79,8 +79,8 @@ ordered_json as_json(const Throughput& throughput) {
     return json;
 }
 
-void print_text(const Throughput& throughput) {
-    const MachineSpeed& machine = throughput.machine;
+void print_text(const bench::Throughput& throughput) {
+    const bench::MachineSpeed& machine = throughput.machine;
     std::printf("processor   %s, %d cores, instructions: %s\n", machine.processor.c_str(),
                 machine.num_cores, std::string(machine.instructions).c_str());
     for (const auto& [threads, limit] : machine.limits)
@@ -101,7 +101,7 @@ void print_text(const Throughput& throughput) {
         if (value) std::snprintf(digits, sizeof digits, "%.1f", *value);
         return std::string(digits);
     };
-    for (const StepRate& rate : throughput.steps) {
+    for (const bench::StepRate& rate : throughput.steps) {
         const auto name = std::string(rate.law.empty() ? rate.method : rate.law);
         std::printf(
             "%-22s %8zu %7d | %9.2f %9.2f %11s %7s %10s | %9.0f %8.0f %9.3g | %7.1f %4.0f%% %6.1f "
@@ -115,13 +115,13 @@ void print_text(const Throughput& throughput) {
     }
     std::printf("\n%-6s %-10s %-16s %8s %7s | %9s\n", "method", "edit", "item", "elements", "items",
                 "us/item");
-    for (const EditRate& rate : throughput.edits)
+    for (const bench::EditRate& rate : throughput.edits)
         std::printf("%-6s %-10s %-16s %8zu %7zu | %9.2f\n", std::string(rate.method).c_str(),
                     std::string(rate.kind).c_str(), std::string(rate.item).c_str(), rate.elements,
                     rate.items, rate.microseconds);
     std::printf("\n%-6s %-13s %8s %8s | %8s %8s | %13s %9s %11s\n", "method", "forces after",
                 "elements", "then", "nodes", "then", "before, ns/e.", "then", "built anew");
-    for (const EditedRate& rate : throughput.edited)
+    for (const bench::EditedRate& rate : throughput.edited)
         std::printf("%-6s %-13s %8zu %8zu | %8zu %8zu | %13.2f %9.2f %11.2f\n",
                     std::string(rate.method).c_str(), std::string(rate.edits).c_str(),
                     rate.elements_before, rate.elements, rate.nodes_before, rate.nodes,
@@ -132,10 +132,10 @@ void print_text(const Throughput& throughput) {
 
 int bench(const BenchOptions& options) {
     if (options.json && *options.json != "-") io::require_writable(*options.json);
-    Throughput throughput;
+    bench::Throughput throughput;
     {
         Progress progress(1.0, "measuring", false);
-        throughput = measure_throughput(
+        throughput = bench::measure_throughput(
             {}, [&](double share, const std::string& part) { progress.update(share, part); });
         progress.finish();
     }

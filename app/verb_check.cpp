@@ -10,7 +10,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
-#include "incise/sim/scenario_reader.h"
+#include "incise/scenario/scenario_reader.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_check.h"
 
@@ -53,7 +53,7 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
 
 /// The scenario and what it describes, as far as it can be read.
 Findings check_scenario(const std::filesystem::path& path) {
-    auto [scenario, errors, warnings] = sim::read_scenario(path);
+    auto [scenario, errors, warnings] = scenario::read_scenario(path);
     Findings findings{std::move(errors), std::move(warnings), {}};
     add_body_findings(scenario, findings.errors, findings.warnings);
     findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +

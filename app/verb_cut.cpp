@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "incise/app/cut_tools.h"
+#include "incise/app/geometric_cut.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
@@ -16,10 +17,9 @@
 #include "incise/io/files/number_text.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/sim/diagnostics.h"
-#include "incise/sim/geometric_cut.h"
-#include "incise/sim/table_reader.h"
-#include "incise/sim/tool_build.h"
+#include "incise/scenario/diagnostics.h"
+#include "incise/scenario/table_reader.h"
+#include "incise/scenario/tool_build.h"
 
 namespace incise::app {
 
@@ -32,8 +32,8 @@ constexpr std::string_view modes[] = {"split", "separate"};
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 struct Job {
-    std::vector<sim::CutTool> tools;
-    std::optional<sim::CutMode> mode;
+    std::vector<app::CutTool> tools;
+    std::optional<cutting::CutMode> mode;
     double snap = cutting::default_snap;
     std::vector<std::string> warnings;
 };
@@ -41,7 +41,7 @@ struct Job {
 double parse_snap(const std::string& text) {
     const auto snap = io::parse_number<double>(text);
     if (snap && *snap >= 0.0 && *snap <= 1.0) return *snap;
-    throw InputError("--snap: " + sim::in_quotes(text) +
+    throw InputError("--snap: " + scenario::in_quotes(text) +
                      " is not allowed; it must be a number from 0 to 1");
 }
 
@@ -71,15 +71,15 @@ Job parse(const CutOptions& options) {
     if (options.json) check_json(options);
     if (options.json && *options.json != "-") io::require_writable(*options.json);
     if (!options.mode.empty()) {
-        if (const auto complaint = sim::complaint(options.mode, {modes}))
-            throw InputError("--mode: " + sim::in_quotes(options.mode) + " " + *complaint);
-        job.mode = options.mode == "split" ? sim::CutMode::split : sim::CutMode::separate;
+        if (const auto complaint = scenario::complaint(options.mode, {modes}))
+            throw InputError("--mode: " + scenario::in_quotes(options.mode) + " " + *complaint);
+        job.mode = options.mode == "split" ? cutting::CutMode::split : cutting::CutMode::separate;
     }
     if (!options.snap.empty()) job.snap = parse_snap(options.snap);
     if (options.tools.empty()) {
         std::vector<std::string_view> names;
         for (const auto& option : cut_tool_options()) names.emplace_back(option.name);
-        throw InputError("no tool is given; use one or more of " + sim::list_of(names));
+        throw InputError("no tool is given; use one or more of " + scenario::list_of(names));
     }
     for (const auto& argument : options.tools) {
         auto parsed = parse_cut_tool(argument);
@@ -91,9 +91,9 @@ Job parse(const CutOptions& options) {
 
 struct Result {
     topology::MeshData mesh;
-    sim::CutMode mode;
+    cutting::CutMode mode;
     double snap;
-    sim::GeometricCutReport report;
+    app::GeometricCutReport report;
     std::vector<std::string> warnings;
 };
 
@@ -103,8 +103,8 @@ Result carry_out(const CutOptions& options) {
     auto file = io::read_mesh(options.mesh, {options.region_array});
     try {
         auto built = topology::Mesh::build(file.mesh);
-        const auto mode = job.mode.value_or(sim::usual_mode(built.mesh));
-        auto report = sim::geometric_cut(built.mesh, job.tools, {mode, job.snap});
+        const auto mode = job.mode.value_or(scenario::usual_mode(built.mesh));
+        auto report = app::geometric_cut(built.mesh, job.tools, {mode, job.snap});
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})
             for (const auto& warning : *warnings) job.warnings.push_back(prefixed(prefix, warning));
         auto cut = topology::to_mesh_data(built.mesh, built.mesh.rest_positions());
@@ -128,7 +128,7 @@ ordered_json or_null(const std::optional<double>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json distance_json(const std::optional<sim::CutCounts::Distance>& distance,
+ordered_json distance_json(const std::optional<app::CutCounts::Distance>& distance,
                            double mean_edge_length) {
     if (!distance) return {{"max", nullptr}, {"relative", nullptr}, {"nodes", nullptr}};
     return {{"max", distance->faces},
@@ -136,7 +136,7 @@ ordered_json distance_json(const std::optional<sim::CutCounts::Distance>& distan
             {"nodes", distance->nodes}};
 }
 
-void put_counts(ordered_json& json, const sim::CutCounts& counts, double mean_edge_length) {
+void put_counts(ordered_json& json, const app::CutCounts& counts, double mean_edge_length) {
     json["crossed"] = counts.elements_crossed;
     json["snapped"] = counts.nodes_snapped;
     json["elements_added"] = counts.elements_added;
@@ -154,7 +154,7 @@ ordered_json as_json(const CutOptions& options, const Result& result) {
     const auto &before = report.before, &after = report.after;
     ordered_json json;
     json["mode"] = modes[static_cast<std::size_t>(result.mode)];
-    json["snap"] = result.mode == sim::CutMode::split ? ordered_json(result.snap) : nullptr;
+    json["snap"] = result.mode == cutting::CutMode::split ? ordered_json(result.snap) : nullptr;
     json["pieces"] = ordered_json::array();
     for (const auto& piece : report.pieces)
         json["pieces"].push_back({{"volume", piece.volume}, {"elements", piece.elements}});
@@ -181,7 +181,7 @@ ordered_json as_json(const CutOptions& options, const Result& result) {
     return json;
 }
 
-void print_counts(const sim::CutCounts& counts, double mean_edge_length) {
+void print_counts(const app::CutCounts& counts, double mean_edge_length) {
     std::printf("elements crossed  %zu\n", counts.elements_crossed);
     std::printf("elements added    %zu\n", counts.elements_added);
     std::printf("elements removed  %zu\n", counts.elements_removed);

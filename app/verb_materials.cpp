@@ -7,30 +7,30 @@
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/sim/material_catalog.h"
-#include "incise/sim/table_reader.h"
-#include "incise/sim/tissue_catalog.h"
+#include "incise/scenario/material_catalog.h"
+#include "incise/scenario/table_reader.h"
+#include "incise/scenario/tissue_catalog.h"
 
 namespace incise::app {
 
 namespace {
 
-using sim::MaterialModel;
-using sim::Tissue;
+using scenario::MaterialModel;
+using scenario::Tissue;
 
 std::vector<const MaterialModel*> all_models() {
     std::vector<const MaterialModel*> models;
-    for (const auto& law : sim::laws()) models.push_back(&law);
-    models.push_back(&sim::mass_spring_model());
-    models.push_back(&sim::hybmss_model());
+    for (const auto& law : scenario::laws()) models.push_back(&law);
+    models.push_back(&scenario::mass_spring_model());
+    models.push_back(&scenario::hybmss_model());
     return models;
 }
 
 /// Each parameter of the model once, in the order of the table.
-std::vector<const sim::ParameterInfo*> parameters_of(const MaterialModel& model) {
-    std::vector<const sim::ParameterInfo*> rows;
-    for (const auto& row : sim::parameters()) {
-        const auto takes = [&](const sim::ParameterSet& set) {
+std::vector<const scenario::ParameterInfo*> parameters_of(const MaterialModel& model) {
+    std::vector<const scenario::ParameterInfo*> rows;
+    for (const auto& row : scenario::parameters()) {
+        const auto takes = [&](const scenario::ParameterSet& set) {
             return std::find(set.begin(), set.end(), row.parameter) != set.end();
         };
         if (takes(model.optional) ||
@@ -41,7 +41,7 @@ std::vector<const sim::ParameterInfo*> parameters_of(const MaterialModel& model)
 }
 
 bool is_law(const MaterialModel& model) {
-    return &model != &sim::mass_spring_model() && &model != &sim::hybmss_model();
+    return &model != &scenario::mass_spring_model() && &model != &scenario::hybmss_model();
 }
 
 std::string scenario_line(const MaterialModel& model) {
@@ -57,7 +57,7 @@ nlohmann::ordered_json as_json(const MaterialModel& model) {
     json["parameter_sets"] = nlohmann::ordered_json::array();
     for (const auto& set : model.parameter_sets) {
         auto keys = nlohmann::ordered_json::array();
-        for (const auto parameter : set) keys.push_back(sim::info(parameter).key);
+        for (const auto parameter : set) keys.push_back(scenario::info(parameter).key);
         json["parameter_sets"].push_back(keys);
     }
     json["parameters"] = nlohmann::ordered_json::array();
@@ -68,7 +68,7 @@ nlohmann::ordered_json as_json(const MaterialModel& model) {
                                       {"allowed", row->limits.text()}});
     json["optional"] = nlohmann::ordered_json::array();
     for (const auto parameter : model.optional)
-        json["optional"].push_back(sim::info(parameter).key);
+        json["optional"].push_back(scenario::info(parameter).key);
     json["fibres"] = model.has_fibres;
     json["admissible"] = model.admissible;
     json["use"] = model.use;
@@ -84,8 +84,8 @@ nlohmann::ordered_json as_json(const Tissue& tissue) {
     json["law"] = tissue.law;
     json["density"] = tissue.density;
     auto& parameters = json["parameters"] = nlohmann::ordered_json::object();
-    for (const auto& row : sim::parameters())
-        if (row.parameter != sim::Parameter::terms && tissue.parameters[row.parameter])
+    for (const auto& row : scenario::parameters())
+        if (row.parameter != scenario::Parameter::terms && tissue.parameters[row.parameter])
             parameters[row.key] = *tissue.parameters[row.parameter];
     for (const auto& term : tissue.parameters.terms)
         parameters["terms"].push_back({{"mu", term.mu}, {"alpha", term.alpha}});
@@ -99,7 +99,7 @@ nlohmann::ordered_json as_json(const Tissue& tissue) {
     json["density_source"] = tissue.density_source;
     json["validity"] = tissue.validity;
     json["assumed"] = tissue.assumed;
-    json["scenario"] = sim::scenario_lines(tissue);
+    json["scenario"] = scenario::scenario_lines(tissue);
     return json;
 }
 
@@ -125,14 +125,15 @@ void print_summary(const MaterialModel& model) {
     std::cout << model.key << "\n";
     print_wrapped(model.title, "    ");
     print_wrapped(model.use, "    ");
-    print_wrapped("takes " + sim::list_of_parameters(model), "    ");
+    print_wrapped("takes " + scenario::list_of_parameters(model), "    ");
 }
 
 void print_summary(const Tissue& tissue) {
     std::cout << tissue.key << "\n";
     print_wrapped(tissue.title, "    ");
     std::string line;
-    for (const auto& part : sim::scenario_lines(tissue)) line += (line.empty() ? "" : ", ") + part;
+    for (const auto& part : scenario::scenario_lines(tissue))
+        line += (line.empty() ? "" : ", ") + part;
     print_wrapped(line, "    ");
 }
 
@@ -145,7 +146,8 @@ void print_detail(const MaterialModel& model) {
     std::cout << model.key << ": " << model.title << '\n';
     section("In a scenario", scenario_line(model));
     section("Energy", model.energy);
-    section("Takes exactly one of these sets, besides density", sim::list_of_parameters(model));
+    section("Takes exactly one of these sets, besides density",
+            scenario::list_of_parameters(model));
     if (model.has_fibres)
         section("Direction of the fibres at rest, one of",
                 "fibre = [x, y, z], or fibre_array = \"NAME\", a cell array of the mesh file");
@@ -163,7 +165,7 @@ void print_detail(const Tissue& tissue) {
     std::cout << tissue.key << ": " << tissue.title << '\n';
     section("In a scenario", "preset = \"" + std::string(tissue.key) + "\"");
     std::cout << "\nIt stands for\n";
-    for (const auto& line : sim::scenario_lines(tissue)) std::cout << "    " << line << '\n';
+    for (const auto& line : scenario::scenario_lines(tissue)) std::cout << "    " << line << '\n';
     section("Source", tissue.source);
     section("Density", tissue.density_source);
     section("Validity", tissue.validity);
@@ -173,7 +175,7 @@ void print_detail(const Tissue& tissue) {
             "Toughness, for information",
             (toughness->low < toughness->high ? io::format_number(toughness->low) + " to " : "") +
                 io::format_number(toughness->high) + " J/m2 (" +
-                std::string(sim::toughness_source) + ")");
+                std::string(scenario::toughness_source) + ")");
 }
 
 /// What was asked for: everything, or the one of this name.
@@ -184,7 +186,7 @@ struct Choice {
 
 Choice choose(const std::string& name) {
     Choice choice{all_models(), {}};
-    for (const auto& tissue : sim::tissues()) choice.tissues.push_back(&tissue);
+    for (const auto& tissue : scenario::tissues()) choice.tissues.push_back(&tissue);
     if (name.empty()) return choice;
     std::vector<std::string_view> names;
     for (const auto* model : choice.models) {
@@ -195,7 +197,8 @@ Choice choose(const std::string& name) {
         if (tissue->key == name) return {{}, {tissue}};
         names.push_back(tissue->key);
     }
-    throw InputError("material " + sim::in_quotes(name) + " " + *sim::complaint(name, {names}));
+    throw InputError("material " + scenario::in_quotes(name) + " " +
+                     *scenario::complaint(name, {names}));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "incise/io/files/number_text.h"
 #include "incise/io/image/label_mesh.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/sim/table_reader.h"
+#include "incise/scenario/table_reader.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::app {
@@ -23,7 +23,7 @@ namespace {
 double parse_positive(const std::string& option, const std::string& text) {
     const auto value = io::parse_number<double>(text);
     if (value && *value > 0.0 && std::isfinite(*value)) return *value;
-    throw InputError(option + ": " + sim::in_quotes(text) +
+    throw InputError(option + ": " + scenario::in_quotes(text) +
                      " is not allowed; it must be a number above 0");
 }
 

@@ -18,9 +18,9 @@
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
 #include "incise/physics/elements/workers.h"
-#include "incise/sim/body_problems.h"
-#include "incise/sim/run_writer.h"
-#include "incise/sim/simulation.h"
+#include "incise/runner/run_writer.h"
+#include "incise/runner/simulation.h"
+#include "incise/scenario/body_problems.h"
 
 namespace incise::app {
 
@@ -37,11 +37,11 @@ class Stopwatch {
 };
 
 /// Shows how far the run has come.
-class ProgressObserver : public sim::Observer {
+class ProgressObserver : public runner::Observer {
   public:
     ProgressObserver(double end_time, bool quiet) : progress_(end_time, "running", quiet) {}
 
-    void on_step(const sim::Simulation& simulation) override {
+    void on_step(const runner::Simulation& simulation) override {
         char note[128];
         std::snprintf(note, sizeof note, "t = %.4g s, %zu elements, %zu edits", simulation.time(),
                       simulation.mesh().num_elements(), simulation.edits().size());
@@ -54,16 +54,16 @@ class ProgressObserver : public sim::Observer {
 };
 
 /// Prints the warnings that the simulation adds while it goes on.
-class WarningObserver : public sim::Observer {
+class WarningObserver : public runner::Observer {
   public:
-    explicit WarningObserver(const sim::Simulation& simulation)
+    explicit WarningObserver(const runner::Simulation& simulation)
         : num_told_(simulation.warnings().size()) {}
 
-    void on_edit(const sim::Simulation& simulation, const sim::EditRecord&) override {
+    void on_edit(const runner::Simulation& simulation, const sim::EditRecord&) override {
         tell(simulation);
     }
     /// Those of the last step are of the state at the end, and come behind the progress.
-    void tell(const sim::Simulation& simulation) {
+    void tell(const runner::Simulation& simulation) {
         for (; num_told_ < simulation.warnings().size(); ++num_told_)
             print_warning(simulation.warnings()[num_told_]);
     }
@@ -78,11 +78,11 @@ int num_threads(const RunOptions& options) {
 }
 
 /// Its errors name the scenario.
-std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
-                                       const std::filesystem::path& file) {
+std::unique_ptr<runner::Simulation> build(const scenario::Scenario& scenario,
+                                          const std::filesystem::path& file) {
     try {
-        return std::make_unique<sim::Simulation>(scenario);
-    } catch (const sim::BodyError& error) {
+        return std::make_unique<runner::Simulation>(scenario);
+    } catch (const scenario::BodyError& error) {
         for (const std::string& warning : error.warnings) print_warning(warning);
         throw;
     } catch (const InputError& error) {
@@ -91,12 +91,13 @@ std::unique_ptr<sim::Simulation> build(const sim::Scenario& scenario,
 }
 
 /// A run replaces the frames of a former one in its folder: none of them may be what it reads.
-void require_inputs_elsewhere(const sim::Scenario& scenario, const std::filesystem::path& folder) {
+void require_inputs_elsewhere(const scenario::Scenario& scenario,
+                              const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> inputs;
     if (const auto* mesh = std::get_if<std::filesystem::path>(&scenario.mesh.source))
         inputs.push_back(*mesh);
-    for (const sim::ToolSpec& tool : scenario.tools)
-        if (const auto* cut = std::get_if<sim::CutSpec>(&tool.kind))
+    for (const scenario::ToolSpec& tool : scenario.tools)
+        if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))
             if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
                 inputs.push_back(*surface);
     // What cannot be looked at is told when it is opened.
@@ -142,8 +143,8 @@ auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
 }
 
 /// Tools that had time to cut and did not, which is seldom what was meant.
-void warn_of_idle_tools(const sim::Simulation& simulation) {
-    for (const sim::ToolSpec& tool : simulation.scenario().tools) {
+void warn_of_idle_tools(const runner::Simulation& simulation) {
+    for (const scenario::ToolSpec& tool : simulation.scenario().tools) {
         const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
@@ -153,9 +154,9 @@ void warn_of_idle_tools(const sim::Simulation& simulation) {
     }
 }
 
-std::string describe(const sim::Simulation& simulation) {
+std::string describe(const runner::Simulation& simulation) {
     const sim::Account& body = simulation.ledger().initial();
-    const bool is_static = simulation.scenario().dynamics.mode == sim::Mode::statics;
+    const bool is_static = simulation.scenario().dynamics.mode == scenario::Mode::statics;
     std::ostringstream text;
     text.precision(4);
     text << body.elements << (body.elements == 1 ? " element, " : " elements, ") << body.nodes
@@ -167,16 +168,16 @@ std::string describe(const sim::Simulation& simulation) {
     return text.str();
 }
 
-int tell_expectations(const sim::Scenario& scenario, const sim::Quantities& quantities) {
-    const auto failures = sim::failed_expectations(scenario, quantities);
+int tell_expectations(const scenario::Scenario& scenario, const runner::Quantities& quantities) {
+    const auto failures = runner::failed_expectations(scenario, quantities);
     for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
     return failures.empty() ? done : missed_expectation;
 }
 
 /// From where the simulation is to its end, or to a signal.
-int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptions& options,
+int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const RunOptions& options,
              const StopSignals& signals) {
-    const sim::Scenario& scenario = simulation.scenario();
+    const scenario::Scenario& scenario = simulation.scenario();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
     simulation.add_observer(progress);
@@ -184,7 +185,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
     simulation.add_observer(warnings);
 
     const Stopwatch watch;
-    const auto finish = [&](sim::Outcome outcome) {
+    const auto finish = [&](runner::Outcome outcome) {
         outcome.wall_time = watch.seconds();
         progress.finish();
         writer.finish(simulation, outcome);
@@ -210,7 +211,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
         throw InputError(failure(error, simulation.num_steps()));
     }
     if (!simulation.is_finished()) {
-        writer.take_checkpoint(simulation, sim::CheckpointKind::of_a_stop);
+        writer.take_checkpoint(simulation, runner::CheckpointKind::of_a_stop);
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
                     " s; what was written so far is in " + writer.main_result().string() +
@@ -226,7 +227,7 @@ int simulate(sim::Simulation& simulation, sim::RunWriter& writer, const RunOptio
                   << duration_text(watch.seconds()) << ", " << simulation.edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
     std::cout << writer.main_result().string() << '\n';
-    return tell_expectations(scenario, sim::summary_quantities(simulation));
+    return tell_expectations(scenario, runner::summary_quantities(simulation));
 }
 
 }  // namespace
@@ -242,14 +243,14 @@ int run(const RunOptions& options) {
     const std::filesystem::path folder =
         options.out.value_or(options.scenario.stem().string() + ".out");
     const auto refusal = options.resume ? std::nullopt : refusal_of(folder);
-    const sim::Scenario scenario =
+    const scenario::Scenario scenario =
         with_refusal(refusal, [&] { return load_scenario(options.scenario, overrides); });
 
     std::optional<StoppedRun> stopped;
     if (options.resume) {
-        if (const auto quantities = sim::finished_quantities(folder, scenario)) {
+        if (const auto quantities = runner::finished_quantities(folder, scenario)) {
             if (!options.dry_run)  // one may be left if it was killed when all else was done
-                sim::remove_checkpoints_of_stops(folder);
+                runner::remove_checkpoints_of_stops(folder);
             if (!options.quiet)
                 std::cerr << scenario.name << ": the run in " << folder.string()
                           << " is finished; there is nothing to resume\n";
@@ -263,7 +264,7 @@ int run(const RunOptions& options) {
     }
 
     const auto built = with_refusal(refusal, [&] { return build(scenario, options.scenario); });
-    sim::Simulation& simulation = *built;
+    runner::Simulation& simulation = *built;
     if (!options.dry_run && !refusal) simulation.set_num_threads(num_threads(options));
     if (stopped) stopped->checkpoint.restore(simulation);
     for (const std::string& warning : simulation.warnings()) print_warning(warning);
@@ -277,9 +278,9 @@ int run(const RunOptions& options) {
     if (options.dry_run) return done;
 
     signals.note_only();
-    sim::RunWriter writer = stopped ? sim::RunWriter(simulation, std::move(stopped->folder),
-                                                     stopped->checkpoint.written())
-                                    : sim::RunWriter(simulation, folder);
+    runner::RunWriter writer = stopped ? runner::RunWriter(simulation, std::move(stopped->folder),
+                                                           stopped->checkpoint.written())
+                                       : runner::RunWriter(simulation, folder);
     try {
         return simulate(simulation, writer, options, signals);
     } catch (const OutputError& error) {

@@ -25,7 +25,7 @@ struct RunOptions {
     std::filesystem::path scenario;
     std::optional<std::filesystem::path> out;
     std::optional<double> end_time;
-    std::vector<std::string> overrides;  ///< "key.path=value", for sim::read_scenario
+    std::vector<std::string> overrides;  ///< "key.path=value", for scenario::read_scenario
     int num_threads = 0;                 ///< 0: as many as the machine has cores
     bool resume = false;
     bool dry_run = false;

@@ -15,7 +15,7 @@ namespace incise::io {
 
 namespace {
 
-struct Field {
+struct HeaderField {
     std::string_view value;
     std::size_t line = 0;
 };
@@ -44,24 +44,24 @@ class NrrdFields {
 
     std::size_t data_begin() const { return data_begin_; }
 
-    const Field* find(std::initializer_list<const char*> names) const {
+    const HeaderField* find(std::initializer_list<const char*> names) const {
         for (const auto* name : names)
             if (const auto found = fields_.find(name); found != fields_.end())
                 return &found->second;
         return nullptr;
     }
-    const Field& need(const char* name) const {
+    const HeaderField& need(const char* name) const {
         if (const auto* field = find({name})) return *field;
         throw InputError(file_.name() + ": its header has no field '" + name +
                          "'; is it a NRRD image? Get it anew");
     }
     template <class T>
-    T number(const Field& field, std::string_view text) const {
+    T number(const HeaderField& field, std::string_view text) const {
         const auto number = parse_number<T>(trimmed(text));
         if (!number) fail(field, "expected a number, found " + in_quotes(text));
         return *number;
     }
-    std::vector<std::string_view> words(const Field& field, std::size_t count) const {
+    std::vector<std::string_view> words(const HeaderField& field, std::size_t count) const {
         std::vector<std::string_view> words;
         append_words(field.value, words);
         if (words.size() != count)
@@ -70,13 +70,13 @@ class NrrdFields {
         return words;
     }
     template <class T>
-    std::vector<T> numbers(const Field& field, std::size_t count) const {
+    std::vector<T> numbers(const HeaderField& field, std::size_t count) const {
         std::vector<T> numbers;
         for (const auto word : words(field, count)) numbers.push_back(number<T>(field, word));
         return numbers;
     }
     /// Vectors as (x,y,z), three of components each.
-    std::vector<Vec3> vectors(const Field& field, std::size_t count) const {
+    std::vector<Vec3> vectors(const HeaderField& field, std::size_t count) const {
         std::vector<Vec3> vectors;
         auto rest = field.value;
         while (!(rest = trimmed(rest)).empty()) {
@@ -91,12 +91,12 @@ class NrrdFields {
                             std::to_string(vectors.size()));
         return vectors;
     }
-    [[noreturn]] void fail(const Field& field, const std::string& message) const {
+    [[noreturn]] void fail(const HeaderField& field, const std::string& message) const {
         throw InputError(file_.name() + ":" + std::to_string(field.line) + ": " + message);
     }
 
   private:
-    Vec3 vector(const Field& field, std::string_view text) const {
+    Vec3 vector(const HeaderField& field, std::string_view text) const {
         Vec3 vector;
         for (int i = 0; i < 3; ++i) {
             const auto comma = std::min(text.find(','), text.size());
@@ -109,7 +109,7 @@ class NrrdFields {
     }
 
     const InputFile& file_;
-    std::map<std::string, Field> fields_;
+    std::map<std::string, HeaderField> fields_;
     std::size_t data_begin_ = 0;
 };
 
@@ -165,7 +165,7 @@ ScalarType type_of(const NrrdFields& fields) {
 
 /// Refuses axes that are not of space: colours, vectors, segments, time.
 void require_axes_of_space(const NrrdFields& fields, std::size_t num_axes) {
-    const auto refuse = [&](const Field& field, std::string_view kind) {
+    const auto refuse = [&](const HeaderField& field, std::string_view kind) {
         fields.fail(field, "has an axis " + in_quotes(kind) +
                                " that is not of space, that is more than one component a voxel; "
                                "give an image of one label a voxel");

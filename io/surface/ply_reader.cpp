@@ -34,7 +34,7 @@ constexpr Type type_as(std::string_view name) {
             }};
 }
 
-constexpr std::array types = {
+constexpr std::array number_types = {
     type_as<std::int8_t>("char"),     type_as<std::int8_t>("int8"),
     type_as<std::uint8_t>("uchar"),   type_as<std::uint8_t>("uint8"),
     type_as<std::int16_t>("short"),   type_as<std::int16_t>("int16"),
@@ -154,10 +154,10 @@ class PlyReader {
     }
 
     const Type* type_of(std::string_view name) const {
-        const auto* type = std::ranges::find(types, name, &Type::name);
-        if (type == types.end()) {
+        const auto* type = std::ranges::find(number_types, name, &Type::name);
+        if (type == number_types.end()) {
             std::string known;
-            for (const auto& row : types)
+            for (const auto& row : number_types)
                 known += (known.empty() ? "" : ", ") + std::string(row.name);
             scanner_.fail("type " + in_quotes(name) + " is not one of: " + known);
         }

@@ -1,9 +1,9 @@
 // Hyperelastic laws as functions of link lengths. A new law is one struct and one alternative of
-// Law, both here, and the row of sim/material_catalog.cpp that gives it its name and parameters in
-// a scenario: docs/adding-a-law.md shows it on Yeoh's law. Responses are templates over the kind of
-// number, so that tangents come from the same formulas: LawResponse.
-// Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// Law, both here, and the row of scenario/material_catalog.cpp that gives it its name and
+// parameters in a scenario: docs/adding-a-law.md shows it on Yeoh's law. Responses are templates
+// over the kind of number, so that tangents come from the same formulas: LawResponse. Source: HEML
+// 2015, section 4, with the corrections listed in docs/theory.md. SPDX-License-Identifier:
+// LGPL-3.0-or-later
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // The figures of `incise bench`: that there are all of them, and that they fit each other. How high
 // they are is no affair of tests.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/app/throughput.h"
+#include "incise/bench/throughput.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace incise::app {
 namespace {
 
 TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
-    ThroughputPlan plan;
+    bench::ThroughputPlan plan;
     const std::size_t num_tetrahedra = test::is_sanitized ? 1'500 : 3'000;
     plan.tetrahedra = {400, num_tetrahedra};
     plan.hexahedra = {64};
@@ -20,18 +20,19 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     plan.seconds = 0.0;
     plan.num_threads = 2;
     double last = -1.0;
-    const Throughput throughput = measure_throughput(plan, [&](double share, const std::string&) {
-        EXPECT_GT(share, last);
-        EXPECT_LT(share, 1.0);
-        last = share;
-    });
+    const bench::Throughput throughput =
+        bench::measure_throughput(plan, [&](double share, const std::string&) {
+            EXPECT_GT(share, last);
+            EXPECT_LT(share, 1.0);
+            last = share;
+        });
     ASSERT_EQ(throughput.machine.limits.size(), 2u);
     for (const auto& [threads, limit] : throughput.machine.limits) {
         EXPECT_GT(limit.gigaflops, 0.0);
         EXPECT_GT(limit.gigabytes_per_second, 0.0);
     }
     ASSERT_EQ(throughput.steps.size(), 2u * 3u * 2u + 2u);
-    for (const StepRate& rate : throughput.steps) {
+    for (const bench::StepRate& rate : throughput.steps) {
         EXPECT_GT(rate.forces, 0.0);
         EXPECT_GE(rate.step, rate.forces);
         EXPECT_GT(rate.single_forces, 0.0);
@@ -51,7 +52,7 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     EXPECT_EQ(throughput.steps.back().method, "hybmss");
     EXPECT_EQ(throughput.steps.back().elements, 64u);
     std::string edits;
-    for (const EditRate& rate : throughput.edits) {
+    for (const bench::EditRate& rate : throughput.edits) {
         edits += std::string(rate.method) + " " + std::string(rate.kind) + ", ";
         EXPECT_GT(rate.items, 20u) << rate.kind;
     }
@@ -63,13 +64,13 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
     ASSERT_EQ(throughput.edited.size(), 3u);
     EXPECT_GT(throughput.edited[0].elements, throughput.edited[0].elements_before);
     for (const std::size_t i : {1u, 2u}) {
-        const EditedRate& halved = throughput.edited[i];
+        const bench::EditedRate& halved = throughput.edited[i];
         EXPECT_NEAR(static_cast<double>(halved.elements),
                     0.5 * static_cast<double>(halved.elements_before),
                     0.1 * static_cast<double>(halved.elements_before));
         EXPECT_GT(halved.nodes, halved.nodes_before);  // fewer elements share them
     }
-    for (const EditedRate& rate : throughput.edited) {
+    for (const bench::EditedRate& rate : throughput.edited) {
         EXPECT_GT(rate.forces_before, 0.0);
         EXPECT_GT(rate.forces, 0.0);
         EXPECT_GT(rate.forces_built_anew, 0.0);
@@ -78,12 +79,12 @@ TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
 
 // Steps of a few bricks are so fast that hours of simulated time pass.
 TEST(Throughput, IsMeasuredForAnyTime) {
-    const ThroughputPlan plan{.tetrahedra = {},
-                              .hexahedra = {8},
-                              .edited_tetrahedra = {},
-                              .edited_hexahedra = {},
-                              .seconds = 0.05};
-    EXPECT_FALSE(measure_throughput(plan, [](double, const std::string&) {}).steps.empty());
+    const bench::ThroughputPlan plan{.tetrahedra = {},
+                                     .hexahedra = {8},
+                                     .edited_tetrahedra = {},
+                                     .edited_hexahedra = {},
+                                     .seconds = 0.05};
+    EXPECT_FALSE(bench::measure_throughput(plan, [](double, const std::string&) {}).steps.empty());
 }
 
 }  // namespace

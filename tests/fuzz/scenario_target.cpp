@@ -1,6 +1,6 @@
 // The reader of scenarios.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/sim/scenario_reader.h"
+#include "incise/scenario/scenario_reader.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/fuzz/written_file.h"
@@ -10,7 +10,7 @@ namespace incise::fuzz {
 void scenario(std::string_view bytes) {
     const WrittenFile file("fuzz.toml", bytes);
     read_or_refuse(file.name(), [&] {
-        for (const auto& error : sim::read_scenario(file.path()).errors)
+        for (const auto& error : scenario::read_scenario(file.path()).errors)
             if (!error.starts_with(file.name())) require_none("not named: " + error);
     });
 }

@@ -12,9 +12,9 @@
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
-#include "run_folder.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
+#include "tests/runner/run_folder.h"
 
 namespace incise::sim {
 namespace {
@@ -116,7 +116,7 @@ class Session {
 };
 
 TEST(World, EqualsTheScenarioThatDrivesOne) {
-    const Scenario scenario = scenario_of(R"([mesh]
+    const auto scenario = runner::scenario_of(R"([mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [4, 4, 4] }
 [[material]]
 density = 1000
@@ -131,8 +131,8 @@ kind = "blade"
 name = "scalpel"
 edge = [[0, -0.02, 0.051], [0, 0.12, 0.053]]
 path = [{ time = 0, at = [-0.01, 0, 0] }, { time = 0.05, at = [0.11, 0, 0] }]
-)" + dynamics(0.06, "gravity = [0, 0, -9.81]\ndamping = 2\n"));
-    Simulation run(scenario);
+)" + runner::dynamics(0.06, "gravity = [0, 0, -9.81]\ndamping = 2\n"));
+    runner::Simulation run(scenario);
     World world = held_world();
     const ToolId tool_id = world.add_tool(scalpel());
     world.place_tool(tool_id, scalpel_pose(0.0));

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/app/geometric_cut.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "incise/base/error.h"
+#include "incise/cutting/cutter.h"
+#include "incise/cutting/exact/cut_plan.h"
+#include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/triangle_surface.h"
+#include "incise/cutting/tools/separator.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_metrics.h"
+
+namespace incise::app {
+
+using cutting::TissueMotion;
+using topology::CellKind;
+using topology::Mesh;
+
+namespace {
+
+template <class Do>
+void for_each_element(const Mesh& mesh, Do act) {
+    for (const ElementId e : mesh.elements()) act(e);
+}
+
+double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corners) {
+    std::array<Vec3, topology::max_corners> x;
+    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
+    return topology::signed_volume(kind, {x.data(), corners.size()});
+}
+
+/// Of the whole body. Volumes are summed in more digits than they have, so that the volume error
+/// tells of the cuts and not of the sums.
+double volume_of(const Mesh& mesh) {
+    long double sum = 0.0;
+    for_each_element(mesh,
+                     [&](ElementId e) { sum += volume_of(mesh, mesh.kind(e), mesh.corners(e)); });
+    return static_cast<double>(sum);
+}
+
+/// What has to be known of a mesh before it is split to tell which faces a split opened.
+class FacesBefore {
+  public:
+    explicit FacesBefore(const Mesh& mesh)
+        : rows_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
+        for_each_element(mesh, [&](ElementId e) {
+            if (mesh.kind(e) != CellKind::tetrahedron) return;
+            Row& row = rows_[e.index()];
+            for (std::size_t k = 0; k < 4; ++k) row.corners[k] = mesh.corners(e)[k];
+            for (int f = 0; f < 4; ++f)
+                row.joined |= (mesh.neighbor({e, f}).is_valid() ? 1u : 0u) << f;
+        });
+    }
+
+    /// Both sides of each face that the split has opened: those on the boundary that lie inside
+    /// an element of before, or in a face of one that was joined to another.
+    std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
+        std::vector<FaceId> opened;
+        for (const FaceId f : topology::boundary_faces(mesh)) {
+            if (mesh.kind(f.element) != CellKind::tetrahedron) continue;
+            ElementId root = f.element;
+            while (root.index() >= rows_.size())
+                root = changes.elements_added[root.index() - rows_.size()].parent;
+            const Row& row = rows_[root.index()];
+            unsigned on = 0;  // between which corners of before the face lies
+            for (int p = 0; p < 3; ++p) on |= support(mesh.face_corner(f, p), row, changes);
+            bool was_open = false;
+            for (int side = 0; side < 4; ++side)
+                was_open |= (on & ~corners_of(side)) == 0 && (row.joined >> side & 1u) == 0;
+            if (!was_open) opened.push_back(f);
+        }
+        return opened;
+    }
+
+  private:
+    struct Row {
+        std::array<NodeId, 4> corners;
+        unsigned joined = 0;  // a bit a face
+    };
+
+    static unsigned corners_of(int face) {
+        unsigned bits = 0;
+        for (const int k : topology::traits(CellKind::tetrahedron).face(face)) bits |= 1u << k;
+        return bits;
+    }
+
+    /// The corners between which the node was made, a bit each.
+    unsigned support(NodeId n, const Row& row, const topology::ChangeSet& changes) const {
+        unsigned bits = 0;
+        if (n.index() < num_nodes_) {
+            for (std::size_t k = 0; k < 4; ++k) bits |= (row.corners[k] == n ? 1u : 0u) << k;
+            return bits;
+        }
+        const topology::NodeRecord& record = changes.nodes_added[n.index() - num_nodes_];
+        for (int s = 0; s < record.num_sources; ++s)
+            bits |= support(record.sources[static_cast<std::size_t>(s)].node, row, changes);
+        return bits;
+    }
+
+    std::vector<Row> rows_;  // by element id
+    std::size_t num_nodes_;
+};
+
+/// What the edge sweeps, as space_time.h takes it: two triangles for each segment and two poses.
+topology::SurfaceData swept_surface(const SweepCut& sweep) {
+    topology::SurfaceData surface;
+    for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p)
+        for (std::size_t s = 0; s + 1 < sweep.poses[p].size(); ++s) {
+            const auto a = static_cast<std::int64_t>(surface.points.size());
+            for (const std::size_t pose : {p, p + 1})
+                for (const std::size_t end : {s, s + 1})
+                    surface.points.push_back(sweep.poses[pose][end]);
+            const std::int64_t b = a + 1, a_after = a + 2, b_after = a + 3;
+            surface.triangles.push_back({a, b, b_after});
+            surface.triangles.push_back({a, b_after, a_after});
+        }
+    return surface;
+}
+
+/// Its direction is that of the last stretch in which it moved.
+cutting::BladeEnd end_of(const SweepCut& sweep) {
+    const auto& last = sweep.poses.back();
+    std::vector<Vec3> motion(last.size(), Vec3::Zero());
+    const auto before = std::find_if(sweep.poses.rbegin(), sweep.poses.rend(),
+                                     [&](const auto& pose) { return pose != last; });
+    if (before != sweep.poses.rend())
+        for (std::size_t i = 0; i < last.size(); ++i) motion[i] = last[i] - (*before)[i];
+    return {last, motion};
+}
+
+/// Scaled by a power of two, which changes no sign and no plane, so that squares neither overflow
+/// nor vanish.
+Vec3 well_scaled(const Vec3& normal) {
+    const int exponent = -std::ilogb(normal.cwiseAbs().maxCoeff());
+    return normal.unaryExpr([&](double x) { return std::scalbn(x, exponent); });
+}
+
+bool is_all_tetrahedra(const Mesh& mesh) {
+    bool is_all = true;
+    for_each_element(mesh, [&](ElementId e) { is_all &= mesh.kind(e) == CellKind::tetrahedron; });
+    return is_all;
+}
+
+CutBody describe(const Mesh& mesh) {
+    const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
+    CutBody body;
+    body.elements = mesh.num_elements();
+    body.nodes = mesh.num_nodes();
+    body.volume = volume_of(mesh);
+    body.min_dihedral_angle = metrics.min_dihedral_angle;
+    body.min_altitude = metrics.min_altitude;
+    body.mean_edge_length = metrics.mean_edge_length;
+    body.box_min = metrics.box_min;
+    body.box_max = metrics.box_max;
+    if (is_all_tetrahedra(mesh)) body.step_length = cutting::step_length(mesh);
+    return body;
+}
+
+std::vector<Piece> pieces_of(const Mesh& mesh) {
+    const topology::Components components = topology::components(mesh);
+    std::vector<Piece> pieces(static_cast<std::size_t>(components.count));
+    std::vector<long double> volumes(pieces.size(), 0.0);
+    for_each_element(mesh, [&](ElementId e) {
+        const auto p = static_cast<std::size_t>(components.of_element[e.index()]);
+        volumes[p] += volume_of(mesh, mesh.kind(e), mesh.corners(e));
+        ++pieces[p].elements;
+    });
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        pieces[p].volume = static_cast<double>(volumes[p]);
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece& a, const Piece& b) { return a.volume > b.volume; });
+    return pieces;
+}
+
+void add(const CutCounts& counts, CutCounts& total) {
+    total.elements_crossed += counts.elements_crossed;
+    total.elements_added += counts.elements_added;
+    total.elements_removed += counts.elements_removed;
+    total.nodes_added += counts.nodes_added;
+    total.nodes_duplicated += counts.nodes_duplicated;
+    total.nodes_snapped += counts.nodes_snapped;
+    total.faces_opened += counts.faces_opened;
+    total.cut_area += counts.cut_area;
+    total.volume_removed += counts.volume_removed;
+    total.split_seconds += counts.split_seconds;
+    if (const auto& distance = counts.surface_distance) {
+        if (!total.surface_distance) total.surface_distance.emplace();
+        auto& largest = *total.surface_distance;
+        largest.nodes = std::max(largest.nodes, distance->nodes);
+        largest.faces = std::max(largest.faces, distance->faces);
+    }
+}
+
+/// Cuts with one tool after the other, and counts what each does.
+class CountingCutter {
+  public:
+    CountingCutter(Mesh& mesh, const GeometricCutOptions& options)
+        : mesh_(mesh),
+          mode_(options.mode),
+          snap_(options.snap),
+          cutter_(mesh, mesh.rest_positions(),
+                  mode_ == CutMode::split ? cutting::uncut_body(mesh) : cutting::UncutBody{}) {}
+
+    CutCounts apply(const CutTool& tool) {
+        counts_ = {};
+        opened_faces_ = {};
+        std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
+        return counts_;
+    }
+
+  private:
+    void cut(const PlaneCut& plane) {
+        const Vec3 normal = well_scaled(plane.normal), unit = normal.normalized();
+        const cutting::Plane surface(plane.point, normal);
+        if (mode_ == CutMode::split)
+            split(surface);
+        else
+            separate(
+                [&](const Vec3& a, const Vec3& b) { return surface.side(a) != surface.side(b); });
+        measure_distance([&](const Vec3& x) { return std::abs(unit.dot(x - plane.point)); });
+    }
+
+    void cut(const SurfaceCut& given) {
+        const cutting::TriangleSurface surface(given.surface);
+        std::vector<cutting::Crossing> crossings;
+        if (mode_ == CutMode::split)
+            split(surface);
+        else
+            separate([&](const Vec3& a, const Vec3& b) {
+                crossings.clear();
+                surface.append_crossings({a, a}, {b, b}, crossings);
+                return crossings.size() % 2 == 1;
+            });
+        measure_distance([&](const Vec3& x) { return surface.distance(x); });
+    }
+
+    void cut(const SweepCut& sweep) {
+        const cutting::CutId cut = cutter_.begin_cut(snap_);
+        for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p) {
+            const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
+            const auto rest = mesh_.rest_positions();
+            if (mode_ == CutMode::split)
+                split_by([&](std::span<const Vec3> positions) {
+                    return cutter_.split(cut, mesh_, positions, before, after);
+                });
+            else
+                open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
+        }
+        if (cutter_.is_in_tissue(cut))
+            split_by([&](std::span<const Vec3> positions) {
+                return cutter_.end_cut(cut, mesh_, positions, end_of(sweep));
+            });
+        cutter_.remove_cut(cut);
+        if (counts_.faces_opened == 0) return;
+        const cutting::TriangleSurface surface(swept_surface(sweep));
+        measure_distance([&](const Vec3& x) { return surface.distance(x); });
+    }
+
+    void cut(const ShapeRemoval& removal) {
+        const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
+        const auto changes =
+            cutter_.carve(mesh_, mesh_.rest_positions(), removal.shape, pose, pose).changes;
+        long double removed = 0.0;
+        for (const topology::ElementRecord& record : changes.elements_removed)
+            removed += volume_of(mesh_, record.kind, record.corners);
+        counts_.volume_removed = static_cast<double>(removed);
+        book(changes);
+    }
+
+    void split(const cutting::CutSurface& surface) {
+        split_by([&](std::span<const Vec3> positions) {
+            return cutter_.split(mesh_, positions, surface, snap_);
+        });
+    }
+
+    /// edit(positions) returns a cutting::Split.
+    template <class Edit>
+    void split_by(Edit edit) {
+        // A copy: the split adds positions to those of the mesh.
+        const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
+        const FacesBefore faces(mesh_);
+        const auto start = std::chrono::steady_clock::now();
+        const cutting::Split result = edit(rest);
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+        counts_.split_seconds += elapsed.count();
+        counts_.elements_crossed += result.report.elements_crossed;
+        counts_.nodes_snapped += result.report.nodes_snapped;
+        counts_.faces_opened += result.report.faces_opened;
+        counts_.cut_area += result.report.cut_area;
+        if (result.report.faces_opened > 0) {
+            const auto opened = faces.opened_by(result.changes, mesh_);
+            assert(opened.size() == 2 * result.report.faces_opened);
+            for (const FaceId f : opened) remember(f);
+        }
+        book(result.changes);
+    }
+
+    /// Opens the faces between elements for whose centres, at rest, `are_parted` holds.
+    template <class AreParted>
+    void separate(AreParted are_parted) {
+        std::vector<FaceId> faces;
+        const auto rest = mesh_.rest_positions();
+        for_each_element(mesh_, [&](ElementId e) {
+            const Vec3 centre = TissueMotion::centre(mesh_, e, rest);
+            for (int f = 0; f < mesh_.num_faces(e); ++f) {
+                const FaceId face{e, f}, other = mesh_.neighbor(face);
+                if (face < other &&
+                    are_parted(centre, TissueMotion::centre(mesh_, other.element, rest)))
+                    faces.push_back(face);
+            }
+        });
+        open(faces);
+    }
+
+    void open(const std::vector<FaceId>& faces) {
+        const auto changes = cutting::execute({{}, faces}, mesh_);
+        std::set<ElementId> crossed;
+        for (const topology::FacePair& pair : changes.faces_opened) {
+            crossed.insert({pair.a.element, pair.b.element});
+            remember(pair.a);
+            counts_.cut_area += topology::rest_area(mesh_, pair.a);
+        }
+        counts_.elements_crossed += crossed.size();
+        counts_.faces_opened += changes.faces_opened.size();
+        book(changes);
+    }
+
+    void book(const topology::ChangeSet& changes) {
+        cutter_.apply(mesh_, mesh_.rest_positions(), changes);
+        counts_.elements_added += changes.elements_added.size();
+        counts_.elements_removed += changes.elements_removed.size();
+        counts_.nodes_added += changes.nodes_added.size();
+        for (const topology::NodeRecord& record : changes.nodes_added)
+            counts_.nodes_duplicated += record.num_sources == 1;
+    }
+
+    void remember(FaceId f) {
+        const int size = mesh_.face_size(f);
+        const auto at = [&](int p) -> const Vec3& {
+            return mesh_.rest_position(mesh_.face_corner(f, p % size));
+        };
+        Vec3 sum = Vec3::Zero();
+        for (int p = 0; p < size; ++p) {
+            opened_faces_.nodes.push_back(at(p));
+            opened_faces_.middles.push_back(0.5 * (at(p) + at(p + 1)));
+            sum += at(p);
+        }
+        opened_faces_.middles.push_back(sum / size);
+    }
+
+    template <class Distance>
+    void measure_distance(Distance distance) {
+        if (counts_.faces_opened == 0) return;
+        const auto largest = [&](std::vector<Vec3>& points) {
+            std::ranges::sort(points, [](const Vec3& a, const Vec3& b) {
+                return std::ranges::lexicographical_compare(a, b);
+            });
+            const auto [end, last] = std::ranges::unique(points);
+            points.erase(end, last);
+            double value = 0.0;
+            for (const Vec3& x : points) value = std::max(value, distance(x));
+            return value;
+        };
+        const double nodes = largest(opened_faces_.nodes);
+        counts_.surface_distance = {nodes, std::max(nodes, largest(opened_faces_.middles))};
+    }
+
+    Mesh& mesh_;
+    const CutMode mode_;
+    const double snap_;
+    cutting::Cutter cutter_;
+    // Of the tool at work.
+    CutCounts counts_;
+    struct {
+        std::vector<Vec3> nodes, middles;  // these of their edges and their own
+    } opened_faces_;                       // by it; m, at rest
+};
+
+/// What to say of a tool that cut nothing, which is seldom what was meant.
+std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts& counts,
+                                           const CutBody& body) {
+    std::ostringstream text;
+    text.precision(4);
+    if (std::holds_alternative<ShapeRemoval>(tool.kind)) {
+        if (counts.elements_removed > 0) return std::nullopt;
+        text << "removes nothing, it covers the centre of no element";
+    } else {
+        if (counts.faces_opened > 0) return std::nullopt;
+        if (counts.elements_crossed > 0) {
+            text << "opens no face, though it crosses " << counts.elements_crossed
+                 << (counts.elements_crossed == 1 ? " element" : " elements")
+                 << ": it grazes the body, runs along an earlier cut, or needs a smaller snap";
+            return text.str();
+        }
+        text << "cuts nothing, it parts no two elements";
+    }
+    text << "; the body reached from " << body.box_min.transpose() << " to "
+         << body.box_max.transpose() << " before the first tool";
+    return text.str();
+}
+
+CutBody describe_result(const Mesh& mesh) {
+    try {
+        return describe(mesh);
+    } catch (const InputError& error) {
+        throw InputError(std::string("after the cuts: ") + error.what() +
+                         "\nuse a larger snap, or move the cut a little");
+    }
+}
+
+template <class A, class B>
+std::optional<double> ratio(A a, B b) {
+    if (!(b > B{})) return std::nullopt;
+    return static_cast<double>(a) / static_cast<double>(b);
+}
+
+}  // namespace
+
+double GeometricCutReport::volume_error() const {
+    return std::abs(after.volume + total.volume_removed - before.volume) / before.volume;
+}
+
+std::optional<double> GeometricCutReport::growth() const {
+    return ratio(total.elements_added, total.elements_crossed);
+}
+
+std::optional<double> GeometricCutReport::microseconds_per_crossed_element() const {
+    if (total.split_seconds == 0.0) return std::nullopt;
+    return ratio(1e6 * total.split_seconds, total.elements_crossed);
+}
+
+std::optional<double> GeometricCutReport::stable_step_ratio() const {
+    if (!before.step_length || !after.step_length) return std::nullopt;
+    return ratio(*after.step_length, *before.step_length);
+}
+
+GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
+                                 const GeometricCutOptions& options) {
+    GeometricCutReport report;
+    report.before = describe(mesh);
+    CountingCutter cutter(mesh, options);
+    for (const CutTool& tool : tools) {
+        try {
+            const CutCounts counts = cutter.apply(tool);
+            if (mesh.num_elements() == 0)
+                throw InputError("removes the last element: nothing is left of the body");
+            if (const auto complaint = complaint_about(tool, counts, report.before))
+                report.warnings.push_back(tool.name + ": " + *complaint);
+            add(counts, report.total);
+            report.tools.push_back({tool.name, counts, topology::components(mesh).count});
+        } catch (const cutting::UndividableElement& error) {
+            throw cutting::UndividableElement(tool.name + ": " + error.what());
+        } catch (const InputError& error) {
+            throw InputError(tool.name + ": " + error.what());
+        }
+    }
+    report.after = describe_result(mesh);
+    report.pieces = pieces_of(mesh);
+    return report;
+}
+
+}  // namespace incise::app

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/runner/frame_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace incise::runner {
+
+namespace {
+
+/// One value a row, from a function of the row that returns a vector or a number.
+template <class Number, class Row, class Value>
+io::Field field(std::string name, int components, const std::vector<Row>& rows, Value value) {
+    std::vector<Number> values;
+    values.reserve(rows.size() * static_cast<std::size_t>(components));
+    for (const Row& row : rows) {
+        if constexpr (std::is_arithmetic_v<decltype(value(row))>) {
+            values.push_back(static_cast<Number>(value(row)));
+        } else {
+            const auto vector = value(row);
+            for (int c = 0; c < components; ++c) values.push_back(static_cast<Number>(vector(c)));
+        }
+    }
+    return {std::move(name), components, std::move(values)};
+}
+
+double von_mises(const Eigen::Matrix3d& stress) {
+    const Eigen::Matrix3d deviator = stress - stress.trace() / 3.0 * Eigen::Matrix3d::Identity();
+    return std::sqrt(1.5) * deviator.norm();
+}
+
+std::string name(scenario::Field field) {
+    return std::string(scenario::field_names[static_cast<std::size_t>(field)]);
+}
+
+}  // namespace
+
+bool FrameBuilder::has(scenario::Field field) const {
+    return std::find(fields_.begin(), fields_.end(), field) != fields_.end();
+}
+
+FrameBuilder::FrameBuilder(const physics::Model& model, double time,
+                           std::span<const scenario::Field> fields)
+    : fields_(fields.begin(), fields.end()) {
+    const topology::Mesh& mesh = model.mesh();
+    std::vector<NodeId> nodes;
+    frame_.mesh = topology::to_mesh_data(mesh, model.positions(), &nodes, &elements_);
+    frame_.time = time;
+
+    auto& points = frame_.point_fields;
+    const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
+    if (has(scenario::Field::displacement)) {
+        points.push_back(field<float>(name(scenario::Field::displacement), 3, nodes, [&](NodeId n) {
+            return Vec3(model.positions()[n.index()] - mesh.rest_position(n));
+        }));
+        frame_.active_vectors = name(scenario::Field::displacement);
+    }
+    points.push_back(field<double>("rest_position", 3, nodes, rest));
+    if (has(scenario::Field::velocity))
+        points.push_back(field<float>(name(scenario::Field::velocity), 3, nodes,
+                                      [&](NodeId n) { return model.velocities()[n.index()]; }));
+    if (has(scenario::Field::force))
+        points.push_back(field<float>(name(scenario::Field::force), 3, nodes,
+                                      [&](NodeId n) { return model.elastic_forces()[n.index()]; }));
+    if (has(scenario::Field::mass))
+        points.push_back(field<double>(name(scenario::Field::mass), 1, nodes,
+                                       [&](NodeId n) { return model.masses()[n.index()]; }));
+    points.push_back(
+        field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
+
+    auto& cells = frame_.cell_fields;
+    cells.push_back(field<std::int64_t>("element_id", 1, elements_,
+                                        [&](ElementId e) { return mesh.label(e); }));
+    if (const auto fibres = model.fibres(); !fibres.empty())
+        cells.push_back(
+            field<double>("fibre", 3, elements_, [&](ElementId e) { return fibres[e.index()]; }));
+    if (has(scenario::Field::J) || has(scenario::Field::energy_density) ||
+        has(scenario::Field::stress) || has(scenario::Field::von_mises))
+        snapshot_.emplace(model);
+}
+
+io::Frame FrameBuilder::finish() {
+    if (!snapshot_) return std::move(frame_);
+    const auto results = snapshot_->results(elements_);
+    const auto add = [&](scenario::Field kind, int components, auto value) {
+        if (has(kind))
+            frame_.cell_fields.push_back(field<float>(name(kind), components, results, value));
+    };
+    using Result = physics::ElementResult;
+    add(scenario::Field::J, 1, [](const Result& r) { return r.volume_ratio; });
+    add(scenario::Field::energy_density, 1, [](const Result& r) { return r.energy / r.volume; });
+    add(scenario::Field::stress, 9,
+        [](const Result& r) { return Eigen::Matrix<double, 9, 1>(r.cauchy_stress.reshaped()); });
+    add(scenario::Field::von_mises, 1, [](const Result& r) { return von_mises(r.cauchy_stress); });
+    return std::move(frame_);
+}
+
+}  // namespace incise::runner

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/runner/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "incise/base/error.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/input_file.h"
+#include "incise/io/files/number_format.h"
+#include "incise/physics/body/winding.h"
+#include "incise/scenario/body.h"
+#include "incise/scenario/remedies.h"
+#include "incise/scenario/step_limit.h"
+
+namespace incise::runner {
+
+namespace {
+
+/// Of what the body is made of at the start, and of the files of tools.
+std::uint64_t fingerprint_of(const physics::Model& model,
+                             const std::vector<scenario::ToolSpec>& tools) {
+    const topology::Mesh& mesh = model.mesh();
+    ArchiveWriter ar;
+    for (const Vec3& x : mesh.rest_positions()) ar(x);
+    for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
+        const ElementId e(i);
+        ar(mesh.label(e), mesh.kind(e), mesh.region(e));
+        for (const NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
+        for (int f = 0; f < mesh.num_faces(e); ++f) ar(mesh.neighbor({e, f}).element);
+    }
+    for (const Vec3& fibre : model.fibres()) ar(fibre);
+    for (const scenario::ToolSpec& tool : tools)
+        if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))
+            if (const auto* file = std::get_if<std::filesystem::path>(&cut->along))
+                ar(io::load_input_file(*file).bytes);
+    return io::checksum(ar.bytes());
+}
+
+}  // namespace
+
+Simulation::Simulation(const scenario::Scenario& scenario)
+    : Simulation(scenario, scenario::build_body(scenario)) {}
+
+Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body)
+    : scenario_(scenario),
+      warnings_(std::move(body.warnings)),
+      world_(scenario::make_world(scenario, std::move(body.mesh), std::move(body.materials),
+                                  std::move(body.surroundings))),
+      fingerprint_(fingerprint_of(model(), scenario.tools)),
+      warned_step_(ledger().initial().stable_step) {
+    for (scenario::ScriptedTool& tool : body.tools) {
+        world_.add_tool({std::move(tool.name), std::move(tool.shape)});
+        paths_.push_back(std::move(tool.path));
+    }
+    step_limit();  // a fixed step that is too large is refused before anything is written
+}
+
+void Simulation::start() {
+    for (Observer* observer : observers_) observer->on_start(*this);
+    tell_frame();
+    tell_pause();
+}
+
+bool Simulation::is_finished() const { return time() >= scenario_.dynamics.end_time; }
+
+void Simulation::step() {
+    const Interval step = next_step();
+    move_tools(step);
+    try {
+        world_.step_to(step.to);
+    } catch (const sim::ToolError& error) {
+        tell_edits();
+        if (!error.is_undividable) throw;
+        throw InputError(std::string(error.what()) + "; " +
+                         scenario::instead_of_dividing(world_.tool(error.tool).shape));
+    } catch (const physics::MotionFailure& failure) {
+        tell_edits();
+        throw PhysicsError(failure.what() + scenario::remedy_for(failure));
+    }
+    last_step_ = step.to - step.from;
+    tell_edits();
+    for (Observer* observer : observers_) observer->on_step(*this);
+    if (is_finished()) warn_of_lost_elements();
+    tell_frame();
+    tell_pause();
+}
+
+/// Brings in the tools that act in the step, and takes out those whose path ends in it.
+void Simulation::move_tools(Interval step) {
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+        const scenario::ToolPath& path = paths_[i];
+        if (!path.is_present(step.from, step.to)) continue;
+        const sim::ToolId tool{i};
+        if (!world_.is_tool_present(tool)) world_.place_tool(tool, path.pose(step.from));
+        world_.set_tool_pose(tool, path.pose(step.to));
+        if (step.to < path.last_time()) continue;
+        const auto before = path.pose_before_end();
+        world_.withdraw_tool(tool, before ? &*before : nullptr);
+    }
+}
+
+void Simulation::tell_edits() {
+    for (const sim::Edit& edit : world_.report().edits) {
+        edits_.push_back(edit.record);
+        warn_of_short_steps(edit.record);
+        for (Observer* observer : observers_) observer->on_edit(*this, edits_.back());
+    }
+}
+
+void Simulation::save(ArchiveWriter& ar) const {
+    ar(world_.save(), edits_, last_step_, num_frames_);
+}
+
+void Simulation::restore(ArchiveReader& ar) {
+    world_.restore(ar.read<std::string>());
+    ar(edits_, last_step_, num_frames_);
+    if (!(time() < scenario_.dynamics.end_time))
+        throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
+    if (world_.num_tools() != paths_.size()) throw InputError("its tools are not those of the run");
+    if (edits_.size() != ledger().num_edits()) throw InputError("its books are not of its edits");
+    for (const sim::EditRecord& edit : edits_) warn_of_short_steps(edit);
+    if (!(last_step_ >= 0.0 && last_step_ <= time()))
+        throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
+    if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
+}
+
+/// Of edits after which steps are ten times as short as at the start, or as at the warning before.
+void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
+    constexpr double much_shorter = 0.1;
+    const scenario::DynamicsSpec& dynamics = scenario_.dynamics;
+    const double now = edit.after.stable_step;
+    if (dynamics.mode == scenario::Mode::statics ||
+        dynamics.integrator != scenario::TimeIntegrator::semi_implicit_euler ||
+        !(now < much_shorter * warned_step_))
+        return;
+    const cutting::ToolShape* shape = nullptr;
+    for (std::size_t i = 0; i < world_.num_tools(); ++i)
+        if (const sim::ToolDef& tool = world_.tool({i}); tool.name == edit.tool)
+            shape = &tool.shape;
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left "
+         << (shape && !scenario::divides(*shape) ? "stiff elements with so little mass"
+                                                 : "elements so thin")
+         << " that the stable step fell from " << warned_step_ << " to " << now
+         << " s: the run takes " << warned_step_ / now << " times as long from here on";
+    if (shape) text << "; " << scenario::for_longer_steps(*shape);
+    warnings_.push_back(text.str());
+    warned_step_ = now;
+}
+
+void Simulation::warn_of_lost_elements() {
+    // Tissue keeps its volume: with less it has been crushed, whatever the law thinks of it.
+    constexpr double least_volume_ratio = 0.01;
+    std::size_t num_crushed = 0;
+    if (model().min_volume_ratio() < least_volume_ratio)
+        for (const ElementId e : mesh().elements())
+            num_crushed += model().element_result(e).volume_ratio < least_volume_ratio;
+    std::ostringstream text;
+    text << "at the end, t = " << time() << " s, ";
+    if (num_crushed > 0) {
+        text << num_crushed << (num_crushed == 1 ? " element is" : " elements are")
+             << " flat or inverted (J below " << least_volume_ratio
+             << "): the body has been pressed through itself, which tissue cannot; see min_J in "
+                "history.csv for when, and use smaller motions or loads, a finer mesh, or law = "
+                "\"stable-neo-hookean\"";
+    } else if (const auto winding = physics::find_winding(mesh(), model().positions());
+               winding.num_edges > 0) {
+        text << "the body is wound up: round " << winding.num_edges
+             << (winding.num_edges == 1 ? " edge" : " edges")
+             << " elements go twice and lie in each other, one of them element "
+             << mesh().label(winding.element)
+             << ", though none is inverted; no law can undo that: see the frames for when it "
+                "happened, and use smaller motions or loads, a smaller dynamics.safety, or a lower "
+                "Poisson's ratio";
+    } else {
+        return;
+    }
+    warnings_.push_back(text.str());
+}
+
+double Simulation::time_step() const {
+    if (num_steps() > 0) return last_step_;
+    const auto [from, to] = next_step();
+    return to - from;
+}
+
+// Frames fall on exact multiples of their interval, and the run ends exactly at its end: the way
+// to the next of these moments is divided evenly in steps below the limit.
+Simulation::Interval Simulation::next_step() const {
+    // A hair's breadth over a whole number of steps is rounding, not another step; so is one
+    // between the last frame and the end, as after 3 * 0.3 < 0.9.
+    constexpr double rounding = 1e-9;
+    const double interval = scenario_.output.interval;
+    double stop = scenario_.dynamics.end_time;
+    if (interval > 0.0) {
+        const double frame =
+            static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) * interval;
+        if (frame < stop - rounding * interval) stop = frame;
+    }
+    const double steps = std::ceil((stop - time()) / step_limit() * (1.0 - rounding));
+    if (steps <= 1.0) return {time(), stop};
+    return {time(), time() + (stop - time()) / steps};
+}
+
+double Simulation::step_limit() const {
+    return scenario::step_limit(scenario_, model(), num_steps());
+}
+
+void Simulation::tell_frame() {
+    const double interval = scenario_.output.interval;
+    if (interval == 0.0) return;
+    const bool is_due = time() >= static_cast<double>(num_frames_) * interval;
+    if (!is_due && !is_finished()) return;
+    ++num_frames_;
+    for (Observer* observer : observers_) observer->on_frame(*this);
+}
+
+void Simulation::tell_pause() {
+    for (Observer* observer : observers_) observer->on_pause(*this);
+}
+
+}  // namespace incise::runner

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <sstream>
+
+#include "incise/base/error.h"
+#include "incise/io/files/number_format.h"
+#include "incise/scenario/body_problems.h"
+#include "incise/scenario/elastic_constants.h"
+#include "incise/scenario/step_limit.h"
+#include "incise/sim/selection.h"
+#include "incise/sim/single_precision.h"
+
+namespace incise::scenario {
+
+namespace {
+
+physics::Material build_material(const MaterialSpec& spec) {
+    const ElasticConstants constants = resolve(spec.method, spec.law, spec.parameters);
+    physics::Material material;
+    material.density = spec.density;
+    switch (spec.method) {
+        case Method::mass_spring:
+            material.method = physics::MassSprings{constants.young()};
+            break;
+        case Method::hybmss:
+            material.method = physics::HybridSprings{
+                constants.mu, spec.correction_forces ? constants.lambda - constants.mu : 0.0,
+                spec.stiffness_ratio};
+            break;
+        case Method::heml:
+            material.method =
+                physics::HyperElasticLinks{make_law(spec.law, spec.parameters),
+                                           spec.inversion_threshold, spec.prony, spec.prony_rule};
+            break;
+    }
+    return material;
+}
+
+template <class Value>
+physics::TimeCurve<Value> curve(const std::vector<TimeKey<Value>>& keys) {
+    std::vector<std::pair<double, Value>> pairs;
+    for (const TimeKey<Value>& key : keys) pairs.emplace_back(key.time, key.value);
+    return physics::TimeCurve<Value>(std::move(pairs));
+}
+
+/// What `select` finds, at least one of `things`. Errors begin with `what`, the owner of `where`.
+template <class Id>
+std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const sim::Selection&),
+                       const topology::Mesh& mesh, const sim::Selection& where,
+                       const std::string& what, const std::string& things) {
+    std::vector<Id> found;
+    try {
+        found = select(mesh, where);
+    } catch (const InputError& error) {
+        throw InputError(what + ": " + error.what());
+    }
+    sim::require_selected(found.size(), mesh, what, things);
+    return found;
+}
+
+physics::Support build_support(const ConstraintSpec& spec, const topology::Mesh& mesh) {
+    physics::Support support;
+    support.name = spec.name;
+    support.nodes = physics::NodeSet(
+        choose(sim::select_nodes, mesh, spec.where, "constraint '" + spec.name + "'", "node"));
+    support.components = spec.fixed;
+    support.displacement = curve(spec.move);
+    support.angle = curve(spec.rotate);
+    support.point = spec.about_point;
+    support.axis = spec.about_axis;
+    return support;
+}
+
+physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
+    const std::string what = "load '" + spec.name + "'";
+    const auto faces = [&] {
+        return choose(sim::select_faces, mesh, spec.where, what, "face of the surface");
+    };
+    physics::Load load;
+    load.name = spec.name;
+    load.factor = curve(spec.factor);
+    if (const auto* nodal = std::get_if<NodalForce>(&spec.load)) {
+        auto nodes = choose(sim::select_nodes, mesh, spec.where, what, "node");
+        load.kind = physics::NodalLoad{physics::NodeSet(std::move(nodes)), nodal->force, {}};
+    } else if (const auto* traction = std::get_if<Traction>(&spec.load)) {
+        load.kind = physics::TractionLoad{faces(), traction->stress};
+    } else if (const auto* pressure = std::get_if<Pressure>(&spec.load)) {
+        load.kind = physics::PressureLoad{faces(), pressure->pressure};
+    } else {
+        auto elements = choose(sim::select_elements, mesh, spec.where, what, "element");
+        load.kind = physics::BodyLoad{std::move(elements), std::get<BodyForce>(spec.load).density};
+    }
+    return load;
+}
+
+/// Of unit length; one that is so to rounding keeps its bits, so that a frame read back as a mesh
+/// goes on alike. Zero if it has no direction.
+Vec3 unit(const Vec3& v) {
+    constexpr double rounding = 1e-15;
+    const double norm = v.stableNorm();
+    if (!std::isfinite(norm) || norm == 0.0) return Vec3::Zero();
+    return std::abs(norm - 1.0) <= rounding ? v : Vec3(v / norm);
+}
+
+/// Directions by element id; none if no material has fibres.
+std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
+                               const physics::MaterialTable& table, const topology::Mesh& mesh,
+                               const CellVectors& cell_vectors) {
+    const auto& materials = table.materials;
+    if (std::none_of(materials.begin(), materials.end(),
+                     [](const physics::Material& m) { return m.has_fibres(); }))
+        return {};
+    std::vector<Vec3> fibres(mesh.element_capacity(), Vec3::Zero());
+    for (std::size_t i = 0; i < fibres.size(); ++i) {
+        const ElementId e(i);
+        if (!mesh.is_alive(e)) continue;
+        const std::size_t material = table.of_region.at(mesh.region(e));
+        if (!materials[material].has_fibres()) continue;
+        const auto& given = specs[material].fibre;
+        if (const auto* direction = std::get_if<Vec3>(&given)) fibres[i] = *direction;
+        const auto* array = std::get_if<std::string>(&given);
+        if (!array) continue;
+        const auto label = static_cast<std::size_t>(mesh.label(e));
+        const Vec3& vector = cell_vectors.by_name.at(*array).at(label);
+        fibres[i] = unit(vector);
+        if (fibres[i].isZero(0.0))
+            throw BodyError(
+                specs[material].place,
+                cell_vectors.file + ": element " + std::to_string(label) + ", of region " +
+                    std::to_string(mesh.region(e)) + ", has " + vector_text(vector) +
+                    " in the cell array '" + *array +
+                    "', which is no direction of fibres: its material needs one in each "
+                    "element; correct the array, or give the region a law without fibres");
+    }
+    return fibres;
+}
+
+std::set<int> regions_of(const topology::Mesh& mesh) {
+    std::set<int> regions;
+    for (const ElementId e : mesh.elements()) regions.insert(mesh.region(e));
+    return regions;
+}
+
+/// The first few by number.
+std::string list(const std::set<int>& regions) {
+    constexpr std::size_t max_listed = 20;
+    std::string text;
+    std::size_t num_listed = 0;
+    for (const int region : regions) {
+        if (num_listed++ == max_listed)
+            return text + " and " + std::to_string(regions.size() - max_listed) + " more";
+        text += (text.empty() ? "" : ", ") + std::to_string(region);
+    }
+    return text;
+}
+
+std::string names_region(int region, const std::set<int>& present) {
+    return " names region " + std::to_string(region) + ", which the mesh does not have (it has " +
+           list(present) + ")";
+}
+
+}  // namespace
+
+physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
+                                       const CellVectors& cell_vectors,
+                                       std::vector<std::string>& warnings) {
+    const std::vector<MaterialSpec>& specs = scenario.materials;
+    const std::set<int> present = regions_of(mesh);
+    physics::MaterialTable table;
+    for (const MaterialSpec& spec : specs) {
+        table.materials.push_back(build_material(spec));
+        if (!spec.regions) continue;
+        for (const int region : *spec.regions) {
+            table.of_region[region] = table.materials.size() - 1;
+            if (!present.contains(region))
+                warnings.push_back(placed(spec.regions_place,
+                                          "material " + std::to_string(table.materials.size()) +
+                                              names_region(region, present)));
+        }
+    }
+    std::set<int> left;
+    for (const int region : present)
+        if (!table.of_region.contains(region)) left.insert(region);
+    const auto rest = std::find_if(specs.begin(), specs.end(),
+                                   [](const MaterialSpec& spec) { return !spec.regions; });
+    if (rest == specs.end() && !left.empty())
+        throw InputError("no material for region " + list(left) +
+                         " of the mesh; add a material for it, or one without 'regions' for all "
+                         "that no other names");
+    for (const int region : left)
+        table.of_region[region] = static_cast<std::size_t>(rest - specs.begin());
+    table.fibres = build_fibres(specs, table, mesh, cell_vectors);
+    table.precision = scenario.dynamics.precision;
+    return table;
+}
+
+namespace {
+
+/// The first few of them: many constraints may hold the same nodes.
+void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
+                    std::span<const physics::Support> supports, BodyProblems& problems) {
+    constexpr std::size_t max_told = 10;
+    const auto conflicts = physics::find_conflicts(mesh, supports);
+    for (std::size_t i = 0; i < conflicts.size(); ++i) {
+        const std::string& place = scenario.constraints[conflicts[i].second].place;
+        if (i == max_told) {
+            const std::size_t num_left = conflicts.size() - max_told;
+            problems.add(place, "and " + std::to_string(num_left) + " more pair" +
+                                    (num_left > 1 ? "s" : "") +
+                                    " of constraints from here on hold a node in the same "
+                                    "direction; make their selections disjoint");
+            return;
+        }
+        problems.add(place, describe(conflicts[i], mesh, supports));
+    }
+}
+
+/// Selections of no region of the mesh at all are errors, of which more is told.
+void warn_of_missing_regions(const Scenario& scenario, const topology::Mesh& mesh,
+                             std::vector<std::string>& warnings) {
+    const std::set<int> present = regions_of(mesh);
+    const auto is_present = [&](int region) { return present.contains(region); };
+    const auto warn = [&](const auto& spec, const std::string& kind) {
+        if (!spec.where.regions || std::ranges::none_of(*spec.where.regions, is_present)) return;
+        for (const int region : *spec.where.regions)
+            if (!is_present(region))
+                warnings.push_back(placed(
+                    spec.place, kind + " '" + spec.name + "'" + names_region(region, present)));
+    };
+    for (const ConstraintSpec& spec : scenario.constraints) warn(spec, "constraint");
+    for (const LoadSpec& spec : scenario.loads) warn(spec, "load");
+}
+
+physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh,
+                                         BodyProblems& problems) {
+    physics::Surroundings surroundings;
+    surroundings.gravity = scenario.dynamics.gravity;
+    surroundings.damping = scenario.dynamics.damping;
+    for (const ConstraintSpec& spec : scenario.constraints)
+        surroundings.supports.push_back(
+            problems.try_to(spec.place, [&] { return build_support(spec, mesh); }));
+    for (const LoadSpec& spec : scenario.loads)
+        surroundings.loads.push_back(
+            problems.try_to(spec.place, [&] { return build_load(spec, mesh); }));
+    tell_conflicts(scenario, mesh, surroundings.supports, problems);
+    return surroundings;
+}
+
+}  // namespace
+
+physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh) {
+    BodyProblems problems;
+    physics::Surroundings surroundings = build_surroundings(scenario, mesh, problems);
+    problems.throw_if_any();
+    return surroundings;
+}
+
+namespace {
+
+/// The material that the region has or would have; without any, of none.
+std::string place_of_material(const Scenario& scenario, int region) {
+    const MaterialSpec* found = nullptr;
+    for (const MaterialSpec& spec : scenario.materials) {
+        const bool names_it =
+            spec.regions && std::ranges::find(*spec.regions, region) != spec.regions->end();
+        if (names_it || (!spec.regions && !found)) found = &spec;
+    }
+    return found ? found->place : "";
+}
+
+/// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
+std::string out_of_reach(const ScriptedTool& tool, const Box& body) {
+    const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    std::ostringstream text;
+    text << "tool '" << tool.name << "' touches nothing where the body rests, between "
+         << body.min().transpose().format(list) << " and " << body.max().transpose().format(list)
+         << "; check its coordinates and units, unless the tissue moves to it";
+    return text.str();
+}
+
+/// @param mesh  without one, only what needs none is checked: the files of surfaces
+std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
+                                      BodyProblems& problems, std::vector<std::string>& warnings) {
+    Box body;
+    if (mesh)
+        for (const Vec3& x : mesh->rest_positions()) body.extend(x);
+    // An end that is not known yet hides nothing.
+    const double end_time = scenario.dynamics.end_time > 0.0
+                                ? scenario.dynamics.end_time
+                                : std::numeric_limits<double>::infinity();
+    std::vector<ScriptedTool> tools;
+    std::vector<std::string> idle;
+    for (ToolSpec spec : scenario.tools) {
+        bool suits_mesh = false;
+        if (mesh)
+            problems.try_to(spec.place, [&] {
+                spec = with_mode(spec, *mesh);
+                suits_mesh = true;
+            });
+        const auto* cut = std::get_if<CutSpec>(&spec.kind);
+        problems.try_to(cut ? cut->place : spec.place, [&] {
+            tools.push_back(build_tool(spec, warnings));
+            if (suits_mesh) {
+                require_divisible(tools.back(), *mesh, end_time);
+                if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
+                    warnings.push_back(placed(spec.place, *near));
+            }
+            if (mesh && !spec.path.empty() && !may_meet(tools.back(), body))
+                idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
+        });
+    }
+    warnings.insert(warnings.end(), idle.begin(), idle.end());
+    return tools;
+}
+
+/// What of a body can be built, and what is at fault with the rest.
+struct Parts {
+    std::optional<SourceMesh> source;
+    std::optional<physics::MaterialTable> materials;
+    physics::Surroundings surroundings;
+    std::vector<ScriptedTool> tools;
+    std::vector<std::string> warnings;
+    BodyProblems problems;
+};
+
+bool is_known(const MeshSpec& mesh) {
+    const auto* path = std::get_if<std::filesystem::path>(&mesh.source);
+    return !path || !path->empty();
+}
+
+Parts build_parts(const Scenario& scenario) {
+    Parts parts;
+    BodyProblems& problems = parts.problems;
+    if (is_known(scenario.mesh))
+        parts.source = problems.try_to(scenario.mesh.place, [&] {
+            return std::optional(build_mesh(scenario.mesh, scenario.materials));
+        });
+    const topology::Mesh* mesh = parts.source ? &parts.source->mesh : nullptr;
+    if (mesh) {
+        parts.warnings = std::move(parts.source->warnings);
+        if (!scenario.materials.empty())
+            parts.materials = problems.try_to(scenario.materials.front().place, [&] {
+                return std::optional(
+                    build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
+            });
+        if (scenario.dynamics.precision == physics::Precision::single_precision)
+            if (const auto warning = sim::warning_of_thin_elements(*mesh))
+                parts.warnings.push_back(placed(scenario.dynamics.precision_place, *warning));
+        parts.surroundings = build_surroundings(scenario, *mesh, problems);
+        warn_of_missing_regions(scenario, *mesh, parts.warnings);
+    }
+    parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
+    return parts;
+}
+
+/// Notes what is at fault with the model and its step, so far as there can be one: neither depends
+/// on supports and loads.
+void check_model(const Scenario& scenario, Parts& parts) {
+    if (!parts.source || !parts.materials) return;
+    parts.problems.try_to("", [&] {
+        step_limit(scenario, make_model(scenario, parts.source->mesh, *parts.materials, {}));
+    });
+}
+
+}  // namespace
+
+physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
+                          const physics::MaterialTable& materials,
+                          physics::Surroundings surroundings) {
+    try {
+        return physics::Model(mesh, materials, std::move(surroundings));
+    } catch (const physics::UnsuitableMaterial& error) {
+        throw BodyError(place_of_material(scenario, error.region), error.what());
+    }
+}
+
+sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
+                      physics::MaterialTable materials, physics::Surroundings surroundings) {
+    const DynamicsSpec& dynamics = scenario.dynamics;
+    sim::WorldDef def{std::move(mesh), std::move(materials.materials),
+                      std::move(materials.of_region), std::move(materials.fibres),
+                      materials.precision};
+    def.gravity = surroundings.gravity;
+    def.damping = surroundings.damping;
+    def.constraints = std::move(surroundings.supports);
+    def.loads = std::move(surroundings.loads);
+    if (dynamics.mode == Mode::statics)
+        def.solver = sim::Solver::statics;
+    else if (dynamics.integrator == TimeIntegrator::implicit_euler)
+        def.solver = sim::Solver::implicit_euler;
+    try {
+        return sim::World(std::move(def));
+    } catch (const physics::UnsuitableMaterial& error) {
+        throw BodyError(place_of_material(scenario, error.region), error.what());
+    }
+}
+
+Body build_body(const Scenario& scenario) {
+    Parts parts = build_parts(scenario);
+    if (parts.problems.are_there()) {
+        check_model(scenario, parts);
+        parts.problems.throw_if_any(std::move(parts.warnings));
+    }
+    if (!parts.source || !parts.materials)
+        throw InputError("a scenario needs a mesh and a material");
+    return {std::move(parts.source->mesh), std::move(*parts.materials),
+            std::move(parts.surroundings), std::move(parts.tools), std::move(parts.warnings)};
+}
+
+BodyFindings check_body(const Scenario& scenario) {
+    Parts parts = build_parts(scenario);
+    check_model(scenario, parts);
+    return {parts.problems.lines(), std::move(parts.warnings)};
+}
+
+}  // namespace incise::scenario

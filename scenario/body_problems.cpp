@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/body_problems.h"
+
+#include <sstream>
+#include <utility>
+
+namespace incise::scenario {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text.append(text.empty() ? "" : "\n").append(line);
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> prefixed_lines(const std::string& prefix, const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream >> std::ws, line);) lines.push_back(prefix + line);
+    return lines;
+}
+
+std::string placed(const std::string& place, const std::string& text) {
+    return place.empty() ? text : joined(prefixed_lines(place + ": ", text));
+}
+
+void BodyProblems::add(const std::string& place, const std::string& text) {
+    for (std::string& line : prefixed_lines("", placed(place, text)))
+        lines_.push_back(std::move(line));
+}
+
+void BodyProblems::throw_if_any(std::vector<std::string> warnings) const {
+    if (lines_.empty()) return;
+    BodyError error(joined(lines_));
+    error.warnings = std::move(warnings);
+    throw error;
+}
+
+}  // namespace incise::scenario

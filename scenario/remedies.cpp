@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/remedies.h"
+
+namespace incise::scenario {
+
+std::string remedy_for(const physics::MotionFailure& failure) {
+    const std::string gentler =
+        "; use a smaller dynamics.safety, more damping, gentler motion, or ";
+    switch (failure.cause) {
+        using enum physics::FailureCause;
+        case step_above_bound:
+            return "; use time_step = \"auto\"";
+        case constraint_too_fast:
+            return "; move it more slowly";
+        case load_too_large:
+            return "; make it smaller or bring it up slowly";
+        case crushed_element:
+            return gentler + "for tetrahedra law = \"stable-neo-hookean\", which stiffens least";
+        case stiffened_tissue:
+            return gentler + "a finer mesh there";
+        case no_implicit_step:
+            return "; use a smaller dynamics.time_step, or gentler motion of supports and loads";
+        case no_equilibrium:
+            return ": use smaller loads or motion, more dynamics.steps, or mode = \"dynamic\" with "
+                   "damping";
+        case free_component_loaded:
+            return "; hold it by a constraint, take the loads and gravity from it, or use mode = "
+                   "\"dynamic\"";
+    }
+    return "";
+}
+
+}  // namespace incise::scenario

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/source_mesh.h"
+
+#include <set>
+
+#include "incise/base/error.h"
+#include "incise/io/files/memory.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/scenario/body_problems.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_check.h"
+#include "incise/topology/mesh_repair.h"
+
+namespace incise::scenario {
+
+std::string vector_text(const Vec3& v) {
+    return "[" + io::format_number(v.x()) + ", " + io::format_number(v.y()) + ", " +
+           io::format_number(v.z()) + "]";
+}
+
+namespace {
+
+std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
+    std::set<std::string> names;
+    for (const MaterialSpec& material : materials)
+        if (const auto* name = std::get_if<std::string>(&material.fibre)) names.insert(*name);
+    return {names.begin(), names.end()};
+}
+
+/// Throws MemoryError for a box that this machine cannot hold, before it tries and is killed.
+void require_memory_for(const BoxMeshSpec& box, const std::string& place) {
+    const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
+    const double bytes_per_element = is_tetrahedra ? 1200.0 : 2500.0;  // map, arrays, elements
+    const double elements = (is_tetrahedra ? 6.0 : 1.0) * box.cells[0] *
+                            static_cast<double>(box.cells[1]) * box.cells[2];
+    if (const auto lack = io::lack_of_memory(bytes_per_element * elements))
+        throw MemoryError(placed(place, "key 'mesh.box.cells': makes " +
+                                            io::format_number(elements) + " elements: that " +
+                                            *lack + "; use fewer cells"));
+}
+
+/// The points and cells that the scenario names, welded if it says so, and scaled.
+io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials,
+                       double scale) {
+    if (const auto* path = std::get_if<std::filesystem::path>(&spec.source)) {
+        io::MeshFile file = io::read_mesh(
+            *path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
+        if (spec.weld == true)
+            file.warnings.push_back(topology::weld_report(topology::weld(file.mesh)));
+        file.mesh.points_may_coincide = file.mesh.points_may_coincide || spec.weld == false;
+        for (Vec3& x : file.mesh.points) x *= scale;
+        return file;
+    }
+    const auto& box = std::get<BoxMeshSpec>(spec.source);
+    require_memory_for(box, spec.place);
+    return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
+}
+
+bool can_load(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        load_mesh(spec, materials, 1.0);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+/// The same at the scale of the scenario. Throws BodyError if the file is sound but for the array
+/// that the regions are to be taken from.
+io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    try {
+        return load_mesh(spec, materials, spec.scale);
+    } catch (const InputError& error) {
+        MeshSpec usual = spec;
+        usual.region_array = io::ReadOptions::usual_region_array;
+        if (spec.region_array == usual.region_array || !can_load(usual, materials)) throw;
+        throw BodyError(spec.region_array_place, error.what());
+    }
+}
+
+/// Why a box is refused, whose cells are sound but for rounding.
+std::string what_is_wrong_with(const BoxMeshSpec& box, double scale) {
+    const Vec3 size = scale * box.size, origin = scale * box.origin;
+    const Vec3 brick = size.cwiseQuotient(Vec3(box.cells[0], box.cells[1], box.cells[2]));
+    const Vec3 reach = origin.cwiseAbs().cwiseMax((origin + size).cwiseAbs());
+    constexpr double least_ratio = 1e-10;  // well above rounding, well below any box within limits
+    const std::string bricks = "key 'mesh.box': its bricks of " + vector_text(brick);
+    if ((brick.array() < least_ratio * reach.array()).any())
+        return bricks + " are lost to rounding so far from [0, 0, 0]: bring 'origin', now " +
+               vector_text(box.origin) + ", nearer to it, or make the bricks larger";
+    const bool is_large = !(brick.prod() < 1.0);
+    return bricks + " have a volume too " + (is_large ? "large" : "small") +
+           " to compute with: use " + (is_large ? "larger" : "smaller") + " units of length";
+}
+
+}  // namespace
+
+SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
+    io::MeshFile file = load_mesh(spec, materials);
+    const auto* path = std::get_if<std::filesystem::path>(&spec.source);
+    const std::string prefix = path ? path->string() + ": " : "";
+    try {
+        topology::BuiltMesh built = topology::Mesh::build(file.mesh);
+        file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
+        for (std::string& warning : file.warnings) warning = prefix + warning;
+        return {std::move(built.mesh),
+                std::move(file.warnings),
+                {path ? path->string() : "", std::move(file.cell_vectors)}};
+    } catch (const InputError& error) {
+        if (spec.scale != 1.0 && topology::check(load_mesh(spec, {}, 1.0).mesh).errors.empty())
+            throw BodyError(spec.scale_place,
+                            "key 'mesh.scale': " + io::format_number(spec.scale) +
+                                " makes the mesh too " + (spec.scale > 1.0 ? "large" : "small") +
+                                " to compute with, which without it is sound: use a " +
+                                (spec.scale > 1.0 ? "smaller" : "larger") + " one");
+        if (!path)
+            throw BodyError(spec.place,
+                            what_is_wrong_with(std::get<BoxMeshSpec>(spec.source), spec.scale));
+        BodyProblems problems;
+        for (const std::string& line : prefixed_lines(prefix, error.what()))
+            problems.add(spec.place, line);
+        problems.throw_if_any();
+        throw;
+    }
+}
+
+}  // namespace incise::scenario

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/step_limit.h"
+
+#include <sstream>
+
+#include "incise/base/error.h"
+#include "incise/scenario/body_problems.h"
+
+namespace incise::scenario {
+
+namespace {
+
+[[noreturn]] void refuse_unstable(const DynamicsSpec& dynamics, double stable,
+                                  std::uint64_t num_steps) {
+    std::ostringstream text;
+    text << "dynamics.time_step of " << *dynamics.time_step << " s is above the stable step of "
+         << stable << " s";
+    if (num_steps > 0) text << " that the edits have left";
+    text << ": use a smaller one, or time_step = \"auto\"";
+    throw PhysicsError(placed(num_steps == 0 ? dynamics.time_step_place : "", text.str()));
+}
+
+[[noreturn]] void refuse_endless(const DynamicsSpec& dynamics, double limit,
+                                 const physics::Model& model, std::uint64_t num_steps) {
+    std::ostringstream text;
+    text << "steps of " << limit << " s would take more than 1e10 of them to the end at "
+         << dynamics.end_time << " s: lower dynamics.end_time";
+    if (dynamics.time_step)
+        text << " or raise dynamics.time_step";
+    else
+        text << ", or check shape and material of element "
+             << model.mesh().label(model.limiting_element())
+             << ", which is the smallest or stiffest for its mass";
+    if (num_steps > 0) throw PhysicsError(text.str());  // edits have left such an element
+    throw BodyError(dynamics.time_step ? dynamics.time_step_place : dynamics.end_time_place,
+                    text.str());
+}
+
+}  // namespace
+
+double step_limit(const Scenario& scenario, const physics::Model& model, std::uint64_t num_steps) {
+    const DynamicsSpec& dynamics = scenario.dynamics;
+    if (dynamics.mode == Mode::statics) {
+        if (dynamics.steps) return dynamics.end_time / *dynamics.steps;
+        return scenario.output.interval > 0.0 ? scenario.output.interval : dynamics.end_time;
+    }
+    const bool is_explicit = dynamics.integrator == TimeIntegrator::semi_implicit_euler;
+    const double stable = model.stable_step();
+    const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
+    if (is_explicit && dynamics.time_step && !(limit <= stable))
+        refuse_unstable(dynamics, stable, num_steps);
+    // So many steps would take years, and at last would not move the time on at all.
+    constexpr double max_steps = 1e10;
+    if (!(limit * max_steps >= dynamics.end_time))
+        refuse_endless(dynamics, limit, model, num_steps);
+    return limit;
+}
+
+}  // namespace incise::scenario

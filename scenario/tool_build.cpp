@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/tool_build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <utility>
+
+#include "incise/base/error.h"
+#include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/surfaces/surface_check.h"
+#include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/io/surface/surface_reader.h"
+
+namespace incise::scenario {
+
+namespace {
+
+/// Points in the tool's frame and a distance from them, so that the tool is within that distance of
+/// their hull.
+struct Extent {
+    std::vector<Vec3> points;
+    double radius = 0.0;
+};
+
+Extent extent_of(const cutting::CarverShape& shape) {
+    if (const auto* sphere = std::get_if<cutting::Sphere>(&shape))
+        return {{Vec3::Zero()}, sphere->radius};
+    if (const auto* capsule = std::get_if<cutting::Capsule>(&shape))
+        return {{capsule->from, capsule->to}, capsule->radius};
+    Extent extent;
+    const Vec3 half = 0.5 * std::get<cutting::Cuboid>(shape).size;
+    for (const double x : {-half.x(), half.x()})
+        for (const double y : {-half.y(), half.y()})
+            for (const double z : {-half.z(), half.z()}) extent.points.emplace_back(x, y, z);
+    return extent;
+}
+
+Extent extent_of(const cutting::ToolShape& shape) {
+    if (const auto* carver = std::get_if<Carver>(&shape)) return extent_of(carver->shape);
+    return {std::get<cutting::Blade>(shape).edge};
+}
+
+/// Holds the points of the tool's frame all along the path. A point at the distance r from the
+/// frame's origin that turns by an angle leaves the straight way between its ends by at most
+/// r angle^2 / 8: its acceleration over a path of length 1 is r angle^2.
+Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
+    Box swept;
+    Pose before = path.keys().front().value;
+    for (const auto& [time, after] : path.keys()) {
+        const double angle = before.rotation.angularDistance(after.rotation);
+        for (const Vec3& x : points) {
+            Box way(before.to_world(x));
+            way.extend(after.to_world(x));
+            const Vec3 bulge = Vec3::Constant(x.norm() * angle * angle / 8.0);
+            swept.extend(Box(way.min() - bulge, way.max() + bulge));
+        }
+        before = after;
+    }
+    return swept;
+}
+
+cutting::ToolShape shape_of(const BladeSpec& blade) {
+    return cutting::Blade{blade.edge, blade.mode.value_or(CutMode::split),
+                          blade.snap.value_or(cutting::default_snap)};
+}
+
+cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnings) {
+    const double snap = cut.snap.value_or(cutting::default_snap);
+    if (const auto* plane = std::get_if<PlaneSpec>(&cut.along))
+        return cutting::PlaneCut{plane->point, plane->normal, snap};
+    const auto& path = std::get<std::filesystem::path>(cut.along);
+    io::SurfaceFile file = io::read_surface(path);
+    for (const auto& defect : cutting::defects_of_sheet(file.surface))
+        file.warnings.push_back(defect);
+    for (const auto& warning : file.warnings) warnings.push_back(path.string() + ": " + warning);
+    for (Vec3& x : file.surface.points) x *= cut.scale;
+    return cutting::SurfaceCut{std::move(file.surface), snap};
+}
+
+}  // namespace
+
+CutMode usual_mode(const topology::Mesh& mesh) {
+    for (const ElementId e : mesh.elements())
+        if (mesh.kind(e) != topology::CellKind::tetrahedron) return CutMode::separate;
+    return CutMode::split;
+}
+
+ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
+    auto* blade = std::get_if<BladeSpec>(&spec.kind);
+    if (blade && !blade->mode) blade->mode = usual_mode(mesh);
+    const bool splits =
+        blade ? blade->mode == CutMode::split : std::holds_alternative<CutSpec>(spec.kind);
+    if (!splits) return spec;
+    for (const ElementId e : mesh.elements())
+        if (mesh.kind(e) == topology::CellKind::tetrahedron) return spec;
+    throw InputError("tool '" + spec.name +
+                     "' splits tetrahedra, and the mesh has none; use a blade with mode = "
+                     "\"separate\", which opens the faces nearest to it");
+}
+
+ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings) {
+    cutting::ToolShape shape;
+    if (const auto* carver = std::get_if<Carver>(&spec.kind)) shape = *carver;
+    if (const auto* blade = std::get_if<BladeSpec>(&spec.kind)) shape = shape_of(*blade);
+    if (const auto* cut = std::get_if<CutSpec>(&spec.kind)) shape = shape_of(*cut, warnings);
+    auto surface = cutting::cut_surface_of(shape);
+    return {spec.name, std::move(shape), ToolPath(spec.path), std::move(surface)};
+}
+
+bool may_meet(const ScriptedTool& tool, const Box& box) {
+    if (tool.surface) return tool.surface->may_meet(box);
+    const Extent extent = extent_of(tool.shape);
+    const Box swept = swept_box(tool.path, extent.points);
+    // With room for what rounding takes.
+    const Vec3 margin = Vec3::Constant(extent.radius + 1e-12 * swept.diagonal().norm());
+    return box.intersects(Box(swept.min() - margin, swept.max() + margin));
+}
+
+namespace {
+
+/// Calls look(surface) for each surface that the tool divides elements along up to `end_time`, s.
+void for_each_surface(const ScriptedTool& tool, double end_time,
+                      const std::function<void(const cutting::CutSurface&)>& look) {
+    const auto& keys = tool.path.keys();
+    if (keys.empty() || keys.front().time > end_time || !divides(tool.shape)) return;
+    if (tool.surface) return look(*tool.surface);
+    const auto& blade = std::get<cutting::Blade>(tool.shape);
+    // Between keys that turn the edge, its points go on arcs: in short pieces.
+    constexpr double longest_turn = 0.05;
+    for (std::size_t key = 1; key < keys.size(); ++key) {
+        const auto &from = keys[key - 1], &to = keys[key];
+        if (from.time >= end_time) return;
+        const double turn = from.value.rotation.angularDistance(to.value.rotation);
+        const int num_parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
+        const auto edge = [&](int part) {
+            const double at =
+                part == num_parts ? to.time : from.time + part * (to.time - from.time) / num_parts;
+            std::vector<Vec3> points;
+            cutting::place_edge(blade, tool.path.pose(std::min(at, end_time)), points);
+            return points;
+        };
+        for (int part = 0; part < num_parts; ++part)
+            look(cutting::SweptEdge(edge(part), edge(part + 1)));
+    }
+}
+
+}  // namespace
+
+void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time) {
+    for_each_surface(tool, end_time, [&](const cutting::CutSurface& surface) {
+        const auto e = cutting::first_undividable(mesh, surface);
+        if (!e) return;
+        try {
+            cutting::refuse_to_divide(mesh, *e);
+        } catch (const cutting::UndividableElement& error) {
+            throw InputError("tool '" + tool.name + "' meets what it cannot divide: " +
+                             error.what() + "; " + instead_of_dividing(tool.shape));
+        }
+    });
+}
+
+std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
+                                                  const topology::Mesh& mesh, double end_time) {
+    constexpr double margin = 0.05;  // of an element's mean edge: it takes little motion
+    cutting::NearMisses found;
+    for_each_surface(tool, end_time, [&](const cutting::CutSurface& surface) {
+        cutting::add_near_misses(mesh, surface, margin, found);
+    });
+    if (found.is_empty()) return std::nullopt;
+    std::ostringstream text;
+    text.precision(3);
+    text << "tool '" << tool.name << "' passes ";
+    if (found.distance > 0.0)
+        text << "only " << found.distance << " m from";
+    else
+        text << "along a side of";
+    text << " element " << mesh.label(found.nearest) << ", a "
+         << topology::traits(mesh.kind(found.nearest)).name
+         << " that it cannot divide, where the body rests";
+    const std::size_t num_others = found.elements.size() - 1;
+    if (num_others > 0)
+        text << " (and near " << num_others << (num_others == 1 ? " other)" : " others)");
+    text << ": the run stops if the tissue moves into it; keep it farther from there, or "
+         << instead_of_dividing(tool.shape);
+    return text.str();
+}
+
+std::string instead_of_dividing(const cutting::ToolShape& shape) {
+    if (std::holds_alternative<cutting::Blade>(shape))
+        return "use mode = \"separate\", which opens the faces nearest to it";
+    return "use a blade with mode = \"separate\", which opens the faces nearest to it, or keep "
+           "the cut to tetrahedra";
+}
+
+bool divides(const cutting::ToolShape& shape) {
+    if (const auto* blade = std::get_if<cutting::Blade>(&shape))
+        return blade->mode == CutMode::split;
+    return !std::holds_alternative<Carver>(shape);
+}
+
+std::string for_longer_steps(const cutting::ToolShape& shape) {
+    if (divides(shape)) return "use a larger tool.snap";
+    const std::string extent = std::holds_alternative<Carver>(shape) ? "shape" : "edge";
+    return "change tool." + extent +
+           " or tool.path, so that it takes those as well or leaves "
+           "them more of what they hang on";
+}
+
+}  // namespace incise::scenario

@@ -1,0 +1,177 @@
+// Cuts at rest: what is reported is what happened to the mesh.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/app/geometric_cut.h"
+
+#include <gtest/gtest.h>
+
+#include "incise/base/error.h"
+#include "incise/cutting/surfaces/plane.h"
+#include "incise/cutting/surfaces/tissue_motion.h"
+#include "incise/scenario/tool_build.h"
+#include "incise/topology/validate.h"
+#include "support/mesh_families.h"
+
+namespace incise::app {
+namespace {
+
+using topology::Mesh;
+
+constexpr int num_seeds = 6;
+
+Eigen::AlignedBox3d box_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : mesh.rest_positions()) box.extend(x);
+    return box;
+}
+
+/// Not through the very middle, where the families have nodes.
+Vec3 point_inside(const Eigen::AlignedBox3d& box, test::Random& random) {
+    return box.center() + random.vector(0.2).cwiseProduct(box.sizes());
+}
+
+CutTool random_plane(const Eigen::AlignedBox3d& box, test::Random& random) {
+    const Vec3 point = point_inside(box, random);
+    return {"plane", PlaneCut{point, random.vector(1.0)}};
+}
+
+/// A straight edge that passes right through the body, turning a little, in three poses.
+CutTool random_sweep(const Eigen::AlignedBox3d& box, test::Random& random) {
+    const double size = box.sizes().norm();
+    const Vec3 centre = point_inside(box, random), normal = random.vector(1.0).normalized();
+    const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
+    SweepCut sweep;
+    for (const double at : {-1.0, 0.1, 1.0}) {
+        std::vector<Vec3> edge;
+        for (const double end : {-1.0, 1.0})
+            edge.push_back(centre + size * (at * ahead + end * along + random.vector(0.05)));
+        sweep.poses.push_back(edge);
+    }
+    return {"sweep", sweep};
+}
+
+TEST(GeometricCut, OpensFacesOnTheSurfaceWithoutSnap) {
+    for (const auto* family : test::tetrahedral_families())
+        for (int seed = 0; seed < num_seeds; ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            Mesh mesh = Mesh::build(family->data).mesh;
+            test::Random random(100 + static_cast<std::uint64_t>(seed));
+            const auto box = box_of(mesh);
+            // The second runs across what the first one opened.
+            const std::vector<CutTool> tools = {random_plane(box, random),
+                                                random_sweep(box, random)};
+            const auto report = geometric_cut(mesh, tools, {CutMode::split, 0.0});
+            EXPECT_TRUE(topology::validate(mesh).empty());
+            for (const ToolReport& tool : report.tools) {
+                EXPECT_EQ(tool.counts.faces_opened > 0, tool.counts.surface_distance.has_value());
+                // Nodes nearer to it than 1e-7 of an edge count as on it.
+                const auto distance = tool.counts.surface_distance.value_or(CutCounts::Distance{});
+                EXPECT_LT(distance.nodes, 1e-7 * box.sizes().norm());
+                EXPECT_GE(distance.faces, distance.nodes);
+                if (tool.tool == "plane") {
+                    EXPECT_LT(distance.faces, 1e-7 * box.sizes().norm());
+                }
+            }
+            EXPECT_LT(report.volume_error(), 1e-13);
+        }
+}
+
+TEST(GeometricCut, ReportsWhatHasChanged) {
+    for (const auto& family : test::mesh_families())
+        for (int seed = 0; seed < num_seeds; ++seed) {
+            SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
+            Mesh mesh = Mesh::build(family.data).mesh;
+            test::Random random(200 + static_cast<std::uint64_t>(seed));
+            const auto box = box_of(mesh);
+            std::vector<CutTool> tools = {random_plane(box, random), random_sweep(box, random)};
+            if (mesh.num_elements() > 10)
+                tools.push_back({"ball", ShapeRemoval{cutting::Sphere{0.2 * box.sizes().norm()},
+                                                      point_inside(box, random)}});
+            const std::size_t elements = mesh.num_elements(), nodes = mesh.num_nodes();
+            const auto report = geometric_cut(mesh, tools, {scenario::usual_mode(mesh)});
+            EXPECT_EQ(report.before.elements, elements);
+            EXPECT_EQ(report.before.nodes, nodes);
+            EXPECT_EQ(report.after.elements, mesh.num_elements());
+            EXPECT_EQ(report.after.nodes, mesh.num_nodes());
+            EXPECT_EQ(mesh.num_elements(),
+                      elements + report.total.elements_added - report.total.elements_removed);
+            EXPECT_GE(nodes + report.total.nodes_added, mesh.num_nodes());
+            EXPECT_LT(report.volume_error(), 1e-13);
+            double volume = 0.0;
+            for (std::size_t p = 0; p < report.pieces.size(); ++p) {
+                volume += report.pieces[p].volume;
+                if (p > 0) {
+                    EXPECT_LE(report.pieces[p].volume, report.pieces[p - 1].volume);
+                }
+            }
+            EXPECT_NEAR(volume, report.after.volume, 1e-13 * report.before.volume);
+            EXPECT_EQ(report.pieces.size(),
+                      static_cast<std::size_t>(topology::components(mesh).count));
+            ASSERT_EQ(report.tools.size(), tools.size());
+            EXPECT_EQ(report.tools.back().pieces, topology::components(mesh).count);
+        }
+}
+
+TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
+    for (const auto& family : test::mesh_families())
+        for (int seed = 0; seed < num_seeds; ++seed) {
+            SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
+            Mesh mesh = Mesh::build(family.data).mesh;
+            test::Random random(300 + static_cast<std::uint64_t>(seed));
+            const CutTool tool = random_plane(box_of(mesh), random);
+            const auto& [point, normal] = std::get<PlaneCut>(tool.kind);
+            const cutting::Plane plane(point, normal);
+            const auto side = [&](ElementId e) {
+                return plane.side(cutting::TissueMotion::centre(mesh, e, mesh.rest_positions()));
+            };
+            std::size_t parted = 0;
+            for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+                for (int f = 0; f < mesh.num_faces(ElementId(i)); ++f) {
+                    const FaceId face{ElementId(i), f}, other = mesh.neighbor(face);
+                    parted += face < other && side(face.element) != side(other.element);
+                }
+            const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::separate});
+            EXPECT_EQ(report.total.faces_opened, parted);
+            EXPECT_EQ(report.after.elements, report.before.elements);
+            EXPECT_EQ(report.warnings.empty(), parted > 0);
+            for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
+                for (int f = 0; f < mesh.num_faces(ElementId(i)); ++f)
+                    if (const FaceId other = mesh.neighbor({ElementId(i), f}); other.is_valid()) {
+                        EXPECT_EQ(side(ElementId(i)), side(other.element));
+                    }
+        }
+}
+
+// Also where the blade rests at the end: the last pose is the one before once more.
+TEST(GeometricCut, OfASweepEndsWhereTheBladeDoes) {
+    for (int seed = 0; seed < num_seeds; ++seed) {
+        SCOPED_TRACE(seed);
+        Mesh mesh = Mesh::build(test::jittered_cube(4, 0.2, static_cast<std::uint64_t>(seed))).mesh;
+        test::Random random(400 + static_cast<std::uint64_t>(seed));
+        const double height = random.uniform(0.3, 0.7), end = random.uniform(0.3, 0.7);
+        SweepCut sweep;
+        for (const double x : {-0.5, 0.2, end, end})
+            sweep.poses.push_back({{x, -1.0, height}, {x, 2.0, height}});
+        const CutTool tool{"sweep", sweep};
+        const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, 0.0});
+        EXPECT_TRUE(topology::validate(mesh).empty());
+        EXPECT_NEAR(report.total.cut_area, end, 1e-6);
+        EXPECT_EQ(report.pieces.size(), 1u);
+        ASSERT_TRUE(report.total.surface_distance);
+        EXPECT_LT(report.total.surface_distance->faces, 1e-7);
+    }
+}
+
+TEST(GeometricCut, NamesTheToolThatFails) {
+    Mesh mesh = Mesh::build(test::jittered_cube(2, 0.0, 1)).mesh;
+    const CutTool all{"the ball", ShapeRemoval{cutting::Sphere{10.0}, Vec3::Zero()}};
+    try {
+        geometric_cut(mesh, {&all, 1}, {});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "the ball: removes the last element: nothing is left of the body");
+    }
+}
+
+}  // namespace
+}  // namespace incise::app

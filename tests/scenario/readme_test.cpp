@@ -1,0 +1,44 @@
+// What the README shows is what ships, and runs with the other scenarios.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "incise/scenario/scenario_reader.h"
+#include "support/temporary_folder.h"
+
+namespace incise::scenario {
+namespace {
+
+const std::filesystem::path data_folder = INCISE_DATA_DIR;
+
+/// The first indented block below `heading`, without its four leading spaces.
+std::string block_below(const std::string& heading, const std::string& text) {
+    std::istringstream lines(text);
+    std::string line, block, blank;
+    while (std::getline(lines, line) && line != heading) continue;
+    while (std::getline(lines, line)) {
+        if (line.starts_with("    ")) {
+            block += blank + line.substr(4) + "\n";
+            blank.clear();
+        } else if (!line.empty() && !block.empty()) {
+            break;
+        } else if (!block.empty()) {
+            blank += "\n";
+        }
+    }
+    return block;
+}
+
+TEST(Readme, ShowsTheBeamThatShips) {
+    const auto beam = data_folder / "scenarios/beam.toml";
+    const std::string readme = support::read_text(data_folder.parent_path() / "README.md");
+    EXPECT_EQ(block_below("## A first scenario", readme), support::read_text(beam));
+    const ScenarioReport report = read_scenario(beam);
+    EXPECT_EQ(report.errors, std::vector<std::string>{});
+    EXPECT_EQ(report.warnings, std::vector<std::string>{});
+    EXPECT_FALSE(report.scenario.expect.empty());  // that it is parted
+}
+
+}  // namespace
+}  // namespace incise::scenario
