@@ -168,7 +168,7 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     const ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     // The model has not followed yet.
-    if (has_moved) model.compute_states_and_forces();
+    if (has_moved) model.compute_totals_and_forces();
     const Account before = has_moved ? ledger.account() : ledger.last();
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);

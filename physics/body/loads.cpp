@@ -66,7 +66,7 @@ class ShareSums {
 
 /// What the nodes have of a load, in its own order of summation: that of its members.
 struct ShareFinder {
-    const LoadedBody& body;
+    const BodyView& body;
 
     std::vector<NodeShare> operator()(const NodalLoad& load) const {
         ShareSums shares;
@@ -158,7 +158,7 @@ double factor_of(const Load& load, double time) {
 }
 
 // Anew for every family of copies with a member among `touched`.
-void share(NodalLoad& load, const LoadedBody& body, std::span<const NodeId> touched) {
+void share(NodalLoad& load, const BodyView& body, std::span<const NodeId> touched) {
     const auto& members = load.nodes.members();
     load.shares.resize(members.size(), 0.0);
     std::map<NodeId, double> family_mass;
@@ -196,12 +196,13 @@ void Load::require_fit(const topology::Mesh& mesh) const {
     std::visit(Requirement{mesh}, kind);
 }
 
-Loads::Loads(std::vector<Load> loads, const LoadedBody& body) : loads_(std::move(loads)) {
+Loads::Loads(const Vec3& gravity, std::vector<Load> loads, const BodyView& body)
+    : gravity_(gravity), loads_(std::move(loads)) {
     for (Load& load : loads_) share_out(load, body);
     update(body);
 }
 
-void Loads::share_out(Load& load, const LoadedBody& body) {
+void Loads::share_out(Load& load, const BodyView& body) {
     auto* nodal = std::get_if<NodalLoad>(&load.kind);
     if (!nodal || !nodal->shares.empty()) return;
     std::vector<NodeId> all;
@@ -209,7 +210,7 @@ void Loads::share_out(Load& load, const LoadedBody& body) {
     share(*nodal, body, all);
 }
 
-void Loads::add(Load load, const LoadedBody& body) {
+void Loads::add(Load load, const BodyView& body) {
     share_out(load, body);
     loads_.push_back(std::move(load));
     is_up_to_date_ = false;
@@ -220,23 +221,24 @@ void Loads::remove(std::size_t i) {
     is_up_to_date_ = false;
 }
 
-void Loads::update(const LoadedBody& body) {
+void Loads::update(const BodyView& body) {
     if (is_up_to_date_) return;
     burdens_.clear();
     for (const Load& load : loads_) burdens_.push_back(find_burden(load, body));
     is_up_to_date_ = true;
 }
 
-Loads::Burden Loads::find_burden(const Load& load, const LoadedBody& body) {
+Loads::Burden Loads::find_burden(const Load& load, const BodyView& body) {
     Burden burden{std::visit(ShareFinder{body}, load.kind), {}};
     if (const auto* pressure = std::get_if<PressureLoad>(&load.kind))
         burden.pressed = pressed_corners(pressure->faces, body.mesh);
     return burden;
 }
 
-void Loads::add(NodeRange range, std::span<const Vec3> positions, double time,
-                std::span<Vec3> forces) const {
+void Loads::add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
+                       double time, std::span<Vec3> forces) const {
     assert(is_up_to_date_);
+    for (std::size_t n = range.begin; n < range.end; ++n) forces[n] += body.masses[n] * gravity_;
     for (std::size_t i = 0; i < loads_.size(); ++i) {
         const double factor = factor_of(loads_[i], time);
         if (factor == 0.0) continue;
@@ -263,11 +265,11 @@ void Loads::visit_tangents(std::span<const Vec3> positions, double time, Tangent
     }
 }
 
-void Loads::apply(const topology::ChangeSet& changes, const LoadedBody& body,
+void Loads::apply(const BodyView& body, const topology::ChangeSet& changes,
                   std::span<const NodeId> touched) {
     struct Follower {
         const topology::ChangeSet& changes;
-        const LoadedBody& body;
+        const BodyView& body;
         std::span<const NodeId> touched;
 
         void operator()(NodalLoad& load) const {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "incise/physics/body/element_set.h"
+#include "incise/physics/body/force_term.h"
 #include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
-#include "incise/physics/elements/element_store.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -58,13 +58,6 @@ struct Load {
     static void archive(auto& ar, auto& self) { ar(self.name, self.kind, self.factor); }
 };
 
-/// What the loads need to know of the body.
-struct LoadedBody {
-    const topology::Mesh& mesh;
-    const ElementStore& elements;
-    std::span<const double> masses;  ///< lumped, kg, by node id
-};
-
 /// What one node has of all that a load acts on: a part of the members (nodal forces), m2
 /// (traction) or m3 (body forces).
 struct NodeShare {
@@ -79,49 +72,50 @@ struct PressedCorner {
     std::array<std::uint32_t, 4> corners;
 };
 
-/// All loads on a body.
-class Loads {
+/// Gravity and all loads on a body.
+class Loads final : public ForceTerm {
   public:
     /// Nodal loads that have shares keep them: those of a body that goes on.
-    Loads(std::vector<Load> loads, const LoadedBody& body);
+    /// @param gravity m/s2
+    Loads(const Vec3& gravity, std::vector<Load> loads, const BodyView& body);
+
+    const Vec3& gravity() const { return gravity_; }  ///< m/s2
 
     std::span<const Load> all() const { return loads_; }
-    void add(Load load, const LoadedBody& body);
+    void add(Load load, const BodyView& body);
     void remove(std::size_t i);
     void set_factor(std::size_t i, TimeCurve<double> factor) {
         loads_[i].factor = std::move(factor);
     }
 
-    /// Finds what nodes bear, if there were edits: before add and visit_tangents.
+    /// Finds what nodes bear, if there were edits.
     /// Cost: nothing without edits, else in proportion to the selections.
-    void update(const LoadedBody& body);
+    void update(const BodyView& body) override;
 
-    /// Adds the forces (N, by node id) at `time` on the nodes of a range. Faces and elements that
-    /// are gone, and faces that have come to lie inside, carry nothing.
-    /// @param positions current, m, by node id
-    /// Cost: proportional to the loaded nodes there.
-    void add(NodeRange range, std::span<const Vec3> positions, double time,
-             std::span<Vec3> forces) const;
+    /// Faces and elements that are gone, and faces that have come to lie inside, carry nothing.
+    /// Cost: proportional to the nodes of the range.
+    void add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
+                    double time, std::span<Vec3> forces) const override;
 
-    /// Hands over the symmetric part of minus the derivative of the forces by the positions: of
-    /// pressure, as the others do not depend on these.
-    void visit_tangents(std::span<const Vec3> positions, double time, TangentSink& sink) const;
+    /// Of pressure, as the others do not depend on positions.
+    void visit_tangents(std::span<const Vec3> positions, double time,
+                        TangentSink& sink) const override;
 
-    /// Carries the selections through an edit that the body has followed: parts of loaded faces and
-    /// elements are loaded as these were.
-    /// @param touched nodes whose mass may have changed
-    void apply(const topology::ChangeSet& changes, const LoadedBody& body,
-               std::span<const NodeId> touched);
+    /// Carries the selections through an edit: parts of loaded faces and elements are loaded as
+    /// these were.
+    void apply(const BodyView& body, const topology::ChangeSet& changes,
+               std::span<const NodeId> touched) override;
 
   private:
-    static void share_out(Load& load, const LoadedBody& body);
+    static void share_out(Load& load, const BodyView& body);
     /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
     struct Burden {
         std::vector<NodeShare> shares;
         std::vector<PressedCorner> pressed;
     };
-    static Burden find_burden(const Load& load, const LoadedBody& body);
+    static Burden find_burden(const Load& load, const BodyView& body);
 
+    Vec3 gravity_;
     std::vector<Load> loads_;
     std::vector<Burden> burdens_;  // of each load
     bool is_up_to_date_ = false;   // the burdens, with the mesh

@@ -3,20 +3,21 @@
 #pragma once
 
 #include <algorithm>
-#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/physics/body/force_term.h"
 #include "incise/physics/body/loads.h"
 #include "incise/physics/body/node_lanes.h"
 #include "incise/physics/body/node_sums.h"
 #include "incise/physics/body/supports.h"
 #include "incise/physics/elements/element_store.h"
 #include "incise/physics/elements/stable_step.h"
-#include "incise/physics/elements/viscous_history.h"
+#include "incise/physics/elements/state.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
@@ -79,8 +80,9 @@ class Model {
     void set_num_threads(int n) { workers_ = Workers(n); }
     int num_threads() const { return workers_.num_threads(); }
 
-    std::span<const Vec3> positions() const { return positions_; }            ///< m
-    std::span<const Vec3> velocities() const { return velocities_; }          ///< m/s
+    const State& state() const { return state_; }
+    std::span<const Vec3> positions() const { return state_.positions(); }    ///< m
+    std::span<const Vec3> velocities() const { return state_.velocities(); }  ///< m/s
     std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
     std::span<const double> masses() const { return masses_; }                ///< kg
 
@@ -90,13 +92,10 @@ class Model {
 
     /// What viscous elements remember; empty if there are none. Like the positions it belongs to
     /// the state: integrate() brings it to the positions that it leaves.
-    const ViscousHistory& history() const { return history_; }
+    const ViscousHistory& history() const { return state_.history(); }
     /// Replaces it after set_state(); values as of history().values(). Forces are those of before
     /// until compute_forces is called.
-    void set_history(std::span<const double> values) {
-        history_.set_values(values);
-        state_has_changed();
-    }
+    void set_history(std::span<const double> values) { state_.change().history.set_values(values); }
 
     /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
     /// and of the history as it stands.
@@ -105,7 +104,7 @@ class Model {
     /// Does the work of totals() and min_volume_ratio() and, on elements that no edit touches
     /// before it is called, of compute_forces() in one pass: for who needs both, as an edit's books
     /// and the step around it do. Results are to the bit what they are without.
-    void compute_states_and_forces();
+    void compute_totals_and_forces();
 
     /// One step of semi-implicit Euler, from the forces last computed:
     /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
@@ -113,6 +112,15 @@ class Model {
     /// Throws MotionFailure, naming an element, the time and the likely cause, if the state is no
     /// longer finite or a node has moved by more than the body's size in this step.
     void integrate(double time, double dt);
+    /// The same step in two stages, between which somebody else may change the velocities. The
+    /// first: velocities of the end of the step, those of prescribed components too; the second:
+    /// positions and all else. With nothing between them the bits are those of integrate().
+    void kick(double time, double dt);
+    /// Changes the velocities of free components between kick() and drift().
+    /// @param impulses N s, by node id. Work of their mean power counts as external; those on
+    ///                 prescribed components change the reaction of their constraints instead
+    void give_impulses(std::span<const Vec3> impulses);
+    void drift(double time, double dt);
 
     /// For implicit integration and statics, which find the end of a step by themselves and hand it
     /// over. A step may come in several parts: begin_step() goes before the first.
@@ -159,6 +167,10 @@ class Model {
     }
     const Loads& loads() const { return loads_; }
 
+    /// Adds a term to the forces from outside. Archives do not hold it: who restores a model adds
+    /// it again. Cost: O(n), for the stable step.
+    void add_force_term(std::unique_ptr<ForceTerm> term);
+
     /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
     /// constraints and loads. Cost: O(n).
     void save(ArchiveWriter& ar) const;
@@ -167,16 +179,16 @@ class Model {
     const Supports& supports() const { return supports_; }
     double damping() const { return damping_; }  ///< 1/s
     double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
-    std::span<const Vec3> outer_forces() const { return outer_forces_; }  ///< N, loads and gravity
-    /// Sets `forces` (N, by node id) to loads and gravity at other positions (m) and `time`.
+    std::span<const Vec3> outer_forces() const {
+        return outer_forces_;
+    }  ///< N, of loads, gravity and added terms
+    /// Sets `forces` (N, by node id) to those from outside at other positions (m) and `time`.
     /// @pre compute_forces or begin_step was called since the last edit
     void outer_forces_at(std::span<const Vec3> positions, double time,
                          std::span<Vec3> forces) const;
-    /// See Loads::visit_tangents; @pre likewise.
-    void visit_load_tangents(std::span<const Vec3> positions, double time,
-                             TangentSink& sink) const {
-        loads_.visit_tangents(positions, time, sink);
-    }
+    /// See ForceTerm::visit_tangents; @pre likewise.
+    void visit_outer_tangents(std::span<const Vec3> positions, double time,
+                              TangentSink& sink) const;
     /// J; of viscous elements that of the long-time moduli.
     double elastic_energy() const;
     /// Grows with every change of what the body consists of: edits (undone ones count twice),
@@ -214,7 +226,7 @@ class Model {
     /// Of the node that is farthest from where it is at rest, m.
     double max_displacement() const;
     ElementResult element_result(ElementId e) const {
-        return elements_.block_of(mesh_, e).result(e, positions_, history_);
+        return elements_.block_of(mesh_, e).result(e, positions(), history());
     }
 
     /// By element id, the direction of the fibres at rest, zero where there are none; empty if no
@@ -237,36 +249,34 @@ class Model {
     const topology::Mesh& mesh() const { return mesh_; }
 
   private:
-    /// What a merge did to the node that went on: undone before anything moves, it gives both
-    /// nodes back what they had, to the bit.
-    struct Merge {
-        NodeId survivor;
-        Vec3 position_before, velocity_before, position_after, velocity_after;
-        static void archive(auto& ar, auto& self) {
-            ar(self.survivor, self.position_before, self.velocity_before, self.position_after,
-               self.velocity_after);
-        }
-    };
-
     struct NodeStep {
         Vec3 x, v;    ///< at its end
         double work;  ///< that supports do, J
     };
+    /// Takes the body through a step by move_range(range, reactions), which returns the sums of its
+    /// nodes and adds to the reactions of all supports; then adds up, and viscosity follows.
+    template <class MoveRange>
+    void step_ranges(double time, double dt, MoveRange move_range);
     /// Integrates the nodes of a range, which touches no others.
     /// @param reactions of all supports; added to
-    StepSums move_nodes(NodeRange range, double time, double dt, std::span<Reaction> reactions);
+    StepSums move_nodes(NodeRange range, const State::Values& values, double time, double dt,
+                        std::span<Reaction> reactions);
     /// Likewise one that is alive.
     /// @param slowing 1/(1 + damping dt)
-    StepSums move_node(std::size_t n, double time, double dt, double slowing,
-                       std::span<Reaction> reactions);
+    StepSums move_node(std::size_t n, const State::Values& values, double time, double dt,
+                       double slowing, std::span<Reaction> reactions);
     /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
     /// nothing, before `end`.
     std::size_t num_free_nodes(std::size_t n, std::size_t end) const;
     /// Leads the supported components of node `n` to where they have to be at time + dt.
+    /// @param v     m/s, of the beginning of the step
     /// @param free  what the node does without supports
     /// @param force N, on the node without the supports
-    NodeStep support_node(std::size_t n, double time, double dt, const Vec3& force, NodeStep free,
-                          std::span<Reaction> reactions) const;
+    NodeStep support_node(std::size_t n, const Vec3& v, double time, double dt, const Vec3& force,
+                          NodeStep free, std::span<Reaction> reactions) const;
+    /// Supports also bear what an impulse does to prescribed components: `force`, N, over the step.
+    void add_reactions_to_impulse(std::size_t n, const Vec3& force, const Vec3& x,
+                                  std::span<Reaction> reactions) const;
     /// Adds what a support does to a component of a node at x, N, to its reaction.
     void add_reaction(int support, int component, double force, const Vec3& x,
                       std::span<Reaction> reactions) const;
@@ -275,40 +285,37 @@ class Model {
 
     void restore_state(ArchiveReader& ar, double time);
     NodeSums sums_of(NodeRange range) const;
-    LoadedBody loaded_body() const { return {mesh_, elements_, masses_}; }
+    BodyView view() const { return {mesh_, elements_, masses_}; }
+    void update_outer_terms();
     void resize(std::size_t num_nodes);
-    /// To be called when nodes that elements had before have moved, or are as fast as they were no
-    /// more, or the history is another.
-    void state_has_changed();
     void gather(NodeId n);
-    void carry_state(const topology::ChangeSet& changes);
-    void take_from_sources(const topology::NodeRecord& record);
-    void merge(NodeId absorbed, NodeId survivor);
-    bool take_back_merge(NodeId absorbed);
+    std::vector<NodeId> touched_nodes(const topology::ChangeSet& changes) const;
+    void edit_elements(const topology::ChangeSet& changes);
 
     const topology::Mesh& mesh_;
     topology::FollowedEpoch epoch_;
     std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;
-    ViscousHistory history_;
-    Vec3 gravity_;
+    State state_;
     double damping_;
     double body_size_;
 
-    std::vector<Vec3> positions_, velocities_, elastic_forces_, outer_forces_;
+    std::vector<Vec3> elastic_forces_, outer_forces_;
     std::vector<double> masses_;
     StableStep stable_step_;
     mutable KeptNodeSums node_sums_;
     Supports supports_;
     Loads loads_;
+    std::vector<std::unique_ptr<ForceTerm>> added_terms_;
     std::vector<Reaction> reactions_;  // of each support
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
-    std::map<NodeId, Merge> merges_;         // by the node that was absorbed
     std::vector<StepSums> step_sums_;        // scratch, by range of nodes
     std::vector<Reaction> range_reactions_;  // scratch, of all supports by range of nodes
     std::vector<ElementId> star_;            // scratch
     std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
+    std::vector<Vec3> previous_velocities_;  // from kick to drift, by node id
+    std::vector<Vec3> impulses_;             // likewise, N s; empty: none
 };
 
 }  // namespace incise::physics

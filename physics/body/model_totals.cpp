@@ -23,10 +23,10 @@ NodeSums Model::sums_of(NodeRange range) const {
     for (std::size_t n = range.begin; n < range.end; ++n) {
         const double m = masses_[n];
         if (m == 0.0) continue;  // dead
-        const Vec3 &x = positions_[n], &v = velocities_[n];
+        const Vec3 &x = positions()[n], &v = velocities()[n];
         const Vec3 p = m * v, l = x.cross(p);
         using Pair = NodeSums::Pair;  // in the order of NodeSum
-        sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * gravity_.dot(x), p[0]},
+        sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * loads_.gravity().dot(x), p[0]},
                                 Pair{p[1], p[2]},        Pair{l[0], l[1]},
                                 Pair{l[2], m * x[0]},    Pair{m * x[1], m * x[2]}};
     }
@@ -34,8 +34,8 @@ NodeSums Model::sums_of(NodeRange range) const {
 }
 
 Totals Model::totals() const {
-    const NodeSums sums =
-        node_sums_.value(masses_.size(), workers_, [&](NodeRange range) { return sums_of(range); });
+    const NodeSums sums = node_sums_.value(state_.version(), masses_.size(), workers_,
+                                           [&](NodeRange range) { return sums_of(range); });
     Totals t;
     t.mass = sums[NodeSum::mass].value();
     Sum rest_volume;
@@ -53,7 +53,7 @@ Totals Model::totals() const {
 }
 
 double Model::elastic_energy() const {
-    return elements_.state(positions_, workers_).elastic_energy.value();
+    return elements_.totals(state_, workers_).elastic_energy.value();
 }
 
 double Model::stiffness_energy() const {
@@ -63,14 +63,14 @@ double Model::stiffness_energy() const {
 }
 
 double Model::min_volume_ratio() const {
-    return elements_.state(positions_, workers_).min_volume_ratio;
+    return elements_.totals(state_, workers_).min_volume_ratio;
 }
 
 double Model::volume_change() const {
     double now = 0.0, at_rest = 0.0;
     elements_.for_each_block([&](const ElementBlock& block) {
         for (const ElementId e : block.elements()) {
-            const ElementResult result = block.result(e, positions_, history_);
+            const ElementResult result = block.result(e, positions(), history());
             now += result.volume * result.volume_ratio;
             at_rest += result.volume;
         }
@@ -82,7 +82,7 @@ double Model::max_displacement() const {
     double largest = 0.0;
     for (std::size_t n = 0; n < masses_.size(); ++n)
         if (masses_[n] > 0.0)  // alive
-            largest = std::max(largest, (positions_[n] - mesh_.rest_positions()[n]).norm());
+            largest = std::max(largest, (positions()[n] - mesh_.rest_positions()[n]).norm());
     return largest;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -33,8 +34,6 @@ class KeptNodeSums {
     void forget(std::size_t node) {
         if (const std::size_t r = node / nodes_per_range; r < ranges_.size()) ranges_[r].reset();
     }
-    /// All may have.
-    void forget_all() { ranges_.clear(); }
     /// There are so many now; those that are gone count no more.
     void resize(std::size_t num_nodes) {
         forget(num_nodes);  // the range that has lost some, if any has
@@ -42,8 +41,12 @@ class KeptNodeSums {
     }
 
     /// The sum over all ranges, in order; sums_of(range) of those that are not known.
+    /// @param version of the state
     template <class SumsOf>
-    NodeSums value(std::size_t num_nodes, const Workers& workers, SumsOf sums_of) {
+    NodeSums value(std::uint64_t version, std::size_t num_nodes, const Workers& workers,
+                   SumsOf sums_of) {
+        if (version_ != version) ranges_.clear();
+        version_ = version;
         ranges_.resize(num_node_ranges(num_nodes));
         workers.for_each_range(num_nodes, [&](NodeRange range) {
             if (!ranges_[range.number]) ranges_[range.number] = sums_of(range);
@@ -55,6 +58,7 @@ class KeptNodeSums {
 
   private:
     std::vector<std::optional<NodeSums>> ranges_;
+    std::uint64_t version_ = 0;  // of the state that they are of
 };
 
 }  // namespace incise::physics

@@ -187,33 +187,35 @@ std::span<const std::byte> ElementStore::bytes_from(std::size_t block) const {
     return blocks_[block]->bytes_of_elements();
 }
 
-void ElementStore::compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                                  const Workers& workers) {
-    assert(ranges_.size() == num_node_ranges(positions.size()));
+void ElementStore::take_note_of(const State& state) const {
+    if (known_version_ != state.version()) known_.clear();
+    known_version_ = state.version();
     known_.resize(blocks_.size());
+}
+
+void ElementStore::compute_forces(const State& state, const Workers& workers) {
+    assert(ranges_.size() == num_node_ranges(state.positions().size()));
+    take_note_of(state);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (blocks_[b] && !known_[b].has_forces) compute_forces_of(b, positions, history);
+        if (blocks_[b] && !known_[b].has_forces) compute_forces_of(b, state);
         known_[b].has_forces = false;
     });
 }
 
-void ElementStore::compute_states_and_forces(std::span<const Vec3> positions,
-                                             const ViscousHistory& history,
-                                             const Workers& workers) {
-    known_.resize(blocks_.size());
+void ElementStore::compute_totals_and_forces(const State& state, const Workers& workers) {
+    take_note_of(state);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (!blocks_[b] || known_[b].state) return;
-        known_[b].state = blocks_[b]->state(positions);
-        compute_forces_of(b, positions, history);
+        if (!blocks_[b] || known_[b].totals) return;
+        known_[b].totals = blocks_[b]->state(state.positions());
+        compute_forces_of(b, state);
         known_[b].has_forces = true;
     });
 }
 
-void ElementStore::compute_forces_of(std::size_t block, std::span<const Vec3> positions,
-                                     const ViscousHistory& history) {
+void ElementStore::compute_forces_of(std::size_t block, const State& state) {
     assert(changed_blocks_.empty());
-    blocks_[block]->compute_forces(blocks_[block]->local_positions(positions), history,
-                                   parts_[block], bytes_from(block + 1));
+    blocks_[block]->compute_forces(blocks_[block]->local_positions(state.positions()),
+                                   state.history(), parts_[block], bytes_from(block + 1));
 }
 
 void ElementStore::fetch(const Piece& piece) const {
@@ -239,14 +241,15 @@ void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const 
     }
 }
 
-BlockState ElementStore::state(std::span<const Vec3> positions, const Workers& workers) const {
-    known_.resize(blocks_.size());
+BlockState ElementStore::totals(const State& state, const Workers& workers) const {
+    take_note_of(state);
     workers.for_each(blocks_.size(), [&](std::size_t b) {
-        if (blocks_[b] && !known_[b].state) known_[b].state = blocks_[b]->state(positions);
+        if (blocks_[b] && !known_[b].totals)
+            known_[b].totals = blocks_[b]->state(state.positions());
     });
     BlockState all;
     for (const Known& block : known_)
-        if (block.state) all += *block.state;
+        if (block.totals) all += *block.totals;
     return all;
 }
 

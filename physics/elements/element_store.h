@@ -15,6 +15,7 @@
 #include "incise/base/sum.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/elements/precision.h"
+#include "incise/physics/elements/state.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/physics/laws/material.h"
 #include "incise/topology/change_set.h"
@@ -93,16 +94,13 @@ class ElementStore {
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    Workers& workers, ViscousHistory& history);
 
-    /// Computes the state of each block at `positions` (m, by node id) that is not known, for
-    /// state(), and right after it the block's forces, for compute_forces: so what both read comes
-    /// from memory once.
-    void compute_states_and_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                                   const Workers& workers);
-    /// Computes the forces of each block at `positions` (m, by node id), with those of viscosity as
-    /// far as the history goes, for gather_forces. Those that compute_states_and_forces computed
-    /// stand, if neither an edit changed the block nor state_has_changed() was called.
-    void compute_forces(std::span<const Vec3> positions, const ViscousHistory& history,
-                        const Workers& workers);
+    /// Computes what each block comes to, if that is not known, for totals(), and right after it
+    /// the block's forces, for compute_forces: so what both read comes from memory once.
+    void compute_totals_and_forces(const State& state, const Workers& workers);
+    /// Computes the forces of each block, with those of viscosity as far as the history goes, for
+    /// gather_forces. Those that compute_totals_and_forces computed stand, if neither an edit
+    /// changed the block nor the state is another.
+    void compute_forces(const State& state, const Workers& workers);
     /// Sets `forces` (N, by node id) to those last computed, for one range of nodes: a node's force
     /// is the sum of those of the blocks, in ascending order. For different ranges at the same
     /// time.
@@ -113,12 +111,10 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
-    /// Of all elements at `positions`. Blocks keep theirs until an edit changes them or nodes move,
-    /// so that another look beside an edit costs what that touched. Not by several threads at the
-    /// same time.
-    BlockState state(std::span<const Vec3> positions, const Workers& workers) const;
-    /// To be called when nodes have moved that elements had before, or the history is another.
-    void state_has_changed() { known_.clear(); }
+    /// What all elements come to. Blocks keep theirs until an edit changes them or the state is
+    /// another, so that another call beside an edit costs what that touched.
+    /// @thread not by several at the same time
+    BlockState totals(const State& state, const Workers& workers) const;
 
     /// add(compute(block)) for each block in ascending order: computed at the same time, and so
     /// added up in the same order whatever the number of workers. Takes no memory.
@@ -153,15 +149,16 @@ class ElementStore {
         std::size_t block, begin, end;
     };
 
-    /// Of a block, until an edit changes it or the state does.
+    /// Of a block, until an edit changes it or the state is another.
     struct Known {
-        std::optional<BlockState> state;
+        std::optional<BlockState> totals;
         bool has_forces = false;  ///< which nobody has asked for yet
     };
 
     void note_change(std::size_t block);
-    void compute_forces_of(std::size_t block, std::span<const Vec3> positions,
-                           const ViscousHistory& history);
+    /// Forgets what was known of another state.
+    void take_note_of(const State& state) const;
+    void compute_forces_of(std::size_t block, const State& state);
     /// Has the processor fetch what gather_forces reads of a piece.
     void fetch(const Piece& piece) const;
     /// Those of the elements of the first block from the given number on, if there is one.
@@ -182,6 +179,7 @@ class ElementStore {
     std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
     std::vector<double> energies_taken_;           // scratch, by block
     mutable std::vector<Known> known_;             // by block
+    mutable std::uint64_t known_version_ = 0;      // of the state that they are of
 };
 
 }  // namespace incise::physics

@@ -3,6 +3,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "incise/physics/body/model.h"
 #include "incise/physics/solve/newton.h"
 
@@ -24,10 +28,27 @@ class Integrator {
     virtual void restore(ArchiveReader&, const Model&) {}
 };
 
-/// Model::integrate: fast steps below the bound of stability.
+/// Changes velocities between the two stages of an explicit step, as contact does.
+class VelocityProjection {
+  public:
+    virtual ~VelocityProjection() = default;
+    /// Gives impulses to the nodes of the model, whose velocities are those of the end of the step,
+    /// from `time` to time + dt, s: see Model::give_impulses.
+    virtual void project(Model& model, double time, double dt) = 0;
+};
+
+/// Semi-implicit Euler, in steps below the bound of stability. A step has the stages kick, project
+/// and drift; without projections it is one pass over the nodes: Model::integrate.
 class SemiImplicitEuler final : public Integrator {
   public:
-    void step(Model& model, double time, double dt) override { model.integrate(time, dt); }
+    void step(Model& model, double time, double dt) override;
+    /// They act in the order in which they are added.
+    void add_projection(std::unique_ptr<VelocityProjection> projection) {
+        projections_.push_back(std::move(projection));
+    }
+
+  private:
+    std::vector<std::unique_ptr<VelocityProjection>> projections_;
 };
 
 /// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'), with the forces, viscous

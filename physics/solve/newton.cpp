@@ -120,7 +120,7 @@ void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
     model.elements().for_each_block([&](const ElementBlock& block) {
         block.visit_tangents({x, model.history(), problem.dt}, kind, tangent_);
     });
-    if (kind == TangentKind::exact) model.visit_load_tangents(x, problem.time, tangent_);
+    if (kind == TangentKind::exact) model.visit_outer_tangents(x, problem.time, tangent_);
     if (problem.inertia > 0.0)
         for (std::size_t n = 0; n < x.size(); ++n)
             if (model.masses()[n] > 0.0)

@@ -322,7 +322,7 @@ class FollowingBody {
         if (!changes) return;
         // As a run does, which has not looked at the body as it is.
         model_.set_history(model_.history().values());  // nothing is known any more
-        model_.compute_states_and_forces();
+        model_.compute_totals_and_forces();
         model_.apply(model_.mesh(), *changes);
         acting_.follow(mesh_.mesh(), *changes);
         if (step.fate == Fate::undo) {

@@ -125,7 +125,7 @@ class EditedBody {
     /// As a run does, which has not looked at the body as it is.
     void compute_ahead() {
         model_.set_history(model_.history().values());  // nothing is known any more
-        model_.compute_states_and_forces();
+        model_.compute_totals_and_forces();
     }
 
     // So that the ids of the next edit have been others' before.

@@ -130,7 +130,7 @@ TEST(Model, HasTheTotalsAndForcesOfItsPresentState) {
     Totals last = model.totals();
     const auto compute_ahead = [&] {
         model.set_history(model.history().values());  // nothing is known any more
-        model.compute_states_and_forces();
+        model.compute_totals_and_forces();
     };
     const auto expect_present = [&](const char* what) {
         SCOPED_TRACE(what);

@@ -295,7 +295,7 @@ TEST(LoadTangents, AreTheSymmetricPartOfTheDerivativeOfPressure) {
         found.K.setZero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
         test::Random random(1);
         std::vector<Vec3> x = random_state(mesh, random, 0.1, 0.0).positions;
-        model.visit_load_tangents(x, 0.0, found);
+        model.visit_outer_tangents(x, 0.0, found);
         Eigen::MatrixXd expected(size, size);
         std::vector<Vec3> up(x.size()), down(x.size());
         for (std::size_t j = 0; j < size; ++j) {

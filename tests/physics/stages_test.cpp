@@ -1,0 +1,210 @@
+// Terms of forces that somebody adds, and the stages of an explicit step.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "incise/physics/solve/integrator.h"
+#include "incise/topology/mesh_edit.h"
+#include "tests/physics/test_bodies.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::ChangeSet;
+using topology::Mesh;
+
+/// Ties each node to where it was at rest by a spring.
+class Tethers final : public ForceTerm {
+  public:
+    explicit Tethers(double stiffness) : stiffness_(stiffness) {}
+
+    void add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
+                    double /*time*/, std::span<Vec3> forces) const override {
+        for (std::size_t n = range.begin; n < range.end; ++n)
+            if (body.masses[n] > 0.0)
+                forces[n] += stiffness_ * (body.mesh.rest_position(NodeId(n)) - positions[n]);
+    }
+    void visit_tangents(std::span<const Vec3> positions, double /*time*/,
+                        TangentSink& sink) const override {
+        const Mat3 tangent = stiffness_ * Mat3::Identity();
+        for (std::uint32_t n = 0; n < positions.size(); ++n)
+            sink.add(std::span(&n, 1), {tangent.data(), 9});
+    }
+    double stiffness_bound(NodeId) const override { return stiffness_; }
+    void apply(const BodyView&, const ChangeSet&, std::span<const NodeId> touched) override {
+        num_touched += touched.size();
+    }
+
+    std::size_t num_touched = 0;
+
+  private:
+    double stiffness_;
+};
+
+Surroundings held_moved_and_damped(const Mesh& mesh) {
+    Surroundings s;
+    s.gravity = {0.5, 0.0, -9.81};
+    s.damping = 3.0;
+    Support left = holding("left", left_end(mesh), {true, false, true});
+    left.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 0.0, 0.3)}});
+    s.supports.push_back(left);
+    return s;
+}
+
+void expect_same_motion(const Model& one, const Model& other) {
+    EXPECT_EQ(state_of(one), state_of(other));
+    EXPECT_TRUE(std::ranges::equal(one.history().values(), other.history().values()));
+    EXPECT_NEAR(one.external_work(), other.external_work(),
+                1e-13 * (1.0 + std::abs(one.external_work())));
+    EXPECT_NEAR(one.dissipated_energy(), other.dissipated_energy(),
+                1e-13 * (1.0 + one.dissipated_energy()));
+    for (std::size_t i = 0; i < one.reactions().size(); ++i) {
+        EXPECT_TRUE(one.reactions()[i].force.isApprox(other.reactions()[i].force, 1e-12));
+        EXPECT_TRUE(one.reactions()[i].moment.isApprox(other.reactions()[i].moment, 1e-12));
+    }
+}
+
+struct NoProjection final : VelocityProjection {
+    void project(Model&, double, double) override {}
+};
+
+TEST(Stages, WithoutProjectionAreTheFusedStep) {
+    for (const NamedMaterial& material : materials_of_all_methods()) {
+        SCOPED_TRACE(material.name);
+        const Mesh mesh = bar(material.kind);
+        Model fused(mesh, material.table, held_moved_and_damped(mesh));
+        Model staged(mesh, material.table, held_moved_and_damped(mesh));
+        SemiImplicitEuler one_pass, stages;
+        stages.add_projection(std::make_unique<NoProjection>());
+        const double dt = 0.5 * fused.stable_step();
+        for (int i = 0; i < 50; ++i) {
+            one_pass.step(fused, i * dt, dt);
+            stages.step(staged, i * dt, dt);
+            for (Model* model : {&fused, &staged}) model->compute_forces((i + 1) * dt);
+        }
+        expect_same_motion(fused, staged);
+    }
+}
+
+/// Gives the same impulse to all nodes of a set.
+struct Push final : VelocityProjection {
+    NodeId node;
+    Vec3 impulse;
+    Push(NodeId of_node, const Vec3& of_impulse) : node(of_node), impulse(of_impulse) {}
+    void project(Model& model, double, double) override {
+        std::vector<Vec3> impulses(model.positions().size(), Vec3::Zero());
+        impulses[node.index()] = impulse;
+        model.give_impulses(impulses);
+    }
+};
+
+TEST(Stages, ImpulsesChangeMomentumAndWork) {
+    const Mesh mesh = bar();
+    const Vec3 impulse(1e-3, -2e-3, 5e-4);
+    Model model(mesh, table_of_one_law(soft_law));
+    SemiImplicitEuler integrator;
+    integrator.add_projection(std::make_unique<Push>(NodeId(3), impulse));
+    const double dt = 0.1 * model.stable_step();
+    const Totals before = model.totals();
+    integrator.step(model, 0.0, dt);
+    EXPECT_TRUE((model.totals().momentum - before.momentum).isApprox(impulse, 1e-12));
+    // From rest: the work is the kinetic energy that it leaves.
+    EXPECT_NEAR(model.external_work(), model.totals().kinetic_energy,
+                1e-12 * model.external_work());
+}
+
+TEST(Stages, SupportsBearTheImpulsesOnTheirNodes) {
+    const Mesh mesh = bar();
+    const Vec3 impulse(1e-3, -2e-3, 5e-4);
+    Surroundings held;
+    held.supports.push_back(holding("left", left_end(mesh)));
+    const NodeId node = held.supports[0].nodes.members()[0].node;
+    Model model(mesh, table_of_one_law(soft_law), held);
+    SemiImplicitEuler integrator;
+    integrator.add_projection(std::make_unique<Push>(node, impulse));
+    const double dt = 0.1 * model.stable_step();
+    integrator.step(model, 0.0, dt);
+    EXPECT_EQ(state_of(model), rest_state(mesh));
+    EXPECT_TRUE(model.reactions()[0].force.isApprox(-impulse / dt, 1e-12));
+    EXPECT_EQ(model.external_work(), 0.0);
+}
+
+TEST(ForceTerms, BalanceTheWeightInStatics) {
+    for (const NamedMaterial& material : materials_of_all_methods()) {
+        SCOPED_TRACE(material.name);
+        const Mesh mesh = bar(material.kind);
+        Surroundings weight;
+        weight.gravity = {0.0, 0.0, -9.81};
+        // Held in part, so that no part of the body is free.
+        weight.supports.push_back(holding("left", left_end(mesh), {true, true, false}));
+        Model model(mesh, material.table, weight);
+        constexpr double stiffness = 50.0;
+        model.add_force_term(std::make_unique<Tethers>(stiffness));
+        Statics statics;
+        statics.step(model, 0.0, 0.0);
+        Vec3 sum = Vec3::Zero();
+        for (const NodeId n : mesh.nodes())
+            sum += stiffness * (mesh.rest_position(n) - model.positions()[n.index()]);
+        EXPECT_NEAR(sum.z(), 9.81 * model.totals().mass, 1e-7 * model.totals().mass);
+    }
+}
+
+TEST(ForceTerms, KeepTheEnergyBalanceOfExplicitSteps) {
+    const Mesh mesh = bar();
+    Model model(mesh, table_of_one_law(soft_law));
+    const double step_without = model.stable_step();
+    constexpr double stiffness = 5.0;
+    model.add_force_term(std::make_unique<Tethers>(stiffness));
+    EXPECT_LT(model.stable_step(), step_without);
+    test::Random random(7);
+    set_state(model, random_state(mesh, random, 0.0, 0.1));
+    const auto energy_of_tethers = [&] {
+        double energy = 0.0;
+        for (const NodeId n : mesh.nodes())
+            energy += 0.5 * stiffness *
+                      (mesh.rest_position(n) - model.positions()[n.index()]).squaredNorm();
+        return energy;
+    };
+    const double before = energy_of_tethers();
+    const double dt = 0.02 * model.stable_step();
+    double time = 0.0;
+    for (int i = 0; i < 400; ++i) step(model, time, dt);
+    EXPECT_NEAR(model.external_work(), before - energy_of_tethers(), 0.01 * before);
+}
+
+TEST(ForceTerms, FollowEdits) {
+    Mesh mesh = bar();
+    Model model(mesh, table_of_one_law(soft_law));
+    auto owned = std::make_unique<Tethers>(10.0);
+    const Tethers& tethers = *owned;
+    model.add_force_term(std::move(owned));
+    topology::MeshEdit edit(mesh);
+    edit.remove(living_elements(mesh).front());
+    model.apply(mesh, edit.commit());
+    EXPECT_GT(tethers.num_touched, 0u);
+    Model afresh(mesh, table_of_one_law(soft_law));
+    afresh.add_force_term(std::make_unique<Tethers>(10.0));
+    EXPECT_EQ(model.stable_step(), afresh.stable_step());
+}
+
+TEST(StateVersion, GrowsWithEachChangeOfTheState) {
+    const Mesh mesh = bar();
+    Model model(mesh, table_of_one_law(soft_law));
+    const auto grows = [&](auto change) {
+        const std::uint64_t before = model.state().version();
+        change();
+        return model.state().version() > before;
+    };
+    const double dt = 0.1 * model.stable_step();
+    EXPECT_TRUE(grows([&] { model.integrate(0.0, dt); }));
+    EXPECT_TRUE(grows([&] { set_state(model, rest_state(mesh)); }));
+    EXPECT_TRUE(grows([&] { model.kick(0.0, dt); }));
+    EXPECT_TRUE(grows([&] { model.drift(0.0, dt); }));
+    EXPECT_FALSE(grows([&] { model.compute_forces(dt); }));
+    EXPECT_FALSE(grows([&] { model.totals(); }));
+}
+
+}  // namespace
+}  // namespace incise::physics
