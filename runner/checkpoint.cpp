@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view suffix = ".checkpoint";
 
 /// To be raised, within a version, with what a simulation saves or the bits that it computes.
-constexpr std::uint32_t state_format = 4;
+constexpr std::uint32_t state_format = 5;
 
 constexpr std::string_view prefix_of(CheckpointKind kind) {
     return kind == CheckpointKind::regular ? "step_" : "stop_";

@@ -81,7 +81,7 @@ void World::Parts::prepare_tools() {
 namespace {
 
 /// To be changed with what save() lists and with the bits that a world computes.
-constexpr std::uint32_t state_format = 2;
+constexpr std::uint32_t state_format = 3;
 constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
 
 /// Of what is plain of the materials: two laws with the same moduli at rest are not told apart.

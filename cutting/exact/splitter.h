@@ -17,7 +17,7 @@
 
 namespace incise::cutting {
 
-/// Measured: docs/cutting.md.
+/// Measured: docs/measurements/cutting.md.
 inline constexpr double default_snap = 0.6;
 
 /// Of the uncut body's step length (step_length.h), what cuts try to leave every element: 0.55 from

@@ -20,7 +20,8 @@ struct BodyView {
 };
 
 /// One term of the forces from outside, such as the loads. Its work counts as external work. It is
-/// a function of positions and time alone, so that each solver can ask for it anywhere.
+/// a function of positions and time alone, so that each solver can ask for it anywhere. Statics
+/// does not take it for what holds a piece of the body: constraints must do that.
 class ForceTerm {
   public:
     virtual ~ForceTerm() = default;

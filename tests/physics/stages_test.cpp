@@ -126,19 +126,20 @@ TEST(Stages, SupportsBearTheImpulsesOnTheirNodes) {
     integrator.add_projection(std::make_unique<Push>(node, impulse));
     const double dt = 0.1 * model.stable_step();
     integrator.step(model, 0.0, dt);
-    EXPECT_EQ(state_of(model), rest_state(mesh));
+    Model alone(mesh, table_of_one_law(soft_law), held);
+    alone.integrate(0.0, dt);
+    EXPECT_EQ(state_of(model), state_of(alone));
     EXPECT_TRUE(model.reactions()[0].force.isApprox(-impulse / dt, 1e-12));
-    EXPECT_EQ(model.external_work(), 0.0);
+    EXPECT_NEAR(model.external_work(), 0.0, 1e-20);
 }
 
-TEST(ForceTerms, BalanceTheWeightInStatics) {
+TEST(ForceTerms, BearTheWeightWithSupportsInStatics) {
     for (const NamedMaterial& material : materials_of_all_methods()) {
         SCOPED_TRACE(material.name);
         const Mesh mesh = bar(material.kind);
         Surroundings weight;
         weight.gravity = {0.0, 0.0, -9.81};
-        // Held in part, so that no part of the body is free.
-        weight.supports.push_back(holding("left", left_end(mesh), {true, true, false}));
+        weight.supports.push_back(holding("left", left_end(mesh)));
         Model model(mesh, material.table, weight);
         constexpr double stiffness = 50.0;
         model.add_force_term(std::make_unique<Tethers>(stiffness));
@@ -147,7 +148,9 @@ TEST(ForceTerms, BalanceTheWeightInStatics) {
         Vec3 sum = Vec3::Zero();
         for (const NodeId n : mesh.nodes())
             sum += stiffness * (mesh.rest_position(n) - model.positions()[n.index()]);
-        EXPECT_NEAR(sum.z(), 9.81 * model.totals().mass, 1e-7 * model.totals().mass);
+        EXPECT_GT(sum.z(), 0.1 * 9.81 * model.totals().mass);
+        EXPECT_NEAR(sum.z() + model.reactions()[0].force.z(), 9.81 * model.totals().mass,
+                    1e-7 * model.totals().mass);
     }
 }
 
