@@ -306,9 +306,9 @@ class CountingCutter {
         book(result.changes);
     }
 
-    /// Opens the faces between elements for whose centres, at rest, `are_parted` holds.
+    /// Opens the faces between elements for whose centres, at rest, `are_separated` holds.
     template <class AreParted>
-    void separate(AreParted are_parted) {
+    void separate(AreParted are_separated) {
         std::vector<FaceId> faces;
         const auto rest = mesh_.rest_positions();
         for_each_element(mesh_, [&](ElementId e) {
@@ -316,7 +316,7 @@ class CountingCutter {
             for (int f = 0; f < mesh_.num_faces(e); ++f) {
                 const FaceId face{e, f}, other = mesh_.neighbor(face);
                 if (face < other &&
-                    are_parted(centre, TissueMotion::centre(mesh_, other.element, rest)))
+                    are_separated(centre, TissueMotion::centre(mesh_, other.element, rest)))
                     faces.push_back(face);
             }
         });

@@ -155,7 +155,7 @@ void warn_of_idle_tools(const runner::Simulation& simulation) {
 }
 
 std::string describe(const runner::Simulation& simulation) {
-    const sim::Account& body = simulation.ledger().initial();
+    const sim::BodyTotals& body = simulation.ledger().initial();
     const bool is_static = simulation.scenario().dynamics.mode == scenario::Mode::statics;
     std::ostringstream text;
     text.precision(4);

@@ -113,7 +113,7 @@ void program(benchmark::State& state, const physics::Law& law) {
 void explicit_step(benchmark::State& state) {
     const Body& body = body_of(state.range(0));
     physics::Model model(body.mesh, make_material(stvk),
-                         {.gravity = {0, 0, -9.81}, .supports = {}, .loads = {}});
+                         {.gravity = {0, 0, -9.81}, .constraints = {}, .loads = {}});
     const double dt = 0.5 * model.stable_step();
     for (auto _ : state) {
         model.integrate(0.0, dt);

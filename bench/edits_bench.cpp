@@ -65,7 +65,8 @@ BENCHMARK(open)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
 /// A step in which a face is opened, with what the books of a run and their row in history.csv ask
 /// for before and after; in all per element of the body.
-void booked_step(benchmark::State& state, topology::Mesh mesh, const physics::Material& material) {
+void recorded_step(benchmark::State& state, topology::Mesh mesh,
+                   const physics::Material& material) {
     physics::Model model(mesh, {{material}, {{0, 0}}});
     const double dt = 0.5 * model.stable_step();
     std::size_t next = mesh.element_capacity() / 2;
@@ -86,20 +87,20 @@ void booked_step(benchmark::State& state, topology::Mesh mesh, const physics::Ma
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void booked_step_of_tetrahedra(benchmark::State& state) {
-    booked_step(state, make_cube(state.range(0)),
-                {1000.0, physics::HyperElasticLinks{physics::NeoHookean{2000, 6000}}});
+void recorded_step_of_tetrahedra(benchmark::State& state) {
+    recorded_step(state, make_cube(state.range(0)),
+                  {1000.0, physics::HyperElasticLinks{physics::NeoHookean{2000, 6000}}});
 }
-BENCHMARK(booked_step_of_tetrahedra)->Arg(20'000)->Arg(100'000)->Arg(500'000);
+BENCHMARK(recorded_step_of_tetrahedra)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
-void booked_step_of_hexahedra(benchmark::State& state) {
+void recorded_step_of_hexahedra(benchmark::State& state) {
     const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(state.range(0)))));
     const auto grid =
         topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n});
-    booked_step(state, topology::Mesh::build(grid).mesh,
-                {1000.0, physics::HybridSprings{2000, 6000, 1.0}});
+    recorded_step(state, topology::Mesh::build(grid).mesh,
+                  {1000.0, physics::HybridSprings{2000, 6000, 1.0}});
 }
-BENCHMARK(booked_step_of_hexahedra)->Arg(27'000)->Arg(125'000);
+BENCHMARK(recorded_step_of_hexahedra)->Arg(27'000)->Arg(125'000);
 
 /// A blade goes half way through the body in 20 steps, across no ready-made plane; per element that
 /// it crosses, with the search for them, and body and boxes following.

@@ -22,8 +22,9 @@ void report(benchmark::State& state, std::size_t num_elements) {
 
 void measure_steps(benchmark::State& state, const topology::Mesh& mesh,
                    const physics::MaterialTable& materials) {
-    physics::Model model(mesh, materials,
-                         {.gravity = {0, 0, -9.81}, .damping = 1.0, .supports = {}, .loads = {}});
+    physics::Model model(
+        mesh, materials,
+        {.gravity = {0, 0, -9.81}, .damping = 1.0, .constraints = {}, .loads = {}});
     const double dt = 0.5 * model.stable_step();
     for (auto _ : state) {
         model.integrate(0.0, dt);

@@ -57,7 +57,7 @@ void hybmss_step(benchmark::State& state) {
                                                               variant.stiffness_ratio}});
     table.of_region[0] = 0;
     physics::Model model(mesh, table,
-                         {.gravity = {0, 0, -1.0}, .damping = 1.0, .supports = {}, .loads = {}});
+                         {.gravity = {0, 0, -1.0}, .damping = 1.0, .constraints = {}, .loads = {}});
     const double dt = 0.5 * model.stable_step();
     for (auto _ : state) {
         model.integrate(0.0, dt);

@@ -80,7 +80,7 @@ double measure_arithmetic(const Law& law) {
     constexpr std::size_t num_groups = 8, num_passes = 20'000;
     constexpr std::size_t num_elements = num_groups * LinkGroup<double>::size;
     const HemlKernel kernel{law, 0.4};
-    HemlLanes lanes;
+    SimdHemlElements lanes;
     lanes.assign(num_elements, kernel);
     std::vector<LinkGroupVectors> vectors(num_groups);
     for (std::size_t i = 0; i < num_elements; ++i) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "incise/physics/elements/heml_lanes.h"
+#include "incise/physics/elements/simd_heml_elements.h"
 
 namespace incise::bench {
 

@@ -34,24 +34,25 @@ std::vector<ElementId> elements_of(const Mesh& mesh) {
     return elements;
 }
 
-physics::Surroundings held(const Mesh& mesh) {
+physics::BoundaryConditions held(const Mesh& mesh) {
     // So little that the tissue does not fold, however long it is measured.
-    physics::Surroundings s{.gravity = {0, 0, -0.1}, .damping = 1.0, .supports = {}, .loads = {}};
-    s.supports.push_back({.name = "floor",
-                          .nodes = physics::NodeSet(nodes_at_height(mesh, 0.0)),
-                          .displacement = {},
-                          .angle = {}});
+    physics::BoundaryConditions s{
+        .gravity = {0, 0, -0.1}, .damping = 1.0, .constraints = {}, .loads = {}};
+    s.constraints.push_back({.name = "floor",
+                             .nodes = physics::NodeSet(nodes_at_height(mesh, 0.0)),
+                             .displacement = {},
+                             .angle = {}});
     return s;
 }
 
 /// The floor still, the lid turned; wind and gas on the surface, a field inside.
-physics::Surroundings turned_and_loaded(const Mesh& mesh) {
-    physics::Surroundings s = held(mesh);
-    s.supports.push_back({.name = "lid",
-                          .nodes = physics::NodeSet(nodes_at_height(mesh, 1.0)),
-                          .displacement = {},
-                          .angle = physics::TimeCurve<double>({{0.0, 0.0}, {1.0, 1e-3}}),
-                          .point = {0.5, 0.5, 1.0}});
+physics::BoundaryConditions turned_and_loaded(const Mesh& mesh) {
+    physics::BoundaryConditions s = held(mesh);
+    s.constraints.push_back({.name = "lid",
+                             .nodes = physics::NodeSet(nodes_at_height(mesh, 1.0)),
+                             .displacement = {},
+                             .angle = physics::TimeCurve<double>({{0.0, 0.0}, {1.0, 1e-3}}),
+                             .point = {0.5, 0.5, 1.0}});
     const auto surface = topology::boundary_faces(mesh);
     s.loads.push_back({"wind", physics::TractionLoad{surface, {1.0, 0.0, 0.0}}, {}});
     s.loads.push_back({"gas", physics::PressureLoad{surface, 1.0}, {}});
@@ -67,9 +68,9 @@ void report(benchmark::State& state, const Mesh& mesh) {
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void explicit_step(benchmark::State& state, const physics::Surroundings& surroundings,
+void explicit_step(benchmark::State& state, const physics::BoundaryConditions& boundary_conditions,
                    const Mesh& mesh) {
-    physics::Model model(mesh, make_material(tissue), surroundings);
+    physics::Model model(mesh, make_material(tissue), boundary_conditions);
     model.set_num_threads(static_cast<int>(state.range(1)));
     const double dt = 0.5 * model.stable_step();
     for (auto _ : state) {
@@ -94,10 +95,11 @@ BENCHMARK(step_turned_and_loaded)->ArgsProduct({{20'000, 500'000}, {1, 2}})->Use
 template <class Rule>
 void solved_step(benchmark::State& state) {
     const Mesh mesh = make_cube(state.range(0));
-    physics::Surroundings surroundings = held(mesh);
-    surroundings.loads.push_back({"gas", physics::PressureLoad{top_of(mesh), 1.0},
-                                  physics::TimeCurve<double>({{0.0, 0.0}, {1000.0, 1000.0}})});
-    physics::Model model(mesh, make_material(tissue), surroundings);
+    physics::BoundaryConditions boundary_conditions = held(mesh);
+    boundary_conditions.loads.push_back(
+        {"gas", physics::PressureLoad{top_of(mesh), 1.0},
+         physics::TimeCurve<double>({{0.0, 0.0}, {1000.0, 1000.0}})});
+    physics::Model model(mesh, make_material(tissue), boundary_conditions);
     Rule rule;
     constexpr double dt = 0.01;
     double time = 0.0;

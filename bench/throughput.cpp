@@ -13,8 +13,8 @@
 #include "incise/bench/machine_speed.h"
 #include "incise/cutting/cutter.h"
 #include "incise/physics/body/model.h"
-#include "incise/physics/elements/heml_lanes.h"
-#include "incise/physics/elements/hybmss_lanes.h"
+#include "incise/physics/elements/simd_heml_elements.h"
+#include "incise/physics/elements/simd_hybmss_elements.h"
 #include "incise/scenario/elastic_constants.h"
 #include "incise/scenario/tissue_catalog.h"
 #include "incise/topology/box_mesh.h"
@@ -112,7 +112,7 @@ struct MovingBody {
                int num_threads)
         : model(mesh, table_of(measured.material, precision),
                 // Damped, as a body that falls freely would at last be too fast for its steps.
-                {.gravity = Vec3(0, 0, -9.81), .damping = 10.0, .supports = {}, .loads = {}}),
+                {.gravity = Vec3(0, 0, -9.81), .damping = 10.0, .constraints = {}, .loads = {}}),
           dt(0.9 * model.stable_step()) {
         model.set_num_threads(num_threads);
     }

@@ -66,8 +66,8 @@ const Cutter::Cut& Cutter::cut_of(CutId id) const {
 
 Cutter::Cut& Cutter::cut_of(CutId id) { return const_cast<Cut&>(std::as_const(*this).cut_of(id)); }
 
-std::vector<RestingBlade> Cutter::resting_blades(std::optional<std::size_t> worker) {
-    std::vector<RestingBlade> resting;
+std::vector<SuspendedCut> Cutter::suspended_cuts(std::optional<std::size_t> worker) {
+    std::vector<SuspendedCut> resting;
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (Cut& cut = cuts_[i]; i != worker && !cut.front.is_empty())
             resting.push_back({cut.front, {cut.edge, cut.edge}, cut.has_moved, cut.snap > 0.0});
@@ -86,9 +86,9 @@ Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
     const TissueMotion tissue = motion(mesh, positions);
     Split done;
     if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
-        auto resting = resting_blades(id.index);
+        auto resting = suspended_cuts(id.index);
         done = noted(cutting::split(mesh, tissue, SweptEdge(edge_before, edge_after), cut.front,
-                                    {cut.snap, uncut_}, scars_, resting),
+                                    {cut.snap, uncut_}, snap_history_, resting),
                      id.index);
     }
     cut.edge = edge_after;
@@ -99,18 +99,18 @@ Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
 Split Cutter::end_cut(CutId id, Mesh& mesh, std::span<const Vec3> positions,
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
-    auto resting = resting_blades(id.index);
+    auto resting = suspended_cuts(id.index);
     return noted(finish(mesh, {mesh, positions, positions, &boxes_}, blade, cut.front,
-                        {cut.snap, uncut_}, scars_, resting),
+                        {cut.snap, uncut_}, snap_history_, resting),
                  id.index);
 }
 
 Split Cutter::split(Mesh& mesh, std::span<const Vec3> positions, const CutSurface& surface,
                     double snap) {
     CutFront front;
-    auto resting = resting_blades(std::nullopt);
+    auto resting = suspended_cuts(std::nullopt);
     return noted(cutting::split(mesh, motion(mesh, positions), surface, front, {snap, uncut_},
-                                scars_, resting),
+                                snap_history_, resting),
                  std::nullopt);
 }
 
@@ -133,7 +133,7 @@ void Cutter::apply(const Mesh& mesh, std::span<const Vec3> positions, const Chan
     const OwnEdit own = changes.epoch_after == own_edit_.epoch ? own_edit_ : OwnEdit{};
     own_edit_ = {};
     before_.apply(mesh, changes);
-    if (!own.scars_followed) scars_.apply(mesh, changes);
+    if (!own.history_followed) snap_history_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (i != own.cut) cuts_[i].front.apply(mesh, changes);
     boxes_.apply(mesh, positions, changes);

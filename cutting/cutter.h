@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
-#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
 #include "incise/topology/change_set.h"
@@ -36,7 +36,7 @@ struct CutId {
 ///     ...                                               // the tissue moves
 ///     cutter.end_motion(mesh, positions, largest_move);
 ///     const Split done = cutter.split(cut, mesh, positions, edge_before, edge_after);
-///     model.apply(done.changes);
+///     model.apply(mesh, done.changes);
 ///     cutter.apply(mesh, model.positions(), done.changes);
 ///
 /// Positions are current ones, by node id, m. They are those of before an edit while that edit is
@@ -90,7 +90,7 @@ class Cutter {
                const topology::ChangeSet& changes);
 
     /// What earlier cuts have left at nodes.
-    const Scars& scars() const { return scars_; }
+    const SnapHistory& snap_history() const { return snap_history_; }
 
     /// True if the mesh has all nodes and elements that the cutter remembers.
     bool is_on(const topology::Mesh& mesh) const;
@@ -98,7 +98,7 @@ class Cutter {
     bool has_cut(CutId id) const { return id.index < cuts_.size() && cuts_[id.index].is_in_use; }
     /// All but the present motion.
     static void archive(auto& ar, auto& self) {
-        ar(self.uncut_, self.cuts_, self.boxes_, self.scars_);
+        ar(self.uncut_, self.cuts_, self.boxes_, self.snap_history_);
     }
 
   private:
@@ -116,13 +116,13 @@ class Cutter {
     struct OwnEdit {
         std::uint64_t epoch = 0;         // after it
         std::optional<std::size_t> cut;  // whose front has followed already
-        bool scars_followed = false;
+        bool history_followed = false;
     };
 
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
     /// The other cuts in progress: fronts that an edit by `worker` may touch.
-    std::vector<RestingBlade> resting_blades(std::optional<std::size_t> worker);
+    std::vector<SuspendedCut> suspended_cuts(std::optional<std::size_t> worker);
     TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) const {
         return {mesh, before_.values(), positions, &boxes_};
     }
@@ -130,7 +130,7 @@ class Cutter {
 
     UncutBody uncut_;
     topology::ElementBoxes boxes_;
-    Scars scars_;
+    SnapHistory snap_history_;
     std::vector<Cut> cuts_;             // by CutId
     topology::NodeField<Vec3> before_;  // positions before the present motion, by node id
     OwnEdit own_edit_;

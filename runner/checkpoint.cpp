@@ -149,19 +149,19 @@ void remove_checkpoints_of_stops(const fs::path& folder) {
 Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
     ArchiveReader ar(bytes);
     std::string version;
-    name_place([&] { ar(version); });
+    name_location([&] { ar(version); });
     if (version != INCISE_VERSION)
         throw InputError(path_.string() + ": was written by version " + io::in_quotes(version) +
                          " of incise, and this is " + INCISE_VERSION +
                          "; resume with that one, or begin anew without --resume");
     std::uint32_t format = 0;
-    name_place([&] { ar(format); });
+    name_location([&] { ar(format); });
     if (format != state_format)
         throw InputError(path_.string() + ": was written by another build of version " + version +
                          " of incise, with state format " + std::to_string(format) +
                          ", and this has " + std::to_string(state_format) +
                          "; resume with that one, or begin anew without --resume");
-    name_place([&] {
+    name_location([&] {
         ar(contents_, fingerprint_, written_, state_);
         if (!ar.is_at_end()) throw InputError("there are data beyond its end");
     });
@@ -208,7 +208,7 @@ void Checkpoint::restore(Simulation& simulation) const {
                          ": the run was of another body: the file of the mesh, or of a surface "
                          "that cuts it, has changed since; put the former one back, or begin anew "
                          "without --resume");
-    name_place([&] {
+    name_location([&] {
         ArchiveReader ar(state_);
         simulation.restore(ar);
         const auto& frames = written_.frames;
@@ -228,7 +228,7 @@ void Checkpoint::restore(Simulation& simulation) const {
 }
 
 // The checksum is right: so it was forged, or has been renamed.
-void Checkpoint::name_place(const std::function<void()>& read) const {
+void Checkpoint::name_location(const std::function<void()>& read) const {
     try {
         read();
     } catch (const InputError& error) {

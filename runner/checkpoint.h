@@ -60,8 +60,8 @@ void remove_checkpoints_of_stops(const std::filesystem::path& folder);
 class Checkpoint {
   public:
     /// The newest of the run in `folder` that is whole; for each that is not, and is newer, a
-    /// warning. Changes nothing. Throws InputError if there is none, if a folder is in the place of
-    /// one, or if another version of the program, which might not go on to the same bits, has
+    /// warning. Changes nothing. Throws InputError if there is none, if a folder is in the location
+    /// of one, or if another version of the program, which might not go on to the same bits, has
     /// written it.
     static Checkpoint newest(const std::filesystem::path& folder,
                              std::vector<std::string>& warnings);
@@ -77,7 +77,7 @@ class Checkpoint {
 
   private:
     Checkpoint(std::filesystem::path path, std::string bytes);
-    void name_place(const std::function<void()>& read) const;
+    void name_location(const std::function<void()>& read) const;
 
     std::filesystem::path path_;
     std::vector<std::pair<std::string, std::string>> contents_;  // of the scenario

@@ -28,34 +28,34 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 
 }  // namespace
 
-Quantities history_row(const Simulation& simulation, const sim::Account& account) {
+Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals) {
     const physics::Model& model = simulation.model();
-    const physics::Totals& t = account.totals;
+    const physics::Totals& t = body_totals.totals;
     Quantities row;
     append(row, scenario::history_quantities,
            std::array{simulation.time(),
                       static_cast<double>(simulation.num_steps()),
-                      static_cast<double>(account.nodes),
-                      static_cast<double>(account.elements),
-                      static_cast<double>(account.components),
+                      static_cast<double>(body_totals.nodes),
+                      static_cast<double>(body_totals.elements),
+                      static_cast<double>(body_totals.components),
                       t.mass,
                       t.rest_volume,
                       t.kinetic_energy,
                       t.elastic_energy,
-                      account.external_work,
-                      account.dissipated_energy,
+                      body_totals.external_work,
+                      body_totals.dissipated_energy,
                       t.momentum.x(),
                       t.momentum.y(),
                       t.momentum.z(),
                       t.angular_momentum.x(),
                       t.angular_momentum.y(),
                       t.angular_momentum.z(),
-                      account.min_volume_ratio,
+                      body_totals.min_volume_ratio,
                       simulation.time_step(),
-                      account.stable_step});
-    for (std::size_t s = 0; s < model.num_supports(); ++s) {
-        const auto& [reaction, torque] = account.reactions[s];
-        append(row, scenario::reaction_quantities(model.support_name(s)),
+                      body_totals.stable_step});
+    for (std::size_t s = 0; s < model.num_constraints(); ++s) {
+        const auto& [reaction, torque] = body_totals.reactions[s];
+        append(row, scenario::reaction_quantities(model.constraint_name(s)),
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
     }

@@ -18,10 +18,10 @@ namespace incise::runner {
 using Quantities = std::vector<std::pair<std::string, double>>;
 
 /// The quantities of a moment by their names in history.csv, in its order.
-/// @param account  of this moment
-Quantities history_row(const Simulation& simulation, const sim::Account& account);
+/// @param body_totals  of this moment
+Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals);
 inline Quantities history_row(const Simulation& simulation) {
-    return history_row(simulation, simulation.ledger().account());
+    return history_row(simulation, simulation.ledger().body_totals());
 }
 
 /// The quantities of summary.json that an [expect] can name: the last history row and totals over

@@ -20,18 +20,18 @@ namespace {
 
 Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Json to_json(const sim::Account& account) {
-    return {{"nodes", account.nodes},
-            {"elements", account.elements},
-            {"components", account.components},
-            {"mass", account.totals.mass},
-            {"volume", account.totals.rest_volume},
-            {"kinetic_energy", account.totals.kinetic_energy},
-            {"elastic_energy", account.totals.elastic_energy},
-            {"momentum", to_json(account.totals.momentum)},
-            {"angular_momentum", to_json(account.totals.angular_momentum)},
-            {"centre_of_mass", to_json(account.totals.centre_of_mass)},
-            {"stable_step", account.stable_step}};
+Json to_json(const sim::BodyTotals& body_totals) {
+    return {{"nodes", body_totals.nodes},
+            {"elements", body_totals.elements},
+            {"components", body_totals.components},
+            {"mass", body_totals.totals.mass},
+            {"volume", body_totals.totals.rest_volume},
+            {"kinetic_energy", body_totals.totals.kinetic_energy},
+            {"elastic_energy", body_totals.totals.elastic_energy},
+            {"momentum", to_json(body_totals.totals.momentum)},
+            {"angular_momentum", to_json(body_totals.totals.angular_momentum)},
+            {"centre_of_mass", to_json(body_totals.totals.centre_of_mass)},
+            {"stable_step", body_totals.stable_step}};
 }
 
 Json to_json(const sim::EditRecord& edit) {
@@ -119,8 +119,8 @@ RunWriter::RunWriter(const Simulation& simulation, io::OutputFolder folder, cons
     history_.append(header);
 }
 
-void RunWriter::append_history(const Simulation& simulation, const sim::Account& account) {
-    last_row_ = history_row(simulation, account);
+void RunWriter::append_history(const Simulation& simulation, const sim::BodyTotals& body_totals) {
+    last_row_ = history_row(simulation, body_totals);
     std::string line;
     for (const auto& [name, value] : last_row_) {
         if (!line.empty()) line += ',';
@@ -132,7 +132,7 @@ void RunWriter::append_history(const Simulation& simulation, const sim::Account&
 // A run without frames still tells how it began and ended.
 void RunWriter::on_start(const Simulation& simulation) {
     if (simulation.scenario().output.interval == 0.0)
-        append_history(simulation, simulation.ledger().account());
+        append_history(simulation, simulation.ledger().body_totals());
 }
 
 void RunWriter::on_edit(const Simulation& simulation, const sim::EditRecord& edit) {
@@ -150,7 +150,7 @@ void RunWriter::on_frame(const Simulation& simulation) {
         series_.add(frame);
     });
     ++num_frames_;
-    append_history(simulation, simulation.ledger().account());
+    append_history(simulation, simulation.ledger().body_totals());
 }
 
 void RunWriter::on_step(const Simulation&) {
@@ -241,7 +241,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     // The state that a run failed in is not one to keep: the last row written stands.
     const bool has_failed = outcome.status == "failed";
     if (!has_failed && simulation.scenario().output.interval == 0.0)
-        append_history(simulation, simulation.ledger().account());
+        append_history(simulation, simulation.ledger().body_totals());
     history_.sync();
     edits_.sync();
     Json summary;

@@ -63,7 +63,7 @@ class RunWriter : public Observer {
     RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written* written);
 
     const std::filesystem::path& folder() const { return folder_.path(); }
-    void append_history(const Simulation& simulation, const sim::Account& account);
+    void append_history(const Simulation& simulation, const sim::BodyTotals& body_totals);
     void begin_checkpoint(const Simulation& simulation, CheckpointKind kind);
     void note_checkpoint(const Simulation& simulation);
     template <class Job>

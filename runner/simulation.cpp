@@ -47,7 +47,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body)
     : scenario_(scenario),
       warnings_(std::move(body.warnings)),
       world_(scenario::make_world(scenario, std::move(body.mesh), std::move(body.materials),
-                                  std::move(body.surroundings))),
+                                  std::move(body.boundary_conditions))),
       fingerprint_(fingerprint_of(model(), scenario.tools)),
       warned_step_(ledger().initial().stable_step) {
     for (scenario::ScriptedTool& tool : body.tools) {

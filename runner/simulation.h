@@ -50,7 +50,7 @@ class Simulation {
     /// See Model::set_num_threads.
     void set_num_threads(int n) { world_.set_num_threads(n); }
 
-    /// One time step; see the implementation for its phases.
+    /// One time step: World::step_to has its phases.
     void step();
     bool is_finished() const;
     /// Tells the observers of the state at time 0, before the first step.

@@ -65,8 +65,8 @@ std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const si
     return found;
 }
 
-physics::Support build_support(const ConstraintSpec& spec, const topology::Mesh& mesh) {
-    physics::Support support;
+physics::Constraint build_constraint(const ConstraintSpec& spec, const topology::Mesh& mesh) {
+    physics::Constraint support;
     support.name = spec.name;
     support.nodes = physics::NodeSet(
         choose(sim::select_nodes, mesh, spec.where, "constraint '" + spec.name + "'", "node"));
@@ -132,7 +132,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
         fibres[i] = unit(vector);
         if (fibres[i].isZero(0.0))
             throw BodyError(
-                specs[material].place,
+                specs[material].location,
                 cell_vectors.file + ": element " + std::to_string(label) + ", of region " +
                     std::to_string(mesh.region(e)) + ", has " + vector_text(vector) +
                     " in the cell array '" + *array +
@@ -180,9 +180,9 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
         for (const int region : *spec.regions) {
             table.of_region[region] = table.materials.size() - 1;
             if (!present.contains(region))
-                warnings.push_back(placed(spec.regions_place,
-                                          "material " + std::to_string(table.materials.size()) +
-                                              names_region(region, present)));
+                warnings.push_back(located(spec.regions_location,
+                                           "material " + std::to_string(table.materials.size()) +
+                                               names_region(region, present)));
         }
     }
     std::set<int> left;
@@ -205,20 +205,20 @@ namespace {
 
 /// The first few of them: many constraints may hold the same nodes.
 void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
-                    std::span<const physics::Support> supports, BodyProblems& problems) {
+                    std::span<const physics::Constraint> supports, BodyProblems& problems) {
     constexpr std::size_t max_told = 10;
     const auto conflicts = physics::find_conflicts(mesh, supports);
     for (std::size_t i = 0; i < conflicts.size(); ++i) {
-        const std::string& place = scenario.constraints[conflicts[i].second].place;
+        const std::string& location = scenario.constraints[conflicts[i].second].location;
         if (i == max_told) {
             const std::size_t num_left = conflicts.size() - max_told;
-            problems.add(place, "and " + std::to_string(num_left) + " more pair" +
-                                    (num_left > 1 ? "s" : "") +
-                                    " of constraints from here on hold a node in the same "
-                                    "direction; make their selections disjoint");
+            problems.add(location, "and " + std::to_string(num_left) + " more pair" +
+                                       (num_left > 1 ? "s" : "") +
+                                       " of constraints from here on hold a node in the same "
+                                       "direction; make their selections disjoint");
             return;
         }
-        problems.add(place, describe(conflicts[i], mesh, supports));
+        problems.add(location, describe(conflicts[i], mesh, supports));
     }
 }
 
@@ -231,48 +231,51 @@ void warn_of_missing_regions(const Scenario& scenario, const topology::Mesh& mes
         if (!spec.where.regions || std::ranges::none_of(*spec.where.regions, is_present)) return;
         for (const int region : *spec.where.regions)
             if (!is_present(region))
-                warnings.push_back(placed(
-                    spec.place, kind + " '" + spec.name + "'" + names_region(region, present)));
+                warnings.push_back(located(
+                    spec.location, kind + " '" + spec.name + "'" + names_region(region, present)));
     };
     for (const ConstraintSpec& spec : scenario.constraints) warn(spec, "constraint");
     for (const LoadSpec& spec : scenario.loads) warn(spec, "load");
 }
 
-physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh,
-                                         BodyProblems& problems) {
-    physics::Surroundings surroundings;
-    surroundings.gravity = scenario.dynamics.gravity;
-    surroundings.damping = scenario.dynamics.damping;
+physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
+                                                      const topology::Mesh& mesh,
+                                                      BodyProblems& problems) {
+    physics::BoundaryConditions boundary_conditions;
+    boundary_conditions.gravity = scenario.dynamics.gravity;
+    boundary_conditions.damping = scenario.dynamics.damping;
     for (const ConstraintSpec& spec : scenario.constraints)
-        surroundings.supports.push_back(
-            problems.try_to(spec.place, [&] { return build_support(spec, mesh); }));
+        boundary_conditions.constraints.push_back(
+            problems.try_to(spec.location, [&] { return build_constraint(spec, mesh); }));
     for (const LoadSpec& spec : scenario.loads)
-        surroundings.loads.push_back(
-            problems.try_to(spec.place, [&] { return build_load(spec, mesh); }));
-    tell_conflicts(scenario, mesh, surroundings.supports, problems);
-    return surroundings;
+        boundary_conditions.loads.push_back(
+            problems.try_to(spec.location, [&] { return build_load(spec, mesh); }));
+    tell_conflicts(scenario, mesh, boundary_conditions.constraints, problems);
+    return boundary_conditions;
 }
 
 }  // namespace
 
-physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh) {
+physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
+                                                      const topology::Mesh& mesh) {
     BodyProblems problems;
-    physics::Surroundings surroundings = build_surroundings(scenario, mesh, problems);
+    physics::BoundaryConditions boundary_conditions =
+        build_boundary_conditions(scenario, mesh, problems);
     problems.throw_if_any();
-    return surroundings;
+    return boundary_conditions;
 }
 
 namespace {
 
 /// The material that the region has or would have; without any, of none.
-std::string place_of_material(const Scenario& scenario, int region) {
+std::string location_of_material(const Scenario& scenario, int region) {
     const MaterialSpec* found = nullptr;
     for (const MaterialSpec& spec : scenario.materials) {
         const bool names_it =
             spec.regions && std::ranges::find(*spec.regions, region) != spec.regions->end();
         if (names_it || (!spec.regions && !found)) found = &spec;
     }
-    return found ? found->place : "";
+    return found ? found->location : "";
 }
 
 /// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
@@ -300,20 +303,20 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
     for (ToolSpec spec : scenario.tools) {
         bool suits_mesh = false;
         if (mesh)
-            problems.try_to(spec.place, [&] {
+            problems.try_to(spec.location, [&] {
                 spec = with_mode(spec, *mesh);
                 suits_mesh = true;
             });
         const auto* cut = std::get_if<CutSpec>(&spec.kind);
-        problems.try_to(cut ? cut->place : spec.place, [&] {
+        problems.try_to(cut ? cut->location : spec.location, [&] {
             tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
                 require_divisible(tools.back(), *mesh, end_time);
                 if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
-                    warnings.push_back(placed(spec.place, *near));
+                    warnings.push_back(located(spec.location, *near));
             }
             if (mesh && !spec.path.empty() && !may_meet(tools.back(), body))
-                idle.push_back(placed(spec.place, out_of_reach(tools.back(), body)));
+                idle.push_back(located(spec.location, out_of_reach(tools.back(), body)));
         });
     }
     warnings.insert(warnings.end(), idle.begin(), idle.end());
@@ -324,7 +327,7 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
 struct Parts {
     std::optional<SourceMesh> source;
     std::optional<physics::MaterialTable> materials;
-    physics::Surroundings surroundings;
+    physics::BoundaryConditions boundary_conditions;
     std::vector<ScriptedTool> tools;
     std::vector<std::string> warnings;
     BodyProblems problems;
@@ -339,21 +342,21 @@ Parts build_parts(const Scenario& scenario) {
     Parts parts;
     BodyProblems& problems = parts.problems;
     if (is_known(scenario.mesh))
-        parts.source = problems.try_to(scenario.mesh.place, [&] {
+        parts.source = problems.try_to(scenario.mesh.location, [&] {
             return std::optional(build_mesh(scenario.mesh, scenario.materials));
         });
     const topology::Mesh* mesh = parts.source ? &parts.source->mesh : nullptr;
     if (mesh) {
         parts.warnings = std::move(parts.source->warnings);
         if (!scenario.materials.empty())
-            parts.materials = problems.try_to(scenario.materials.front().place, [&] {
+            parts.materials = problems.try_to(scenario.materials.front().location, [&] {
                 return std::optional(
                     build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
             });
         if (scenario.dynamics.precision == physics::Precision::single_precision)
             if (const auto warning = sim::warning_of_thin_elements(*mesh))
-                parts.warnings.push_back(placed(scenario.dynamics.precision_place, *warning));
-        parts.surroundings = build_surroundings(scenario, *mesh, problems);
+                parts.warnings.push_back(located(scenario.dynamics.precision_location, *warning));
+        parts.boundary_conditions = build_boundary_conditions(scenario, *mesh, problems);
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }
     parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
@@ -373,24 +376,25 @@ void check_model(const Scenario& scenario, Parts& parts) {
 
 physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
-                          physics::Surroundings surroundings) {
+                          physics::BoundaryConditions boundary_conditions) {
     try {
-        return physics::Model(mesh, materials, std::move(surroundings));
+        return physics::Model(mesh, materials, std::move(boundary_conditions));
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(place_of_material(scenario, error.region), error.what());
+        throw BodyError(location_of_material(scenario, error.region), error.what());
     }
 }
 
 sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
-                      physics::MaterialTable materials, physics::Surroundings surroundings) {
+                      physics::MaterialTable materials,
+                      physics::BoundaryConditions boundary_conditions) {
     const DynamicsSpec& dynamics = scenario.dynamics;
     sim::WorldDef def{std::move(mesh), std::move(materials.materials),
                       std::move(materials.of_region), std::move(materials.fibres),
                       materials.precision};
-    def.gravity = surroundings.gravity;
-    def.damping = surroundings.damping;
-    def.constraints = std::move(surroundings.supports);
-    def.loads = std::move(surroundings.loads);
+    def.gravity = boundary_conditions.gravity;
+    def.damping = boundary_conditions.damping;
+    def.constraints = std::move(boundary_conditions.constraints);
+    def.loads = std::move(boundary_conditions.loads);
     if (dynamics.mode == Mode::statics)
         def.solver = sim::Solver::statics;
     else if (dynamics.integrator == TimeIntegrator::implicit_euler)
@@ -398,7 +402,7 @@ sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
     try {
         return sim::World(std::move(def));
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(place_of_material(scenario, error.region), error.what());
+        throw BodyError(location_of_material(scenario, error.region), error.what());
     }
 }
 
@@ -411,7 +415,8 @@ Body build_body(const Scenario& scenario) {
     if (!parts.source || !parts.materials)
         throw InputError("a scenario needs a mesh and a material");
     return {std::move(parts.source->mesh), std::move(*parts.materials),
-            std::move(parts.surroundings), std::move(parts.tools), std::move(parts.warnings)};
+            std::move(parts.boundary_conditions), std::move(parts.tools),
+            std::move(parts.warnings)};
 }
 
 BodyFindings check_body(const Scenario& scenario) {

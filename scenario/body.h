@@ -25,24 +25,26 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
 
 /// Gravity, damping, supports and loads. Throws BodyError with all empty selections and supports
 /// that hold the same.
-physics::Surroundings build_surroundings(const Scenario& scenario, const topology::Mesh& mesh);
+physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
+                                                      const topology::Mesh& mesh);
 
 /// The model of it. Throws BodyError if a material does not suit its elements.
 physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
-                          physics::Surroundings surroundings);
+                          physics::BoundaryConditions boundary_conditions);
 
 /// The world of it, without tools. Throws as make_model.
 sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
-                      physics::MaterialTable materials, physics::Surroundings surroundings);
+                      physics::MaterialTable materials,
+                      physics::BoundaryConditions boundary_conditions);
 
 /// What a scenario describes, at rest.
 struct Body {
     topology::Mesh mesh;
     physics::MaterialTable materials;
-    physics::Surroundings surroundings;
+    physics::BoundaryConditions boundary_conditions;
     std::vector<ScriptedTool> tools;
-    std::vector<std::string> warnings;  ///< with the place or file in front
+    std::vector<std::string> warnings;  ///< with the location or file in front
 };
 
 /// Throws BodyError with all that is at fault: mesh, materials, selections, tools, the time step;

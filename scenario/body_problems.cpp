@@ -23,12 +23,12 @@ std::vector<std::string> prefixed_lines(const std::string& prefix, const std::st
     return lines;
 }
 
-std::string placed(const std::string& place, const std::string& text) {
-    return place.empty() ? text : joined(prefixed_lines(place + ": ", text));
+std::string located(const std::string& location, const std::string& text) {
+    return location.empty() ? text : joined(prefixed_lines(location + ": ", text));
 }
 
-void BodyProblems::add(const std::string& place, const std::string& text) {
-    for (std::string& line : prefixed_lines("", placed(place, text)))
+void BodyProblems::add(const std::string& location, const std::string& text) {
+    for (std::string& line : prefixed_lines("", located(location, text)))
         lines_.push_back(std::move(line));
 }
 

@@ -13,37 +13,37 @@ namespace incise::scenario {
 std::vector<std::string> prefixed_lines(const std::string& prefix, const std::string& text);
 
 /// The same as one text. Without prefix the text itself.
-std::string placed(const std::string& place, const std::string& text);
+std::string located(const std::string& location, const std::string& text);
 
 /// A line for each problem, complete in itself: "FILE:line:column: text".
 struct BodyError : InputError {
     using InputError::InputError;
-    /// @param place  "FILE:line:column", or empty for a scenario that comes from no file
-    BodyError(const std::string& place, const std::string& text)
-        : InputError(placed(place, text)) {}
+    /// @param location  "FILE:line:column", or empty for a scenario that comes from no file
+    BodyError(const std::string& location, const std::string& text)
+        : InputError(located(location, text)) {}
 
     std::vector<std::string> warnings;  ///< what was found odd besides
 };
 
 class BodyProblems {
   public:
-    /// Returns build(). If it throws InputError, notes that what stands at `place` is at fault, and
-    /// returns an empty value; a BodyError and a PhysicsError know their own place.
+    /// Returns build(). If it throws InputError, notes that what stands at `location` is at fault,
+    /// and returns an empty value; a BodyError and a PhysicsError know their own location.
     template <class Build>
-    auto try_to(const std::string& place, Build build) -> decltype(build()) {
+    auto try_to(const std::string& location, Build build) -> decltype(build()) {
         try {
             return build();
         } catch (const BodyError& error) {
             add("", error.what());
         } catch (const InputError& error) {
-            add(place, error.what());
+            add(location, error.what());
         } catch (const PhysicsError& error) {
             add("", error.what());
         }
         return decltype(build())();
     }
 
-    void add(const std::string& place, const std::string& text);
+    void add(const std::string& location, const std::string& text);
 
     bool are_there() const { return !lines_.empty(); }
     const std::vector<std::string>& lines() const { return lines_; }

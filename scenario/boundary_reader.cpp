@@ -114,7 +114,7 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
     for (const auto& constraint : root.tables("constraint", {constraint_keys})) {
         ConstraintSpec spec;
         spec.name = read_name(constraint, "constraint_" + std::to_string(++number), names);
-        spec.place = constraint.place_text("where");
+        spec.location = constraint.location_text("where");
         constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
         spec.where = read_selection(constraint);
         spec.fixed = read_axes(constraint);
@@ -135,7 +135,7 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
     for (const auto& load : root.tables("load", {load_keys})) {
         LoadSpec spec;
         spec.name = read_name(load, "load_" + std::to_string(++number), names);
-        spec.place = load.place_text("where");
+        spec.location = load.location_text("where");
         spec.where = read_selection(load);
         const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
         if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};

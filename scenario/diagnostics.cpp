@@ -37,13 +37,14 @@ std::string about_key(std::string_view path, std::string_view text) {
 
 }  // namespace
 
-void Diagnostics::key_error(const Place& place, std::string_view path, std::string_view text) {
-    errors_.push_back({place, about_key(path, text), std::string(path)});
+void Diagnostics::key_error(const SourceLocation& location, std::string_view path,
+                            std::string_view text) {
+    errors_.push_back({location, about_key(path, text), std::string(path)});
 }
 
-void Diagnostics::unknown_key_error(const Place& place, std::string_view path,
+void Diagnostics::unknown_key_error(const SourceLocation& location, std::string_view path,
                                     std::string_view text) {
-    errors_.push_back({place, about_key(path, text), {}});
+    errors_.push_back({location, about_key(path, text), {}});
 }
 
 bool Diagnostics::has_errors_at(std::string_view path) const {
@@ -54,21 +55,22 @@ bool Diagnostics::has_errors_at(std::string_view path) const {
 
 std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) const {
     std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-        const auto key = [](const Place& p) {
+        const auto key = [](const SourceLocation& p) {
             return std::tuple(p.override_number, p.line, p.column);
         };
-        return key(a.place) < key(b.place);
+        return key(a.location) < key(b.location);
     });
     std::vector<std::string> texts;
-    for (const auto& [place, text, path] : findings) texts.push_back(text_of(place) + ": " + text);
+    for (const auto& [location, text, path] : findings)
+        texts.push_back(text_of(location) + ": " + text);
     return texts;
 }
 
-std::string Diagnostics::text_of(const Place& place) const {
-    if (place.override_number >= 0)
-        return "--set " + overrides_[static_cast<std::size_t>(place.override_number)];
-    if (place.line == 0) return file_;
-    return file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+std::string Diagnostics::text_of(const SourceLocation& location) const {
+    if (location.override_number >= 0)
+        return "--set " + overrides_[static_cast<std::size_t>(location.override_number)];
+    if (location.line == 0) return file_;
+    return file_ + ":" + std::to_string(location.line) + ":" + std::to_string(location.column);
 }
 
 bool is_at_or_below(std::string_view path, std::string_view owner) {

@@ -17,22 +17,23 @@ class Diagnostics {
     Diagnostics(std::string file, std::span<const std::string> overrides)
         : file_(std::move(file)), overrides_(overrides.begin(), overrides.end()) {}
 
-    void error(const Place& place, std::string text) {
-        errors_.push_back({place, std::move(text), {}});
+    void error(const SourceLocation& location, std::string text) {
+        errors_.push_back({location, std::move(text), {}});
     }
     /// "key 'PATH': TEXT"
-    void key_error(const Place& place, std::string_view path, std::string_view text);
+    void key_error(const SourceLocation& location, std::string_view path, std::string_view text);
     /// The same of a key that is not known, and so says nothing of the rest: has_errors_at() does
     /// not count it.
-    void unknown_key_error(const Place& place, std::string_view path, std::string_view text);
+    void unknown_key_error(const SourceLocation& location, std::string_view path,
+                           std::string_view text);
     /// Tells nothing, but has_errors_at() counts it.
     void untold_error(std::string path) { untold_.push_back(std::move(path)); }
-    void warning(const Place& place, std::string text) {
-        warnings_.push_back({place, std::move(text), {}});
+    void warning(const SourceLocation& location, std::string text) {
+        warnings_.push_back({location, std::move(text), {}});
     }
 
     /// "FILE:line:column", or "--set OVERRIDE".
-    std::string text_of(const Place& place) const;
+    std::string text_of(const SourceLocation& location) const;
 
     bool has_errors() const { return !errors_.empty(); }
     /// Whether the key of any error is `path` or below it, or is of an element of it.
@@ -44,7 +45,7 @@ class Diagnostics {
 
   private:
     struct Finding {
-        Place place;
+        SourceLocation location;
         std::string text;
         std::string path;  // of the key, if it is about one
     };

@@ -38,7 +38,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t i) {
     return std::min(i + (i < text.size() && text[i] == quote ? 1 : 0), text.size());
 }
 
-/// Throws DocumentError for a key of more than max_key_parts parts. The place is that of an
+/// Throws DocumentError for a key of more than max_key_parts parts. The location is that of an
 /// override, or else the line.
 void require_flat_keys(std::string_view text, int override_number) {
     constexpr std::string_view parts_of_keys =
@@ -71,22 +71,22 @@ void require_flat_keys(std::string_view text, int override_number) {
     }
 }
 
-Place place_of(const toml::source_region& region, int override_number) {
+SourceLocation place_of(const toml::source_region& region, int override_number) {
     if (override_number >= 0) return {0, 0, override_number};
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), -1};
 }
 
 Value convert(const toml::node& node, int override_number) {
     Value value;
-    value.place = place_of(node.source(), override_number);
+    value.location = place_of(node.source(), override_number);
     if (const auto* table = node.as_table()) {
         Table entries;
         for (const auto& [key, child] : *table)
             entries.push_back({std::string(key.str()), place_of(key.source(), override_number),
                                convert(child, override_number)});
         std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-            return std::pair(a.place.line, a.place.column) <
-                   std::pair(b.place.line, b.place.column);
+            return std::pair(a.location.line, a.location.column) <
+                   std::pair(b.location.line, b.location.column);
         });
         value.data = std::move(entries);
     } else if (const auto* array = node.as_array()) {
@@ -122,11 +122,11 @@ std::optional<std::size_t> as_index(std::string_view text) {
 }
 
 /// Splits at dots and brackets: "material[0].young" and "material.0.young" are the same.
-std::vector<Step> split_path(std::string_view path, const Place& place) {
+std::vector<Step> split_path(std::string_view path, const SourceLocation& location) {
     const auto malformed = [&] {
-        return DocumentError{place, in_quotes(path) +
-                                        " is not a path: write it like dynamics.end_time or "
-                                        "material[0].young"};
+        return DocumentError{location, in_quotes(path) +
+                                           " is not a path: write it like dynamics.end_time or "
+                                           "material[0].young"};
     };
     std::vector<Step> steps;
     std::size_t begin = 0;
@@ -165,48 +165,48 @@ std::string why_no_element(const Table& table, const std::string& key, std::size
 /// The value that `step` leads to; a table that lacks the key gets it, unless an element of it is
 /// `next`, the step that follows if any.
 Value& descend(Value& value, const Step& step, const Step* next, const std::string& path,
-               const Place& place) {
+               const SourceLocation& location) {
     if (auto* array = std::get_if<Array>(&value.data)) {
         if (!step.index)
-            throw DocumentError{place, in_quotes(path) +
-                                           " is an array: go on with the number of an "
-                                           "element, as in " +
-                                           path + "[0]"};
+            throw DocumentError{location, in_quotes(path) +
+                                              " is an array: go on with the number of an "
+                                              "element, as in " +
+                                              path + "[0]"};
         if (*step.index >= array->size())
-            throw DocumentError{place, in_quotes(path) + " has no element " +
-                                           std::to_string(*step.index) + ": it has " +
-                                           std::to_string(array->size()) +
-                                           (array->empty() ? "" : ", numbered from 0")};
+            throw DocumentError{location, in_quotes(path) + " has no element " +
+                                              std::to_string(*step.index) + ": it has " +
+                                              std::to_string(array->size()) +
+                                              (array->empty() ? "" : ", numbered from 0")};
         return (*array)[*step.index];
     }
     auto* table = std::get_if<Table>(&value.data);
     if (table == nullptr)
-        throw DocumentError{
-            place, in_quotes(path) + " is " + value.description() + ": there is nothing below it"};
+        throw DocumentError{location, in_quotes(path) + " is " + value.description() +
+                                          ": there is nothing below it"};
     if (step.key.empty())
-        throw DocumentError{place, in_quotes(path) +
-                                       " is a table, not an array: it has keys, no [" +
-                                       std::to_string(*step.index) + "]"};
+        throw DocumentError{location, in_quotes(path) +
+                                          " is a table, not an array: it has keys, no [" +
+                                          std::to_string(*step.index) + "]"};
     for (auto& entry : *table)
         if (entry.key == step.key) return entry.value;
     if (next && next->key.empty())
-        throw DocumentError{place, why_no_element(*table, step.key, *next->index, path)};
-    return table->emplace_back(Entry{step.key, place, Value{Table{}, place}}).value;
+        throw DocumentError{location, why_no_element(*table, step.key, *next->index, path)};
+    return table->emplace_back(Entry{step.key, location, Value{Table{}, location}}).value;
 }
 
 Value parse_override_value(std::string_view text, int number) {
-    const Place place{0, 0, number};
+    const SourceLocation location{0, 0, number};
     const bool is_one_line = text.find_first_of("\r\n") == text.npos;
     try {
         const auto parsed = toml::parse("value = " + std::string(text));
         if (is_one_line && parsed.size() == 1) return convert(*parsed.get("value"), number);
     } catch (const toml::parse_error&) {
         if (is_one_line && !text.empty() && text.find_first_of("[]{}\"'=,#") == text.npos)
-            return {std::string(text), place};
+            return {std::string(text), location};
     }
-    throw DocumentError{place, "the value " + in_quotes(text) +
-                                   " is no TOML value: write it as in the file, such as 0.5, "
-                                   "[0, 0, -9.81] or \"text\""};
+    throw DocumentError{location, "the value " + in_quotes(text) +
+                                      " is no TOML value: write it as in the file, such as 0.5, "
+                                      "[0, 0, -9.81] or \"text\""};
 }
 
 /// FNV-1a, 64 bits.
@@ -335,9 +335,10 @@ Value read_document(const std::filesystem::path& file) {
 }
 
 void apply_override(Value& document, std::string_view text, int number) {
-    const Place place{0, 0, number};
+    const SourceLocation location{0, 0, number};
     const auto equals = text.find('=');
-    if (equals == text.npos) throw DocumentError{place, "an override has the form key.path=value"};
+    if (equals == text.npos)
+        throw DocumentError{location, "an override has the form key.path=value"};
     const auto trimmed = [](std::string_view part) {
         while (part.starts_with(' ')) part.remove_prefix(1);
         while (part.ends_with(' ')) part.remove_suffix(1);
@@ -347,12 +348,12 @@ void apply_override(Value& document, std::string_view text, int number) {
     Value changed = document;
     Value* target = &changed;
     std::string path;
-    const auto steps = split_path(trimmed(text.substr(0, equals)), place);
+    const auto steps = split_path(trimmed(text.substr(0, equals)), location);
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const Step& step = steps[i];
         const Step* next = i + 1 < steps.size() ? &steps[i + 1] : nullptr;
         const bool is_element = target->get<Array>() != nullptr || step.key.empty();
-        target = &descend(*target, step, next, path, place);
+        target = &descend(*target, step, next, path, location);
         if (is_element) {
             path.append("[").append(std::to_string(*step.index)).append("]");
         } else {

@@ -13,7 +13,7 @@
 namespace incise::scenario {
 
 /// Where in the input something stands: in the file, or in an override of the command line.
-struct Place {
+struct SourceLocation {
     int line = 0;  ///< from 1; 0: the document as a whole
     int column = 0;
     int override_number = -1;  ///< index of the override, or -1: in the file
@@ -29,7 +29,7 @@ struct DateOrTime {};
 
 struct Value {
     std::variant<bool, std::int64_t, double, std::string, DateOrTime, Array, Table> data;
-    Place place;
+    SourceLocation location;
 
     template <class T>
     const T* get() const {
@@ -41,7 +41,7 @@ struct Value {
 
 struct Entry {
     std::string key;
-    Place place;
+    SourceLocation location;
     Value value;
 };
 
@@ -49,7 +49,7 @@ const Value* find(const Table& table, std::string_view key);
 
 /// A syntax error or an unusable override.
 struct DocumentError {
-    Place place;
+    SourceLocation location;
     std::string text;
 };
 

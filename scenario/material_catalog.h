@@ -1,4 +1,4 @@
-// Methods, laws and elastic parameters that a scenario can name: the one place that lists them.
+// Methods, laws and elastic parameters that a scenario can name: the one location that lists them.
 // The reader checks scenarios against it and `incise materials` prints it.
 // Source of laws and methods: HEML 2015, HybMSS 2020, derived in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later

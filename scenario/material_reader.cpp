@@ -217,8 +217,8 @@ constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
 
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
-    spec.place = material.place_text();
-    spec.regions_place = material.place_text("regions");
+    spec.location = material.location_text();
+    spec.regions_location = material.location_text("regions");
     if (material.has("regions")) {
         const auto regions = material.integers("regions", region_limits, Repeats::refused);
         spec.regions.emplace(regions.begin(), regions.end());

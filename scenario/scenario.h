@@ -43,7 +43,7 @@ struct MeshSpec {
     /// meant to be apart; without, they are told of.
     std::optional<bool> weld = std::nullopt;
     /// For messages: those of the source and of the others.
-    std::string place = {}, scale_place = {}, region_array_place = {};
+    std::string location = {}, scale_location = {}, region_array_location = {};
 };
 
 struct MaterialSpec {
@@ -61,8 +61,8 @@ struct MaterialSpec {
     std::variant<std::monostate, Vec3, std::string> fibre;
     double stiffness_ratio = 1.0;   ///< A of HybMSS, 0 to infinity
     bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
-    std::string place = {};         ///< for messages: FILE:line:column
-    std::string regions_place = {};
+    std::string location = {};      ///< for messages: FILE:line:column
+    std::string regions_location = {};
 };
 
 enum class Mode { dynamic, statics };
@@ -82,7 +82,8 @@ struct DynamicsSpec {
     std::uint64_t seed = 1;
     /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
     physics::Precision precision = physics::Precision::double_precision;
-    std::string end_time_place = {}, time_step_place = {}, precision_place = {};  ///< for messages
+    std::string end_time_location = {}, time_step_location = {},
+                precision_location = {};  ///< for messages
 };
 
 /// Nodes that are held or led: their positions along the fixed axes are those of
@@ -96,7 +97,7 @@ struct ConstraintSpec {
     std::vector<TimeKey<double>> rotate;  ///< radians
     Vec3 about_point = Vec3::Zero();
     Vec3 about_axis = Vec3::UnitZ();  ///< of unit length
-    std::string place = {};           ///< for messages: FILE:line:column
+    std::string location = {};        ///< for messages: FILE:line:column
 };
 
 struct NodalForce {
@@ -118,7 +119,7 @@ struct LoadSpec {
     sim::Selection where;
     std::variant<NodalForce, Traction, Pressure, BodyForce> load;
     std::vector<TimeKey<double>> factor;  ///< empty: 1
-    std::string place = {};               ///< for messages: FILE:line:column
+    std::string location = {};            ///< for messages: FILE:line:column
 };
 
 using cutting::Carver;
@@ -141,7 +142,7 @@ struct CutSpec {
     std::variant<PlaneSpec, std::filesystem::path> along;
     double scale = 1.0;  ///< all coordinates of the surface are multiplied by it
     std::optional<double> snap;
-    std::string place = {};  ///< for messages, of the file's name
+    std::string location = {};  ///< for messages, of the file's name
 };
 
 /// A tool is there from the first to the last key of its path; a cut has one key, its time.
@@ -150,7 +151,7 @@ struct ToolSpec {
     std::variant<Carver, BladeSpec, CutSpec> kind;
     /// At least one key, for a blade two. Empty: not known.
     std::vector<TimeKey<Pose>> path;
-    std::string place = {};  ///< for messages: FILE:line:column
+    std::string location = {};  ///< for messages: FILE:line:column
 };
 
 /// What a frame can hold besides points, rest positions, ids and regions.

@@ -200,9 +200,9 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     mesh->one_of({"file", "box"});
     if (const auto box = mesh->table("box", {mesh_box_keys})) spec.source = read_box_mesh(*box);
     if (mesh->has("file")) spec.source = read_file_name(*mesh, "file", folder, "mesh file");
-    spec.place = mesh->place_text(mesh->has("file") ? "file" : "box");
-    spec.scale_place = mesh->place_text("scale");
-    spec.region_array_place = mesh->place_text("region_array");
+    spec.location = mesh->location_text(mesh->has("file") ? "file" : "box");
+    spec.scale_location = mesh->location_text("scale");
+    spec.region_array_location = mesh->location_text("region_array");
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
     if (mesh->has("weld")) spec.weld = mesh->flag("weld", false);
@@ -217,9 +217,9 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     const auto dynamics = root.table("dynamics", {dynamics_keys});
     if (!dynamics) return spec;
     dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
-    spec.end_time_place = dynamics->place_text("end_time");
-    spec.time_step_place = dynamics->place_text("time_step");
-    spec.precision_place = dynamics->place_text("precision");
+    spec.end_time_location = dynamics->location_text("end_time");
+    spec.time_step_location = dynamics->location_text("time_step");
+    spec.precision_location = dynamics->location_text("precision");
     spec.end_time = dynamics->number("end_time", spec.end_time, limits::positive);
     if (dynamics->is_text("time_step")) {
         if (const auto text = dynamics->text("time_step"); text != "auto")
@@ -288,7 +288,7 @@ std::vector<Expectation> read_expectations(const TableReader& root,
     const std::vector<std::string_view> names(quantities.begin(), quantities.end());
     const auto expect = root.table("expect", {names});
     if (!expect) return expectations;
-    for (const auto& [quantity, value, place] : expect->entries()) {
+    for (const auto& [quantity, value, location] : expect->entries()) {
         const auto range = expect->table(quantity, {expectation_keys});
         if (!range) continue;
         Expectation expectation{quantity, range->number_if_given("min"),
@@ -335,7 +335,7 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
     try {
         io::require_series_name(file.stem().string());
     } catch (const InputError& failure) {
-        diagnostics.error(Place{}, failure.what());
+        diagnostics.error(SourceLocation{}, failure.what());
     }
     try {
         Value document = read_document(file);
@@ -343,15 +343,16 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
             try {
                 apply_override(document, overrides[i], static_cast<int>(i));
             } catch (const DocumentError& failure) {
-                diagnostics.error(failure.place, failure.text);
+                diagnostics.error(failure.location, failure.text);
             }
         }
-        const TableReader root(*document.get<Table>(), Place{}, "", {root_keys}, diagnostics);
+        const TableReader root(*document.get<Table>(), SourceLocation{}, "", {root_keys},
+                               diagnostics);
         report.scenario = read_all(root, file);
         report.scenario.hash = content_hash(document);
         report.scenario.contents = contents_of(document);
     } catch (const DocumentError& failure) {
-        diagnostics.error(failure.place, failure.text);
+        diagnostics.error(failure.location, failure.text);
     } catch (const InputError& failure) {
         report.errors.push_back(failure.what());
         return report;

@@ -29,15 +29,15 @@ std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
 }
 
 /// Throws MemoryError for a box that this machine cannot hold, before it tries and is killed.
-void require_memory_for(const BoxMeshSpec& box, const std::string& place) {
+void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
     const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
     const double bytes_per_element = is_tetrahedra ? 1200.0 : 2500.0;  // map, arrays, elements
     const double elements = (is_tetrahedra ? 6.0 : 1.0) * box.cells[0] *
                             static_cast<double>(box.cells[1]) * box.cells[2];
     if (const auto lack = io::lack_of_memory(bytes_per_element * elements))
-        throw MemoryError(placed(place, "key 'mesh.box.cells': makes " +
-                                            io::format_number(elements) + " elements: that " +
-                                            *lack + "; use fewer cells"));
+        throw MemoryError(located(location, "key 'mesh.box.cells': makes " +
+                                                io::format_number(elements) + " elements: that " +
+                                                *lack + "; use fewer cells"));
 }
 
 /// The points and cells that the scenario names, welded if it says so, and scaled.
@@ -53,7 +53,7 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         return file;
     }
     const auto& box = std::get<BoxMeshSpec>(spec.source);
-    require_memory_for(box, spec.place);
+    require_memory_for(box, spec.location);
     return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
 }
 
@@ -75,7 +75,7 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         MeshSpec usual = spec;
         usual.region_array = io::ReadOptions::usual_region_array;
         if (spec.region_array == usual.region_array || !can_load(usual, materials)) throw;
-        throw BodyError(spec.region_array_place, error.what());
+        throw BodyError(spec.region_array_location, error.what());
     }
 }
 
@@ -109,17 +109,17 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
                 {path ? path->string() : "", std::move(file.cell_vectors)}};
     } catch (const InputError& error) {
         if (spec.scale != 1.0 && topology::check(load_mesh(spec, {}, 1.0).mesh).errors.empty())
-            throw BodyError(spec.scale_place,
+            throw BodyError(spec.scale_location,
                             "key 'mesh.scale': " + io::format_number(spec.scale) +
                                 " makes the mesh too " + (spec.scale > 1.0 ? "large" : "small") +
                                 " to compute with, which without it is sound: use a " +
                                 (spec.scale > 1.0 ? "smaller" : "larger") + " one");
         if (!path)
-            throw BodyError(spec.place,
+            throw BodyError(spec.location,
                             what_is_wrong_with(std::get<BoxMeshSpec>(spec.source), spec.scale));
         BodyProblems problems;
         for (const std::string& line : prefixed_lines(prefix, error.what()))
-            problems.add(spec.place, line);
+            problems.add(spec.location, line);
         problems.throw_if_any();
         throw;
     }

@@ -17,7 +17,7 @@ namespace {
          << stable << " s";
     if (num_steps > 0) text << " that the edits have left";
     text << ": use a smaller one, or time_step = \"auto\"";
-    throw PhysicsError(placed(num_steps == 0 ? dynamics.time_step_place : "", text.str()));
+    throw PhysicsError(located(num_steps == 0 ? dynamics.time_step_location : "", text.str()));
 }
 
 [[noreturn]] void refuse_endless(const DynamicsSpec& dynamics, double limit,
@@ -32,7 +32,7 @@ namespace {
              << model.mesh().label(model.limiting_element())
              << ", which is the smallest or stiffest for its mass";
     if (num_steps > 0) throw PhysicsError(text.str());  // edits have left such an element
-    throw BodyError(dynamics.time_step ? dynamics.time_step_place : dynamics.end_time_place,
+    throw BodyError(dynamics.time_step ? dynamics.time_step_location : dynamics.end_time_location,
                     text.str());
 }
 

@@ -13,7 +13,7 @@ namespace incise::scenario {
 /// @param num_steps  done already
 /// Throws PhysicsError for a fixed step above the stable one, and BodyError for steps so short that
 /// the run would never end, PhysicsError if only the edits of a run have made them so. Before the
-/// first step both begin with the place of what is at fault.
+/// first step both begin with the location of what is at fault.
 double step_limit(const Scenario& scenario, const physics::Model& model,
                   std::uint64_t num_steps = 0);
 

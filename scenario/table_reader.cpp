@@ -34,16 +34,16 @@ std::optional<std::string> complaint(std::string_view name, const Names& names) 
     return text_of_unknown(nearest(name, names.supported), names);
 }
 
-TableReader::TableReader(const Table& table, const Place& place, std::string path,
+TableReader::TableReader(const Table& table, const SourceLocation& location, std::string path,
                          const Names& keys, Diagnostics& diagnostics)
-    : table_(table), place_(place), path_(std::move(path)), diagnostics_(diagnostics) {
+    : table_(table), place_(location), path_(std::move(path)), diagnostics_(diagnostics) {
     std::vector<std::string_view> likely(keys.supported.begin(), keys.supported.end());
     std::stable_partition(likely.begin(), likely.end(),
                           [&](std::string_view key) { return !find(table_, key); });
     for (const auto& entry : table_) {
         if (std::ranges::find(likely, entry.key) != likely.end()) continue;
         const std::string_view meant = nearest(entry.key, likely);
-        diagnostics_.unknown_key_error(entry.place, path_of(entry.key),
+        diagnostics_.unknown_key_error(entry.location, path_of(entry.key),
                                        text_of_unknown(meant, keys));
         if (is_misspelt(entry.key, meant)) misspelt_.emplace_back(meant, &entry.value);
     }
@@ -139,7 +139,7 @@ std::vector<std::int64_t> TableReader::integers(std::string_view key, const Inte
         if (!number) return;
         result.push_back(*number);
         if (repeats == Repeats::refused && !before.insert(*number).second)
-            report(element.place, path, std::to_string(*number) + " is there twice");
+            report(element.location, path, std::to_string(*number) + " is there twice");
     };
     if (const auto* values = value->get<Array>()) {
         for (std::size_t i = 0; i < values->size(); ++i)
@@ -178,14 +178,14 @@ std::vector<std::size_t> TableReader::choices(std::string_view key, const Names&
         if (name == nullptr) {
             report_type(value, path, "text in quotes");
         } else if (const auto wrong = complaint(*name, names)) {
-            report(value.place, path, in_quotes(*name) + ": " + *wrong);
+            report(value.location, path, in_quotes(*name) + ": " + *wrong);
         } else {
             const auto found = std::find(names.supported.begin(), names.supported.end(), *name);
             const auto index = static_cast<std::size_t>(found - names.supported.begin());
             if (std::find(result.begin(), result.end(), index) == result.end())
                 result.push_back(index);
             else
-                report(value.place, path, in_quotes(*name) + " is there twice");
+                report(value.location, path, in_quotes(*name) + " is there twice");
         }
     }
     return result;
@@ -201,7 +201,7 @@ std::optional<TableReader> TableReader::table(std::string_view key, const Names&
         if (elements != nullptr && !elements->empty()) entries = elements->front().get<Table>();
     }
     if (entries == nullptr) return std::nullopt;
-    return TableReader(*entries, value->place, path_of(key), keys, diagnostics_);
+    return TableReader(*entries, value->location, path_of(key), keys, diagnostics_);
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key, const Names& keys) const {
@@ -210,7 +210,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key, const Names& 
     const auto add = [&](const Value& value) {
         const std::string path = element_path(path_of(key), num_elements++);
         if (const auto* entries = value.get<Table>())
-            result.emplace_back(*entries, value.place, path, keys, diagnostics_);
+            result.emplace_back(*entries, value.location, path, keys, diagnostics_);
         else
             report_type(value, path, "a table");
     };
@@ -252,12 +252,12 @@ std::string TableReader::path_of(std::string_view key) const {
     return path_ + "." + std::string(key);
 }
 
-const Place& TableReader::place_of(std::string_view key) const {
+const SourceLocation& TableReader::place_of(std::string_view key) const {
     const Value* value = value_of(key);
-    return value != nullptr ? value->place : place_;
+    return value != nullptr ? value->location : place_;
 }
 
-std::string TableReader::place_text(std::string_view key) const {
+std::string TableReader::location_text(std::string_view key) const {
     return diagnostics_.text_of(place_of(key));
 }
 
@@ -290,7 +290,7 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
     }
     if (limits.contains(number)) return number;
     const char* finite = std::isinf(number) && limits.excludes_infinity() ? "finite, " : "";
-    report(value.place, path,
+    report(value.location, path,
            io::format_number(number) + " is not allowed: must be " + finite + limits.text());
     return std::nullopt;
 }
@@ -303,7 +303,7 @@ std::optional<std::int64_t> TableReader::integer_of(const Value& value, const st
         return std::nullopt;
     }
     if (*integer >= limits.low && *integer <= limits.high) return *integer;
-    report(value.place, path,
+    report(value.location, path,
            std::to_string(*integer) + " is not allowed: must be " + text_of(limits));
     return std::nullopt;
 }
@@ -326,15 +326,16 @@ std::optional<Vec3> TableReader::vector_of(const Value& value, const std::string
 
 void TableReader::report_type(const Value& value, const std::string& path,
                               std::string_view wanted) const {
-    report(value.place, path, "must be " + std::string(wanted) + ", but is " + value.description());
+    report(value.location, path,
+           "must be " + std::string(wanted) + ", but is " + value.description());
 }
 
-void TableReader::report(const Place& place, const std::string& path,
+void TableReader::report(const SourceLocation& location, const std::string& path,
                          const std::string& text) const {
     if (is_guess(path))
         diagnostics_.untold_error(path);
     else
-        diagnostics_.key_error(place, path, text);
+        diagnostics_.key_error(location, path, text);
 }
 
 bool TableReader::is_guess(std::string_view path) const {

@@ -1,5 +1,5 @@
 // Checked reading of one table of a document: types, ranges, names and unknown keys.
-// Each problem is reported with its place and the key's full path, and reading goes on.
+// Each problem is reported with its location and the key's full path, and reading goes on.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -44,8 +44,8 @@ class TableReader {
     /// then read as that, so that what follows from it is not missed. If that does not suit its
     /// value, the guess was most likely wrong: then nothing more is told of it. All references must
     /// outlive the reader.
-    TableReader(const Table& table, const Place& place, std::string path, const Names& keys,
-                Diagnostics& diagnostics);
+    TableReader(const Table& table, const SourceLocation& location, std::string path,
+                const Names& keys, Diagnostics& diagnostics);
 
     bool has(std::string_view key) const { return value_of(key) != nullptr; }
     bool is_text(std::string_view key) const;
@@ -75,7 +75,7 @@ class TableReader {
     /// reported, the first.
     std::optional<TableReader> table(std::string_view key, const Names& keys) const;
     /// The tables of the array below `key`; with those elements left out that are none. A table in
-    /// place of the array, which is reported, counts as an array of one. Of the document's own
+    /// location of the array, which is reported, counts as an array of one. Of the document's own
     /// arrays those with misspelt headings follow the others.
     std::vector<TableReader> tables(std::string_view key, const Names& keys) const;
 
@@ -85,9 +85,9 @@ class TableReader {
     /// The path of a key, such as "material[1].poisson"; of the table itself without key.
     std::string path_of(std::string_view key = {}) const;
     /// Where the key's value stands, or the table if there is none.
-    const Place& place_of(std::string_view key = {}) const;
+    const SourceLocation& place_of(std::string_view key = {}) const;
     /// The same for messages: "FILE:line:column".
-    std::string place_text(std::string_view key = {}) const;
+    std::string location_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
     /// Whether nothing has been reported of the key, or of the table without key, but keys that are
     /// not known.
@@ -112,12 +112,13 @@ class TableReader {
                                            const IntegerLimits& limits) const;
     std::optional<Vec3> vector_of(const Value& value, const std::string& path) const;
     /// Reports "key 'PATH': TEXT" of a key of the table or what is below it.
-    void report(const Place& place, const std::string& path, const std::string& text) const;
+    void report(const SourceLocation& location, const std::string& path,
+                const std::string& text) const;
     void report_type(const Value& value, const std::string& path, std::string_view wanted) const;
 
     const Table& table_;
     std::vector<std::pair<std::string_view, const Value*>> misspelt_;  // by the key that was meant
-    Place place_;
+    SourceLocation place_;
     std::string path_;
     Diagnostics& diagnostics_;
 };

@@ -91,7 +91,7 @@ CutSpec read_cut(const TableReader& tool, std::optional<double> snap,
         plane->require("normal", "across the plane, as in normal = [1, 0, 0]");
         cut.along = PlaneSpec{plane->vector("point"), plane->direction("normal", Vec3::UnitZ())};
     }
-    cut.place = tool.place_text("surface");
+    cut.location = tool.location_text("surface");
     if (tool.has("surface")) {
         auto file = read_file_name(tool, "surface", folder, "surface file (STL, OBJ, PLY or OFF)");
         if (tool.is_sound("surface")) cut.along = std::move(file);
@@ -160,7 +160,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         const Keys kind = index ? kinds[*index] : Keys();  // empty: not known
         const auto may_be = [&](Keys one) { return kind.empty() || kind == one; };
         ToolSpec spec;
-        spec.place = tool.place_text();
+        spec.location = tool.location_text();
         const std::string usual_name =
             index ? std::string(kind) + "_" + std::to_string(++counts[*index]) : "";
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);

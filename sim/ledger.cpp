@@ -56,7 +56,7 @@ Ledger::Ledger(const physics::Model& model)
       counts_(count()),
       pieces_(model.mesh()),
       initial_min_altitude_(least_altitude(model.mesh())),
-      initial_(account()),
+      initial_(body_totals()),
       last_(initial_) {}
 
 Ledger::Counts Ledger::count() const {
@@ -64,7 +64,7 @@ Ledger::Counts Ledger::count() const {
     return {mesh.num_nodes(), mesh.num_elements()};
 }
 
-Account Ledger::account() const {
+BodyTotals Ledger::body_totals() const {
     const auto reactions = model_.reactions();
     return {counts_.nodes,
             counts_.elements,
@@ -78,7 +78,8 @@ Account Ledger::account() const {
 }
 
 EditRecord Ledger::record(double time, std::uint64_t step, const std::string& tool,
-                          const cutting::Split& done, const Account& before, double mass_removed) {
+                          const cutting::Split& done, const BodyTotals& before,
+                          double mass_removed) {
     const topology::ChangeSet& changes = done.changes;
     const Divided divided = divided_elements(model_.mesh(), changes);
     EditRecord edit;
@@ -102,8 +103,8 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     counts_ = count();
     pieces_.apply(model_.mesh(), changes);
     assert(pieces_.value() == topology::components(model_.mesh()).count);
-    edit.after = last_ = account();
-    const auto energy = [](const Account& a) {
+    edit.after = last_ = body_totals();
+    const auto energy = [](const BodyTotals& a) {
         return a.totals.kinetic_energy + a.totals.elastic_energy;
     };
     ++num_edits_;

@@ -10,13 +10,13 @@
 #include "incise/cutting/exact/splitter.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/component_count.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/piece_count.h"
 
 namespace incise::sim {
 
 /// The body at one moment.
-struct Account {
+struct BodyTotals {
     std::size_t nodes = 0, elements = 0;
     int components = 0;
     physics::Totals totals;
@@ -49,7 +49,7 @@ struct EditRecord {
     /// Least altitude of the elements that were divided and of those that came of it, over the
     /// least of the mesh at the start; not a number if none were.
     double min_altitude_ratio = std::numeric_limits<double>::quiet_NaN();
-    Account before, after;
+    BodyTotals before, after;
     static void archive(auto& ar, auto& self) {
         ar(self.time, self.step, self.tool, self.elements_removed, self.elements_crossed,
            self.elements_split, self.elements_added, self.faces_opened, self.nodes_added,
@@ -65,16 +65,16 @@ class Ledger {
 
     /// The body as the model has it, edits counted up to the last one booked: between an edit of
     /// the mesh and the model's following it, the body of before. Cost: O(#nodes + #elements).
-    Account account() const;
+    BodyTotals body_totals() const;
     /// The body after the last edit; at the start if there was none.
-    const Account& last() const { return last_; }
+    const BodyTotals& last() const { return last_; }
     /// Books an edit; called after the model has followed it. Returns its record.
     EditRecord record(double time, std::uint64_t step, const std::string& tool,
-                      const cutting::Split& done, const Account& before, double mass_removed);
+                      const cutting::Split& done, const BodyTotals& before, double mass_removed);
 
     std::size_t num_edits() const { return num_edits_; }
 
-    const Account& initial() const { return initial_; }
+    const BodyTotals& initial() const { return initial_; }
 
     /// |mass now + mass removed - mass at the start| over that at the start.
     double mass_error() const;
@@ -100,9 +100,9 @@ class Ledger {
 
     const physics::Model& model_;
     Counts counts_;
-    topology::PieceCount pieces_;
+    topology::ComponentCount pieces_;
     double initial_min_altitude_;
-    Account initial_, last_;
+    BodyTotals initial_, last_;
     std::size_t num_edits_ = 0;
     double mass_removed_ = 0.0, energy_removed_ = 0.0;
 };

@@ -109,10 +109,10 @@ Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
 const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }
 std::size_t World::num_tools() const { return parts_->tools.size(); }
 
-ConstraintId World::add_constraint(physics::Support constraint) {
+ConstraintId World::add_constraint(physics::Constraint constraint) {
     Parts& p = *parts_;
     require_sound(constraint, p.mesh);
-    p.model.add_support(std::move(constraint));
+    p.model.add_constraint(std::move(constraint));
     return {p.constraints.add()};
 }
 
@@ -131,7 +131,7 @@ ConstraintId World::grasp(std::string name, std::vector<NodeId> nodes, const Pos
 void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
     Parts& p = *parts_;
     const std::size_t place = p.constraints.place(grasp.index);
-    const std::string name = "constraint '" + p.model.support_name(place) + "'";
+    const std::string name = "constraint '" + p.model.constraint_name(place) + "'";
     const auto found = p.grasps.find(grasp.index);
     if (found == p.grasps.end()) throw InputError(name + " is no grasp");
     if (!pose.is_sound()) throw InputError(name + ": its pose is none");
@@ -140,7 +140,7 @@ void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
 
 void World::release(ConstraintId constraint) {
     Parts& p = *parts_;
-    p.model.remove_support(p.constraints.place(constraint.index));
+    p.model.remove_constraint(p.constraints.place(constraint.index));
     p.constraints.remove(constraint.index);
     p.grasps.erase(constraint.index);
 }

@@ -44,9 +44,9 @@ struct WorldDef {
     std::vector<Vec3> fibres = {};
     physics::Precision precision = physics::Precision::double_precision;
 
-    Vec3 gravity = Vec3::Zero();                     ///< m/s2
-    double damping = 0.0;                            ///< mass-proportional, 1/s
-    std::vector<physics::Support> constraints = {};  ///< their nodes are ids of the mesh
+    Vec3 gravity = Vec3::Zero();                        ///< m/s2
+    double damping = 0.0;                               ///< mass-proportional, 1/s
+    std::vector<physics::Constraint> constraints = {};  ///< their nodes are ids of the mesh
     std::vector<physics::Load> loads = {};
 
     Solver solver = Solver::semi_implicit_euler;
@@ -161,7 +161,7 @@ class World {
     /// Adds a constraint whose motion is known beforehand: its curves go with the time of the
     /// world. Those of the definition have the first numbers. Throws InputError, and changes
     /// nothing, if a node is not there, or if it prescribes what another constraint does.
-    ConstraintId add_constraint(physics::Support constraint);
+    ConstraintId add_constraint(physics::Constraint constraint);
     /// Takes hold of nodes where they are now. `pose` is that of the thing that holds them, m: the
     /// nodes go where its frame goes. Throws as add_constraint().
     ConstraintId grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose);

@@ -43,12 +43,12 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
 }
 
 void World::Parts::require_sound_grasps() const {
-    const bool fits = constraints.fits(model.num_supports()) &&
+    const bool fits = constraints.fits(model.num_constraints()) &&
                       loads.fits(model.loads().all().size()) &&
                       std::ranges::all_of(grasps, [&](const auto& row) {
                           const std::size_t place = constraints.place(row.first);
                           return row.second.pose.is_sound() && row.second.target.is_sound() &&
-                                 !model.supports().all()[place].grip.is_empty();
+                                 !model.constraints().all()[place].grip.is_empty();
                       });
     if (!fits) throw InputError("its constraints and loads are those of another world");
 }

@@ -153,7 +153,7 @@ void require_sound(const ToolDef& def) {
     if (!fault.empty()) throw InputError("tool '" + def.name + "': " + fault);
 }
 
-void require_sound(const physics::Support& constraint, const Mesh& mesh) {
+void require_sound(const physics::Constraint& constraint, const Mesh& mesh) {
     const std::string what = "constraint '" + constraint.name + "'";
     require_nodes(mesh, what, constraint.nodes);
     constraint.require_fit(mesh);
@@ -245,7 +245,7 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
         def.solver != Solver::statics)
         throw InputError("there is no such solver");
     require_sound_num_threads(def.num_threads);
-    for (const physics::Support& constraint : def.constraints) require_sound(constraint, mesh);
+    for (const physics::Constraint& constraint : def.constraints) require_sound(constraint, mesh);
     for (const physics::Load& load : def.loads) require_sound(load, mesh);
 }
 

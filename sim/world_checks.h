@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include "incise/physics/body/constraints.h"
 #include "incise/physics/body/loads.h"
-#include "incise/physics/body/supports.h"
 #include "incise/sim/world.h"
 
 namespace incise::sim {
@@ -11,7 +11,7 @@ namespace incise::sim {
 /// Throws InputError for a shape that is none.
 void require_sound(const ToolDef& def);
 /// Throws InputError for nodes that are not there, or for none, and for curves that are none.
-void require_sound(const physics::Support& constraint, const topology::Mesh& mesh);
+void require_sound(const physics::Constraint& constraint, const topology::Mesh& mesh);
 /// Throws InputError unless a load acts on something that is there, with a finite value.
 void require_sound(const physics::Load& load, const topology::Mesh& mesh);
 

@@ -43,7 +43,7 @@ cutting::UncutBody uncut_body(const physics::Model& model) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         std::array<Vec3, 4> x;
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
-        const double speed = cutting::own_step_length(x) / model.own_step(e);
+        const double speed = cutting::element_step_length(x) / model.element_stable_step(e);
         double& length = body.step_length[mesh.region(e)];
         length = std::max(length, speed * stable_step);
     }
@@ -68,7 +68,7 @@ World::Parts::Parts(WorldDef def)
       solver(def.solver),
       ledger(model),
       cutter(mesh, model.positions(), uncut_body(model)),
-      constraints("constraint", model.num_supports()),
+      constraints("constraint", model.num_constraints()),
       loads("load", model.loads().all().size()) {
     model.set_num_threads(def.num_threads);
 }
@@ -103,7 +103,7 @@ void World::Parts::step_to(double end) {
     for (std::size_t num_followed = 0; num_followed < report.edits.size();) {
         num_followed = report.edits.size();
         begin_motion();
-        if (!integrator->settle(model, end)) break;
+        if (!integrator->equilibrate(model, end)) break;
         end_motion();
         for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
     }
@@ -169,7 +169,7 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     if (changes.is_empty()) return;
     // The model has not followed yet.
     if (has_moved) model.compute_totals_and_forces();
-    const Account before = has_moved ? ledger.account() : ledger.last();
+    const BodyTotals before = has_moved ? ledger.body_totals() : ledger.last();
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);
     model.apply(mesh, changes);

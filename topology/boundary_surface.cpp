@@ -43,7 +43,7 @@ void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
         const FaceId face{e, f};
         if (mesh.neighbor(face).is_valid()) continue;
         for (int p = 2; p < mesh.face_size(face); ++p) {
-            places_[e].push_back(triangles_.size());
+            slots_[e].push_back(triangles_.size());
             changed_.push_back(triangles_.size());
             triangles_.push_back({mesh.face_corner(face, 0), mesh.face_corner(face, p - 1),
                                   mesh.face_corner(face, p)});
@@ -53,22 +53,22 @@ void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
     }
 }
 
-/// The last triangle of the list takes the place of one that goes.
+/// The last triangle of the list takes the slot of one that goes.
 void BoundarySurface::remove_faces(ElementId e) {
-    const auto row = places_.find(e);
-    if (row == places_.end()) return;
-    std::vector<std::size_t> places = std::move(row->second);
-    places_.erase(row);
-    std::sort(places.rbegin(), places.rend());
-    for (const std::size_t place : places) {
+    const auto row = slots_.find(e);
+    if (row == slots_.end()) return;
+    std::vector<std::size_t> slots = std::move(row->second);
+    slots_.erase(row);
+    std::sort(slots.rbegin(), slots.rend());
+    for (const std::size_t slot : slots) {
         const std::size_t last = triangles_.size() - 1;
-        if (place != last) {
-            triangles_[place] = triangles_[last];
-            faces_[place] = faces_[last];
-            is_cut_[place] = is_cut_[last];
-            std::ranges::replace(places_.at(faces_[place].element), last, place);
+        if (slot != last) {
+            triangles_[slot] = triangles_[last];
+            faces_[slot] = faces_[last];
+            is_cut_[slot] = is_cut_[last];
+            std::ranges::replace(slots_.at(faces_[slot].element), last, slot);
         }
-        changed_.push_back(place);
+        changed_.push_back(slot);
         changed_.push_back(last);
         triangles_.pop_back();
         faces_.pop_back();

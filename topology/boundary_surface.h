@@ -19,7 +19,7 @@ namespace incise::topology {
 /// The triangles of all faces that have no neighbour; a quadrilateral makes two. Their nodes index
 /// the positions of the body and run anticlockwise seen from outside.
 ///
-/// Triangles have places in a list without gaps. An edit changes some places and the length of the
+/// Triangles have slots in a list without gaps. An edit changes some slots and the length of the
 /// list; take_changes() names them, so that a renderer uploads no more than these.
 class BoundarySurface {
   public:
@@ -40,7 +40,7 @@ class BoundarySurface {
 
     /// The epoch of the mesh that the surface is of.
     std::uint64_t version() const { return epoch_.value(); }
-    /// Returns the places that have changed since the last call, in ascending order, at first all
+    /// Returns the slots that have changed since the last call, in ascending order, at first all
     /// of them. Places from triangles().size() on are gone.
     std::vector<std::size_t> take_changes();
 
@@ -51,7 +51,7 @@ class BoundarySurface {
     std::vector<std::array<NodeId, 3>> triangles_;
     std::vector<FaceId> faces_;
     std::vector<std::uint8_t> is_cut_;
-    std::unordered_map<ElementId, std::vector<std::size_t>> places_;  // of an element's triangles
+    std::unordered_map<ElementId, std::vector<std::size_t>> slots_;  // of an element's triangles
     std::vector<std::size_t> changed_;
     FollowedEpoch epoch_;
 };

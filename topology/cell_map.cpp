@@ -192,7 +192,7 @@ void CellMap::set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_pos
     }
 }
 
-void CellMap::set_anchor(NodeId n, ElementId e, int corner) {
+void CellMap::set_incident_element(NodeId n, ElementId e, int corner) {
     Impl& m = *impl_;
     const CellTraits& t = traits(m.kinds[e.index()]);
     for (int f = 0; f < t.num_faces; ++f) {

@@ -38,7 +38,7 @@ class CellMap {
     /// Makes `n` the node at a corner of `e`. The vertex that loses its last dart dies.
     void set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_position);
     /// Makes a dart at this corner of `e` the one that CGAL finds the vertex of `n` by.
-    void set_anchor(NodeId n, ElementId e, int corner);
+    void set_incident_element(NodeId n, ElementId e, int corner);
     /// Joins two free faces; corner 0 of a's face meets the corner at position `shift` of b's.
     void glue(FaceId a, FaceId b, int shift);
     /// Frees both sides of a joined face.

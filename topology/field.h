@@ -42,11 +42,11 @@ class NodeField {
     std::span<const T> values() const { return values_; }
     void assign(std::span<const T> values) { values_.assign(values.begin(), values.end()); }
 
-    /// @param mesh after the edit
+    /// Follows an edit; several edits one after the other, whatever has become of the mesh since.
     /// Throws InputError for an edit out of turn. Cost: proportional to the nodes added.
-    void apply(const Mesh& mesh, const ChangeSet& changes) {
+    void apply(const Mesh&, const ChangeSet& changes) {
         if (changes.is_empty()) return;
-        epoch_.advance(mesh, changes, "field of nodes");
+        epoch_.advance(changes, "field of nodes");
         values_.resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
         // In ascending order: a source may itself be new.
         for (const NodeRecord& record : changes.nodes_added) {
@@ -81,11 +81,11 @@ class ElementField {
     /// By element id; as many as Mesh::element_capacity().
     std::span<const T> values() const { return values_; }
 
-    /// @param mesh after the edit
+    /// Follows an edit; several edits one after the other, whatever has become of the mesh since.
     /// Throws InputError for an edit out of turn. Cost: proportional to the elements added.
-    void apply(const Mesh& mesh, const ChangeSet& changes) {
+    void apply(const Mesh&, const ChangeSet& changes) {
         if (changes.is_empty()) return;
-        epoch_.advance(mesh, changes, "field of elements");
+        epoch_.advance(changes, "field of elements");
         values_.resize(std::max(changes.element_capacity_before, changes.element_capacity_after));
         for_each_part(changes, [&](ElementId parent, ElementId part) {
             values_[part.index()] = values_[parent.index()];

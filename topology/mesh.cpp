@@ -79,13 +79,13 @@ void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
 
 void Mesh::star(NodeId n, std::vector<ElementId>& elements) const {
     elements.clear();
-    if (is_alive(n)) collect_star(*this, n, anchor(n), elements);
+    if (is_alive(n)) collect_star(*this, n, incident_element(n), elements);
 }
 
 int Mesh::corner_of(ElementId e, NodeId n) const {
     const auto nodes = corners(e);
-    const auto place = std::find(nodes.begin(), nodes.end(), n);
-    return place == nodes.end() ? -1 : static_cast<int>(place - nodes.begin());
+    const auto it = std::find(nodes.begin(), nodes.end(), n);
+    return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
 }
 
 std::int64_t Mesh::label(NodeId n) const {
@@ -131,7 +131,7 @@ void Mesh::inherit_inside(ElementId e, ElementId parent) {
 
 void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
     rest_positions_.resize(node_capacity);
-    anchors_.resize(node_capacity);
+    incident_elements_.resize(node_capacity);
     kinds_.resize(element_capacity);
     regions_.resize(element_capacity);
     alive_.resize(element_capacity);

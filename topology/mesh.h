@@ -42,9 +42,9 @@ class Mesh {
     std::size_t num_nodes() const { return num_nodes_; }
     std::size_t num_elements() const { return num_elements_; }
     /// One more than the highest id ever given out: the size of arrays indexed by id.
-    std::size_t node_capacity() const { return anchors_.size(); }
+    std::size_t node_capacity() const { return incident_elements_.size(); }
     std::size_t element_capacity() const { return kinds_.size(); }
-    bool is_alive(NodeId n) const { return anchors_[n.index()].is_valid(); }
+    bool is_alive(NodeId n) const { return incident_elements_[n.index()].is_valid(); }
     bool is_alive(ElementId e) const { return alive_[e.index()] != 0; }
     /// The living ids in ascending order, to loop over.
     /// @pre The mesh is not edited while a loop runs.
@@ -86,7 +86,7 @@ class Mesh {
     /// Elements round a node in ascending order of id. Cost: O(star), about a microsecond.
     void star(NodeId n, std::vector<ElementId>& elements) const;
     /// The lowest element of the node's star; invalid for a dead node.
-    ElementId anchor(NodeId n) const { return anchors_[n.index()]; }
+    ElementId incident_element(NodeId n) const { return incident_elements_[n.index()]; }
 
     /// The number by which the user knows it: that of the source, or the id for one born later.
     std::int64_t label(NodeId n) const;
@@ -123,7 +123,7 @@ class Mesh {
     std::size_t num_nodes_ = 0, num_elements_ = 0;
 
     std::vector<Vec3> rest_positions_;
-    std::vector<ElementId> anchors_;
+    std::vector<ElementId> incident_elements_;
 
     std::vector<CellKind> kinds_;
     std::vector<std::uint8_t> alive_;

@@ -13,8 +13,8 @@ namespace incise::topology {
 class MeshArchive {
   public:
     static void list(auto& ar, auto& m) {
-        ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.anchors_, m.kinds_,
-           m.alive_, m.regions_, m.corners_, m.neighbors_, m.was_inside_, m.node_labels_,
+        ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.incident_elements_,
+           m.kinds_, m.alive_, m.regions_, m.corners_, m.neighbors_, m.was_inside_, m.node_labels_,
            m.element_labels_, m.label_nodes_, m.pinched_);
     }
 
@@ -50,9 +50,9 @@ class MeshArchive {
                     mesh_.corners_.size() == mesh_.corner_begin_.back() &&
                     mesh_.neighbors_.size() == mesh_.face_begin_.back() &&
                     mesh_.was_inside_.size() == mesh_.face_begin_.back() &&
-                    mesh_.anchors_.size() == mesh_.rest_positions_.size() &&
+                    mesh_.incident_elements_.size() == mesh_.rest_positions_.size() &&
                     mesh_.element_labels_.size() <= num_elements &&
-                    mesh_.node_labels_.size() <= mesh_.anchors_.size(),
+                    mesh_.node_labels_.size() <= mesh_.incident_elements_.size(),
                 "its lists are of different lengths");
     }
 
@@ -73,7 +73,7 @@ class MeshArchive {
         require(std::ranges::all_of(mesh_.rest_positions_,
                                     [](const Vec3& x) { return x.allFinite(); }) &&
                     std::ranges::all_of(mesh_.corners_, is_node) &&
-                    std::ranges::all_of(mesh_.anchors_, is_element_or_none) &&
+                    std::ranges::all_of(mesh_.incident_elements_, is_element_or_none) &&
                     std::ranges::all_of(mesh_.neighbors_, is_face_or_none) &&
                     std::ranges::all_of(mesh_.label_nodes_, is_labelled) &&
                     std::ranges::all_of(mesh_.pinched_,
@@ -100,10 +100,10 @@ class MeshArchive {
             }
         // Elements that came and went have taken the darts by which CGAL finds vertices with them.
         for (const NodeId n : mesh_.nodes()) {
-            const ElementId anchor = mesh_.anchor(n);
-            const int corner = mesh_.is_alive(anchor) ? mesh_.corner_of(anchor, n) : -1;
+            const ElementId incident = mesh_.incident_element(n);
+            const int corner = mesh_.is_alive(incident) ? mesh_.corner_of(incident, n) : -1;
             require(corner >= 0, "a node has no element");
-            mesh_.map_.set_anchor(n, anchor, corner);
+            mesh_.map_.set_incident_element(n, incident, corner);
         }
     }
 

@@ -40,8 +40,8 @@ MeshEdit::~MeshEdit() {
     for (const TouchedCorner& touched : touched_) {
         const NodeId n = touched.node;
         if (n.index() >= node_capacity_before_ || !mesh_.is_alive(n)) continue;
-        const ElementId anchor = mesh_.anchor(n);
-        mesh_.map_.set_anchor(n, anchor, mesh_.corner_of(anchor, n));
+        const ElementId incident = mesh_.incident_element(n);
+        mesh_.map_.set_incident_element(n, incident, mesh_.corner_of(incident, n));
     }
 }
 
@@ -214,7 +214,7 @@ NodeId MeshEdit::add_node_between(NodeId a, NodeId b, double t) {
     record.sources[1] = {b, t};
     nodes_added_.push_back(record);
     mesh_.rest_positions_.push_back(record.rest_position);
-    mesh_.anchors_.emplace_back();
+    mesh_.incident_elements_.emplace_back();
     ++mesh_.num_nodes_;
     return n;
 }
@@ -284,7 +284,7 @@ const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, dou
 void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
     // The absorbed node may already hang together in parts only: start from each that is known.
     std::vector<ElementId> starts{at};
-    if (mesh_.is_alive(absorbed)) starts.push_back(mesh_.anchor(absorbed));
+    if (mesh_.is_alive(absorbed)) starts.push_back(mesh_.incident_element(absorbed));
     for (const TouchedCorner& touched : touched_)
         if (touched.node == absorbed) starts.push_back(touched.element);
     for (const ElementId start : starts) {
@@ -330,7 +330,7 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates,
             record.num_sources = 1;
         }
         removed.push_back(record);
-        mesh_.anchors_[n.index()] = {};
+        mesh_.incident_elements_[n.index()] = {};
         --mesh_.num_nodes_;
         return;
     }
@@ -342,13 +342,13 @@ void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates,
             record.sources[0] = {n, 1.0};
             nodes_added_.push_back(record);
             mesh_.rest_positions_.push_back(record.rest_position);
-            mesh_.anchors_.emplace_back();
+            mesh_.incident_elements_.emplace_back();
             ++mesh_.num_nodes_;
             for (const ElementId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
         }
-        const ElementId anchor = parts[p].front();
-        mesh_.anchors_[keeper.index()] = anchor;
-        mesh_.map_.set_anchor(keeper, anchor, mesh_.corner_of(anchor, keeper));
+        const ElementId incident = parts[p].front();
+        mesh_.incident_elements_[keeper.index()] = incident;
+        mesh_.map_.set_incident_element(keeper, incident, mesh_.corner_of(incident, keeper));
     }
 }
 

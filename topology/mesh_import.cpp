@@ -156,10 +156,10 @@ class MeshImport {
                                       " more such points");
         std::sort(mesh_.pinched_.begin(), mesh_.pinched_.end());
 
-        mesh_.anchors_.resize(mesh_.rest_positions_.size());
+        mesh_.incident_elements_.resize(mesh_.rest_positions_.size());
         for (std::size_t i = mesh_.num_elements(); i-- > 0;)
             for (const NodeId n : mesh_.corners(ElementId(i)))
-                mesh_.anchors_[n.index()] = ElementId(i);
+                mesh_.incident_elements_[n.index()] = ElementId(i);
     }
 
     void build_map() {

@@ -22,7 +22,7 @@ class MeshReplay {
         for (const NodeRecord& record : changes_.nodes_added) {
             if (record.id.index() == mesh_.node_capacity()) {
                 mesh_.rest_positions_.push_back(record.rest_position);
-                mesh_.anchors_.emplace_back();
+                mesh_.incident_elements_.emplace_back();
             }
             mesh_.rest_positions_[record.id.index()] = record.rest_position;
             ++mesh_.num_nodes_;
@@ -36,10 +36,10 @@ class MeshReplay {
         for (const FacePair& pair : changes_.faces_closed)
             mesh_.glue(pair.a, pair.b, matching_shift(mesh_, pair.a, pair.b));
         for (const NodeRecord& record : changes_.nodes_removed) {
-            mesh_.anchors_[record.id.index()] = {};
+            mesh_.incident_elements_[record.id.index()] = {};
             --mesh_.num_nodes_;
         }
-        anchor_touched_nodes();
+        set_incident_elements();
         mesh_.truncate(changes_.node_capacity_after, changes_.element_capacity_after);
         mesh_.epoch_ = changes_.epoch_after;
     }
@@ -63,7 +63,7 @@ class MeshReplay {
         mesh_.map_.add_element(e, record.kind, record.corners, mesh_.rest_positions());
     }
 
-    void anchor_touched_nodes() {
+    void set_incident_elements() {
         std::vector<std::pair<NodeId, ElementId>> touched;
         const auto touch = [&](ElementId e) {
             if (mesh_.is_alive(e))
@@ -83,8 +83,8 @@ class MeshReplay {
             if (i > 0 && touched[i - 1].first == n) continue;
             star.clear();
             collect_star(mesh_, n, e, star);
-            mesh_.anchors_[n.index()] = star.front();
-            mesh_.map_.set_anchor(n, star.front(), mesh_.corner_of(star.front(), n));
+            mesh_.incident_elements_[n.index()] = star.front();
+            mesh_.map_.set_incident_element(n, star.front(), mesh_.corner_of(star.front(), n));
         }
     }
 

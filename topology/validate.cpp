@@ -61,7 +61,7 @@ std::vector<std::string> validate(const Mesh& mesh) {
         mesh.star(n, star);
         if (star != holders[i])
             report("the elements of node ", i, " do not hang together through faces at it");
-        else if (star.front() != mesh.anchor(n))
+        else if (star.front() != mesh.incident_element(n))
             report("the anchor of node ", i, " is not its lowest element");
     }
     if (num_nodes != mesh.num_nodes())

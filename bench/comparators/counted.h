@@ -32,22 +32,22 @@ class Counted {
 
     /// What has been booked since the last call, in this thread. A number has no room for a
     /// reference to its book, so there is one for all.
-    static Operations take() { return std::exchange(booked_, {}); }
+    static Operations take() { return std::exchange(recorded_, {}); }
 
     friend Counted operator+(Counted a, Counted b) {
-        ++booked_.additions;
+        ++recorded_.additions;
         return a.value_ + b.value_;
     }
     friend Counted operator-(Counted a, Counted b) {
-        ++booked_.additions;
+        ++recorded_.additions;
         return a.value_ - b.value_;
     }
     friend Counted operator*(Counted a, Counted b) {
-        ++booked_.multiplications;
+        ++recorded_.multiplications;
         return a.value_ * b.value_;
     }
     friend Counted operator/(Counted a, Counted b) {
-        ++booked_.divisions;
+        ++recorded_.divisions;
         return a.value_ / b.value_;
     }
     friend Counted operator-(Counted a) { return -a.value_; }
@@ -58,16 +58,16 @@ class Counted {
     friend auto operator<=>(const Counted&, const Counted&) = default;
 
     friend Counted sqrt(Counted a) {
-        ++booked_.functions;
+        ++recorded_.functions;
         return std::sqrt(a.value_);
     }
     friend Counted log(Counted a) {
-        ++booked_.functions;
+        ++recorded_.functions;
         return std::log(a.value_);
     }
 
   private:
-    static inline thread_local Operations booked_;
+    static inline thread_local Operations recorded_;
     double value_ = 0.0;
 };
 

@@ -11,36 +11,38 @@
 #include "incise/base/types.h"
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/edge_list.h"
-#include "incise/cutting/exact/resting_blade.h"
-#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/snap_history.h"
+#include "incise/cutting/exact/suspended_cut.h"
 
 namespace incise::cutting {
 
 /// Counts the crossings of the edges that the middle of the edge from a to b has come to. It counts
 /// as on the side of the end b: where it is, if it was made off the surface. Round a triangle the
-/// crossings are odd in number if the border of the sweep runs through it, and in no other case,
+/// crossings are odd in number if the boundary of the sweep runs through it, and in no other case,
 /// now and after each later step: rounding has moved the middle off the edge, so nothing of this
 /// may be left to its place.
-/// @param has_border  (p, q, r): whether the border runs through a triangle; nothing if the surface
-///                    has a rim instead
+/// @param has_boundary  (p, q, r): whether the boundary runs through a triangle; nothing if the
+/// surface
+///                    has a boundary instead
 /// @param is_passed_to_b  (i): whether a way from the middle's neighbour ring[i] to b by the middle
-///                        crosses the surface; asked where the rim is in their face
-template <class HasBorder, class IsPassed>
+///                        crosses the surface; asked where the boundary is in their face
+template <class HasBoundary, class IsPassed>
 void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
-                   const std::vector<NodeId>& ring, HasBorder has_border, IsPassed is_passed_to_b) {
+                   const std::vector<NodeId>& ring, HasBoundary has_boundary,
+                   IsPassed is_passed_to_b) {
     const bool is_crossed = front.is_crossed(a, b);
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const NodeId n = ring[i];
         const bool at_a = front.is_crossed(a, n), at_b = front.is_crossed(b, n);
         bool is_crossed_to_n = at_b;
-        if (const std::optional<bool> border = has_border(middle, b, n))
-            is_crossed_to_n = at_b != *border;
-        else if (at_a != (at_b != is_crossed))  // the rim is in the face: which half it is in
+        if (const std::optional<bool> boundary = has_boundary(middle, b, n))
+            is_crossed_to_n = at_b != *boundary;
+        else if (at_a != (at_b != is_crossed))  // the boundary is in the face: which half it is in
             is_crossed_to_n = is_passed_to_b(i);
         if (is_crossed_to_n) front.toggle(middle, n);
     }
     if (is_crossed) front.toggle(a, b);
-    if (is_crossed != has_border(a, middle, b).value_or(false)) front.toggle(a, middle);
+    if (is_crossed != has_boundary(a, middle, b).value_or(false)) front.toggle(a, middle);
 }
 
 /// The same for a blade that this cut comes across. A middle between two nodes on its cut is on it,
@@ -49,12 +51,13 @@ void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
 /// @param reach  see CutFront::put_on
 /// @param point  (node): where it is, a MovingPoint
 template <class PointOf>
-void place_for_resting(const RestingBlade& blade, Edge edge, NodeId middle,
-                       const std::vector<NodeId>& ring, double reach, Scars& scars, PointOf point) {
+void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
+                           const std::vector<NodeId>& ring, double reach, SnapHistory& snap_history,
+                           PointOf point) {
     CutFront& front = blade.front;
     if (front.is_on(edge.a) && front.is_on(edge.b))
         front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,
-                     scars.take_rank());
+                     snap_history.take_rank());
     else if (front.is_on(edge.b))
         std::swap(edge.a, edge.b);
     place_on_side(
@@ -68,7 +71,7 @@ void place_for_resting(const RestingBlade& blade, Edge edge, NodeId middle,
         return !front.is_on(n) && front.is_crossed(middle, n);
     });
     if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))
-        front.put_on(middle, false, reach, scars.take_rank());
+        front.put_on(middle, false, reach, snap_history.take_rank());
 }
 
 }  // namespace incise::cutting

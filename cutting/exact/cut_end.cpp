@@ -14,7 +14,7 @@ constexpr int max_bisections = 50;
 
 /// How many edge lengths from the blade's edge its cut tells whether it is behind it, and how much
 /// so it is on the mean, as a cosine, if the blade's motion has made it and not that of the tissue.
-constexpr double size_of_surroundings = 3.0, least_share_behind = 0.3;
+constexpr double size_of_boundary_conditions = 3.0, least_share_behind = 0.3;
 
 /// So much farther than out of an element, in units of its size, a blade is taken to go on: not
 /// just to its end, where rounding or the shift of exact signs would decide.
@@ -22,7 +22,7 @@ constexpr double room_ahead = 1e-3;
 
 }  // namespace
 
-std::optional<Passage> CutEnd::passage(const Edge& edge) const {
+std::optional<EdgeIntersection> CutEnd::intersection(const Edge& edge) const {
     const double a = distance_ahead(edge.a), b = distance_ahead(edge.b);
     if (!(a < 0.0 && b > 0.0) && !(a > 0.0 && b < 0.0)) return std::nullopt;
     const Vec3 from = position_(edge.a), to = position_(edge.b);
@@ -36,8 +36,8 @@ std::optional<Passage> CutEnd::passage(const Edge& edge) const {
         ((ahead < 0.0) == (a < 0.0) ? low : high) = place;
         place = 0.5 * (low + high);
     }
-    return Passage{place,     std::abs(a) / length, std::abs(b) / length, 1.0,
-                   at(place), Vec3::Zero(),         Vec3::Zero()};
+    return EdgeIntersection{place,     std::abs(a) / length, std::abs(b) / length, 1.0,
+                            at(place), Vec3::Zero(),         Vec3::Zero()};
 }
 
 std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces, double share,
@@ -49,13 +49,13 @@ std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> f
             const Edge edge =
                 edge_between(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % 3));
             if (!known.insert({edge.a, edge.b}).second) continue;
-            if (const auto there = passage(edge)) crossed.push_back({edge, f.element, *there});
+            if (const auto there = intersection(edge)) crossed.push_back({edge, f.element, *there});
         }
-    for (const auto& [edge, element, passage] : crossed) {
+    for (const auto& [edge, element, intersection] : crossed) {
         const double length = (mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)).norm();
-        const double from = std::min(passage.from_a, passage.from_b);
+        const double from = std::min(intersection.from_a, intersection.from_b);
         if (from < share && from * length <= farthest)
-            put_at(passage.from_a <= passage.from_b ? edge.a : edge.b);
+            put_at(intersection.from_a <= intersection.from_b ? edge.a : edge.b);
     }
     return crossed;
 }
@@ -88,7 +88,7 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
     for (const NodeId n : nodes) {
         const Vec3 away = blade.away_from_edge(position(n));
         const double distance = away.norm();
-        if (!(distance > 0.0 && distance < size_of_surroundings * front.reach(n))) continue;
+        if (!(distance > 0.0 && distance < size_of_boundary_conditions * front.reach(n))) continue;
         from_cut -= away / distance;
         share_behind -= blade.distance_ahead(position(n)) / distance;
         ++count;

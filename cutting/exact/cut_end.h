@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "incise/cutting/exact/blade_end.h"
-#include "incise/cutting/exact/cut_border.h"
+#include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
-#include "incise/cutting/exact/passages.h"
+#include "incise/cutting/exact/surface_boundary.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -28,7 +28,7 @@ class CutEnd {
     struct CrossedEdge {
         Edge edge;
         ElementId element;  ///< one of those that have it
-        Passage passage;
+        EdgeIntersection intersection;
     };
     /// Of faces on the cut, each once. Nodes nearer to the blade's edge than a share of an edge
     /// that crosses it, and than `farthest`, m at rest, count as at the blade's edge from now on.
@@ -44,7 +44,7 @@ class CutEnd {
     bool is_behind(FaceId f) const;
 
   private:
-    std::optional<Passage> passage(const Edge& edge) const;
+    std::optional<EdgeIntersection> intersection(const Edge& edge) const;
     double distance_ahead(NodeId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;

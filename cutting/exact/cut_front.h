@@ -28,13 +28,15 @@ namespace incise::cutting {
 /// it, stands for itself.
 class CutFront {
   public:
-    /// Of the cut, from Scars::take_rank: higher than those of earlier cuts; 0 before it begins.
+    /// Of the cut, from SnapHistory::take_rank: higher than those of earlier cuts; 0 before it
+    /// begins.
     std::uint64_t number() const { return number_; }
     void set_number(std::uint64_t number) { number_ = number; }
 
     /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
-    /// it, on one side. `reach` is the size of the elements there, m; `rank`, see Scars::take_rank.
-    /// Of a node that is on the cut already only the reach can change, to more.
+    /// it, on one side. `reach` is the size of the elements there, m; `rank`, see
+    /// SnapHistory::take_rank. Of a node that is on the cut already only the reach can change, to
+    /// more.
     void put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank);
     bool is_on(NodeId n) const { return nodes_.contains(n); }
     bool is_near(NodeId n) const {

@@ -24,7 +24,7 @@ bool is_fit(const Mesh& mesh, const EdgeRing& ring, double t, const UncutBody& u
                 const NodeId n = mesh.corners(e)[k];
                 x[k] = n == replaced ? middle : mesh.rest_position(n);
             }
-            if (!(own_step_length(x) >= share * before->second)) return false;
+            if (!(element_step_length(x) >= share * before->second)) return false;
         }
     }
     return true;
@@ -32,18 +32,19 @@ bool is_fit(const Mesh& mesh, const EdgeRing& ring, double t, const UncutBody& u
 
 }  // namespace
 
-double fitting_place(const Mesh& mesh, const EdgeRing& ring, const Passage& passage,
+double fitting_place(const Mesh& mesh, const EdgeRing& ring, const EdgeIntersection& intersection,
                      const FitLimits& limits) {
     const auto is_fit_at = [&](double t, double share) {
         return is_fit(mesh, ring, t, limits.uncut, share);
     };
-    const double place = passage.place, share = limits.least_step_share;
+    const double place = intersection.place, share = limits.least_step_share;
     if (is_fit_at(place, share)) return place;
     const double length = (mesh.rest_position(ring.a) - mesh.rest_position(ring.b)).norm();
-    const double reach = limits.farthest / length / (passage.from_a + passage.from_b);
+    const double reach = limits.farthest / length / (intersection.from_a + intersection.from_b);
     const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
     if (is_fit_at(moved, share)) return moved;
-    const bool is_end_near = std::min(passage.from_a, passage.from_b) * length <= limits.farthest;
+    const bool is_end_near =
+        std::min(intersection.from_a, intersection.from_b) * length <= limits.farthest;
     return !is_end_near && is_fit_at(moved, 0.5 * share) ? moved : -1.0;
 }
 

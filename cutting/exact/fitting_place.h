@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "incise/cutting/exact/passages.h"
+#include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/step_length.h"
 #include "incise/topology/mesh.h"
 
@@ -26,7 +26,7 @@ struct FitLimits {
 /// much nearer to the middle as nodes may be off the surface. If that does not do either, negative:
 /// the nearer end is to count as on the surface; unless it is farther away than that, and half of
 /// the share is enough.
-double fitting_place(const topology::Mesh& mesh, const EdgeRing& ring, const Passage& passage,
-                     const FitLimits& limits);
+double fitting_place(const topology::Mesh& mesh, const EdgeRing& ring,
+                     const EdgeIntersection& intersection, const FitLimits& limits);
 
 }  // namespace incise::cutting

@@ -14,7 +14,7 @@ namespace incise::cutting {
 struct EdgeEnd {
     NodeId node, other;
     ElementId element;   ///< one of those that have the edge
-    double place, from;  ///< as in Passage
+    double place, from;  ///< as in EdgeIntersection
 };
 
 /// How near a node has to be to count as on the surface.

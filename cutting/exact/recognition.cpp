@@ -13,27 +13,27 @@ namespace {
 class Recognizer {
   public:
     Recognizer(const TissueMotion& tissue, const CutSurface& surface,
-               std::span<const EdgeList::Entry> edges, const Scars& scars)
-        : tissue_(tissue), surface_(surface), scars_(scars) {
+               std::span<const EdgeList::Entry> edges, const SnapHistory& snap_history)
+        : tissue_(tissue), surface_(surface), snap_history_(snap_history) {
         if (surface.identity() == no_identity) return;
         for (const auto& [edge, element] : edges)
             if (moves(edge.a) || moves(edge.b)) moving_.insert({edge.a, edge.b});
     }
 
-    /// Looks for the node's scars; `length` is that of an edge there, m.
+    /// Looks for the node's snap_history; `length` is that of an edge there, m.
     void look_at(NodeId n, double length, CutFront& front, std::vector<Arrival>& arrivals) const {
-        for (const Scar& scar : scars_.of(n)) {
-            const bool may_settle = is_where_it_was(n, scar, length);
+        for (const CutRecord& record : snap_history_.of(n)) {
+            const bool may_settle = is_where_it_was(n, record, length);
             if (front.is_on(n) && !may_settle) continue;
-            const std::optional<Crossing> passage =
-                may_settle ? passage_near(n, scar, length)
-                           : passage_by(n, scar.to_surface, scar.normal, length);
-            if (!passage) continue;
+            const std::optional<Crossing> intersection =
+                may_settle ? intersection_near(n, record, length)
+                           : intersection_by(n, record.to_surface, record.normal, length);
+            if (!intersection) continue;
             if (!front.is_on(n)) {
-                arrivals.push_back({n, passage->time});
-                front.put_on(n, scar.is_exact, length, scar.rank);
+                arrivals.push_back({n, intersection->time});
+                front.put_on(n, record.is_exact, length, record.rank);
             }
-            if (!may_settle || !is_along(scar, passage->normal)) continue;
+            if (!may_settle || !is_along(record, intersection->normal)) continue;
             front.settle(n);
             return;
         }
@@ -43,9 +43,9 @@ class Recognizer {
     bool moves(NodeId n) const { return tissue_.before[n.index()] != tissue_.after[n.index()]; }
 
     /// Where the surface passes through the place at which the cut passed by the node.
-    std::optional<Crossing> passage_by(NodeId n, const Vec3& to_surface, const Vec3& normal,
-                                       double length) const {
-        const Vec3 short_way = Scars::rounding * length * normal;
+    std::optional<Crossing> intersection_by(NodeId n, const Vec3& to_surface, const Vec3& normal,
+                                            double length) const {
+        const Vec3 short_way = SnapHistory::rounding * length * normal;
         const auto beside = [&](const Vec3& way) -> MovingPoint {
             return {tissue_.before[n.index()] + to_surface + way,
                     tissue_.after[n.index()] + to_surface + way};
@@ -55,45 +55,46 @@ class Recognizer {
         return crossings.size() % 2 == 1 ? std::optional(crossings.front()) : std::nullopt;
     }
 
-    /// Or beside it: at a fold of the surface, rounding may have put that place beyond the fold.
-    /// One that runs as the cut did, if there is any.
-    std::optional<Crossing> passage_near(NodeId n, const Scar& scar, double length) const {
-        const Vec3 u = 2.0 * Scars::rounding * length * scar.normal.unitOrthogonal();
-        const Vec3 v = scar.normal.cross(u);
+    /// Or beside it: at a crease of the surface, rounding may have put that place beyond the
+    /// crease. One that runs as the cut did, if there is any.
+    std::optional<Crossing> intersection_near(NodeId n, const CutRecord& record,
+                                              double length) const {
+        const Vec3 u = 2.0 * SnapHistory::rounding * length * record.normal.unitOrthogonal();
+        const Vec3 v = record.normal.cross(u);
         std::optional<Crossing> other;
         for (const int s : {0, 1, -1})
             for (const int t : {0, 1, -1}) {
-                const auto passage =
-                    passage_by(n, scar.to_surface + s * u + t * v, scar.normal, length);
-                if (passage && is_along(scar, passage->normal)) return passage;
-                if (!other) other = passage;
+                const auto intersection =
+                    intersection_by(n, record.to_surface + s * u + t * v, record.normal, length);
+                if (intersection && is_along(record, intersection->normal)) return intersection;
+                if (!other) other = intersection;
             }
         return other;
     }
 
     /// Whether this is the surface of that cut, and the node where it was then.
-    bool is_where_it_was(NodeId n, const Scar& scar, double length) const {
-        return surface_.identity() != no_identity && scar.surface == surface_.identity() &&
+    bool is_where_it_was(NodeId n, const CutRecord& record, double length) const {
+        return surface_.identity() != no_identity && record.surface == surface_.identity() &&
                !moving_.contains(n) &&
-               (tissue_.after[n.index()] - scar.place).norm() <= Scars::rounding * length;
+               (tissue_.after[n.index()] - record.place).norm() <= SnapHistory::rounding * length;
     }
-    static bool is_along(const Scar& scar, const Vec3& normal) {
-        return scar.normal.cross(normal).norm() < Scars::rounding * normal.norm();
+    static bool is_along(const CutRecord& record, const Vec3& normal) {
+        return record.normal.cross(normal).norm() < SnapHistory::rounding * normal.norm();
     }
 
     const TissueMotion& tissue_;
     const CutSurface& surface_;
-    const Scars& scars_;
+    const SnapHistory& snap_history_;
     std::unordered_set<NodeId> moving_;  // nodes that move, and those next to such
 };
 
 }  // namespace
 
 std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& surface,
-                               std::span<const EdgeList::Entry> edges, const Scars& scars,
-                               CutFront& front) {
-    if (scars.is_empty()) return {};
-    const auto is_new = [&](NodeId n) { return !scars.of(n).empty() && !front.is_on(n); };
+                               std::span<const EdgeList::Entry> edges,
+                               const SnapHistory& snap_history, CutFront& front) {
+    if (snap_history.is_empty()) return {};
+    const auto is_new = [&](NodeId n) { return !snap_history.of(n).empty() && !front.is_on(n); };
     std::vector<Edge> scarred;
     for (const auto& [edge, element] : edges)
         if (is_new(edge.a) || is_new(edge.b)) scarred.push_back(edge);
@@ -101,7 +102,7 @@ std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& sur
     // In an order that is the same whichever elements are near.
     std::sort(scarred.begin(), scarred.end());
 
-    const Recognizer recognizer(tissue, surface, edges, scars);
+    const Recognizer recognizer(tissue, surface, edges, snap_history);
     std::vector<Arrival> arrivals;
     for (const Edge& edge : scarred)
         for (const NodeId n : {edge.a, edge.b}) {

@@ -7,7 +7,7 @@
 
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/edge_list.h"
-#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 
@@ -24,7 +24,7 @@ struct Arrival {
 /// node has moved nor do its neighbours, it has nothing to add: the node is settled.
 /// @param edges  those of the elements near the surface, in any order
 std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& surface,
-                               std::span<const EdgeList::Entry> edges, const Scars& scars,
-                               CutFront& front);
+                               std::span<const EdgeList::Entry> edges,
+                               const SnapHistory& snap_history, CutFront& front);
 
 }  // namespace incise::cutting

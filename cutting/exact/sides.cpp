@@ -18,10 +18,10 @@ Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementI
     place_elements_on_cut();
 }
 
-std::vector<FaceId> Sides::parted_faces() const {
+std::vector<FaceId> Sides::separated_faces() const {
     std::vector<FaceId> parted;
     std::ranges::copy_if(faces_, std::back_inserter(parted),
-                         [&](FaceId f) { return is_parted(f); });
+                         [&](FaceId f) { return is_separated(f); });
     return parted;
 }
 
@@ -105,7 +105,7 @@ bool Sides::is_crossed_to(ElementId e, NodeId n) const {
     return from.is_crossed != (from.corner != n && front_.is_crossed(from.corner, n));
 }
 
-bool Sides::is_parted(FaceId f) const {
+bool Sides::is_separated(FaceId f) const {
     const ElementId here = f.element, there = mesh_.neighbor(f).element;
     if (!is_placed(here) || !is_placed(there)) return false;
     for (int p = 0; p < 3; ++p) {

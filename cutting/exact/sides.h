@@ -29,7 +29,7 @@ class Sides {
     /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the
     /// cut and whose elements are on different sides of it, all three nodes agreeing; at the front,
     /// where the cut ends, they do not agree yet.
-    std::vector<FaceId> parted_faces() const;
+    std::vector<FaceId> separated_faces() const;
 
     /// Whether it is known where the element is.
     bool is_placed(ElementId e) const { return place(e).has_value(); }
@@ -45,7 +45,7 @@ class Sides {
     bool is_on_cut(FaceId f) const;
     NodeId far_corner(ElementId e) const;
     std::optional<Place> place(ElementId e) const;
-    bool is_parted(FaceId f) const;
+    bool is_separated(FaceId f) const;
 
     const topology::Mesh& mesh_;
     const CutFront& front_;

@@ -12,16 +12,16 @@
 #include <unordered_map>
 #include <utility>
 
+#include "incise/cutting/exact/creases.h"
 #include "incise/cutting/exact/crossing_counts.h"
-#include "incise/cutting/exact/cut_border.h"
 #include "incise/cutting/exact/cut_end.h"
+#include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/fitting_place.h"
-#include "incise/cutting/exact/folds.h"
 #include "incise/cutting/exact/near_nodes.h"
-#include "incise/cutting/exact/parting.h"
-#include "incise/cutting/exact/passages.h"
 #include "incise/cutting/exact/recognition.h"
+#include "incise/cutting/exact/separation.h"
+#include "incise/cutting/exact/surface_boundary.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/topology/mesh_edit.h"
 
@@ -40,35 +40,38 @@ constexpr double smallest_snap = 1e-7;
 /// What lies between keeps the shape of elements (docs/cutting.md).
 constexpr double share_always_snapped = 1.0 / 3.0;
 
-/// Nearer than this share of an edge to an end that is on the surface, it is no other passage but a
-/// bend of the surface, or that the tissue's motion between two steps is taken as straight.
+/// Nearer than this share of an edge to an end that is on the surface, it is no other intersection
+/// but a bend of the surface, or that the tissue's motion between two steps is taken as straight.
 constexpr double bend = 0.25;
 
-/// How often an edge is divided in one sweep: folds of a surface could go on for ever.
+/// How often an edge is divided in one sweep: creases of a surface could go on for ever.
 constexpr int max_generation = 6;
 
 /// Of those through an edge, the one at which it is divided first: that to which the blade comes
 /// first, as in steps of which each has one of them; of those that it meets at once, the middle.
-const Passage& first_of(const Passages& passages) {
-    const auto is_earlier = [](const Passage& a, const Passage& b) { return a.time < b.time; };
-    const double time = std::min_element(passages.begin(), passages.end(), is_earlier)->time;
-    const auto is_first = [&](const Passage& p) { return p.time == time; };
-    auto skipped = std::count_if(passages.begin(), passages.end(), is_first) / 2;
-    return *std::find_if(passages.begin(), passages.end(),
-                         [&](const Passage& p) { return is_first(p) && skipped-- == 0; });
+const EdgeIntersection& first_of(const EdgeIntersections& intersections) {
+    const auto is_earlier = [](const EdgeIntersection& a, const EdgeIntersection& b) {
+        return a.time < b.time;
+    };
+    const double time =
+        std::min_element(intersections.begin(), intersections.end(), is_earlier)->time;
+    const auto is_first = [&](const EdgeIntersection& p) { return p.time == time; };
+    auto skipped = std::count_if(intersections.begin(), intersections.end(), is_first) / 2;
+    return *std::find_if(intersections.begin(), intersections.end(),
+                         [&](const EdgeIntersection& p) { return is_first(p) && skipped-- == 0; });
 }
 
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting,
-             const BladeEnd* blade_end = nullptr)
+             const SplitOptions& options, SnapHistory& snap_history,
+             std::span<SuspendedCut> resting, const BladeEnd* blade_end = nullptr)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
-          scars_(scars),
-          resting_(resting),
+          snap_history_(snap_history),
+          suspended_(resting),
           options_(options),
           snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
           farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
@@ -84,7 +87,7 @@ class Splitter {
             leave_behind({});
             return {};
         }
-        if (begins) front_.set_number(scars_.take_rank());
+        if (begins) front_.set_number(snap_history_.take_rank());
         edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
         put_on_lying_nodes();
@@ -92,8 +95,8 @@ class Splitter {
         part();
         Split result{edit_->commit(), report_};
         front_.apply(mesh_, result.changes, true);
-        scars_.apply(mesh_, result.changes);
-        for (const auto& [e, cut] : crumbs_) scars_.add_crumb(e, cut);
+        snap_history_.apply(mesh_, result.changes);
+        for (const auto& [e, cut] : slivers_) snap_history_.add_sliver(e, cut);
         leave_behind(result.changes);
         return result;
     }
@@ -102,7 +105,7 @@ class Splitter {
     /// An edge to be divided, unless an end of it comes to count as on the surface.
     struct Pending {
         ElementId element;  // one of those that have the edge
-        Passages passages;
+        EdgeIntersections intersections;
     };
     struct Turn {
         double time, length;
@@ -146,17 +149,19 @@ class Splitter {
     double rest_length(const Edge& edge) const { return rest_edge(edge.a, edge.b).norm(); }
 
     void find_crossed_edges();
-    Passages passages(const Edge& edge, ElementId element) const;
+    EdgeIntersections intersections(const Edge& edge, ElementId element) const;
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
-    void receive(const Edge& edge, ElementId element, Passages passages);
-    Scar scar_at(NodeId n, const Passage& passage) const;
-    bool is_at(const EdgeEnd& end, const Passage& passage);
-    bool passes_by(NodeId n, NodeId other, const Passage& passage) const;
-    void settle(const Edge& edge, const Passages& passages);
-    bool is_to_be_divided(const Edge& edge, ElementId element, Passages& passages);
+    void receive(const Edge& edge, ElementId element, EdgeIntersections intersections);
+    CutRecord record_at(NodeId n, const EdgeIntersection& intersection) const;
+    bool is_at(const EdgeEnd& end, const EdgeIntersection& intersection);
+    bool passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const;
+    void settle(const Edge& edge, const EdgeIntersections& intersections);
+    bool is_to_be_divided(const Edge& edge, ElementId element, EdgeIntersections& intersections);
     void divide_next();
-    double place_to_divide(const Edge& edge, ElementId element, const Passage& passage);
-    NodeId divide(const Edge& edge, ElementId element, double place, const Passage& passage);
+    double place_to_divide(const Edge& edge, ElementId element,
+                           const EdgeIntersection& intersection);
+    NodeId divide(const Edge& edge, ElementId element, double place,
+                  const EdgeIntersection& intersection);
     struct Division {
         NodeId middle;
         std::vector<NodeId> ring;  // of the other nodes of the elements round the edge
@@ -167,9 +172,9 @@ class Splitter {
     void divide_at_end();
     NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
     void part();
-    std::optional<CutFront::Place> place_at_fold(ElementId e) const;
-    void open(const CutFront& front, const Parting& parting);
-    double time_of_parting(FaceId f) const;
+    std::optional<CutFront::Place> position_at_crease(ElementId e) const;
+    void open(const CutFront& front, const Separation& separation);
+    double time_of_separation(FaceId f) const;
     std::array<MovingPoint, 3> points(FaceId f) const {
         return {point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
                 point(mesh_.face_corner(f, 2))};
@@ -182,8 +187,8 @@ class Splitter {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     CutFront& front_;
-    Scars& scars_;
-    const std::span<RestingBlade> resting_;
+    SnapHistory& snap_history_;
+    const std::span<SuspendedCut> suspended_;
     const SplitOptions& options_;
     const double snap_;      // share of an edge: nearer crossings count as at its end
     const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
@@ -202,7 +207,7 @@ class Splitter {
     NodesOnSurface lying_;            // but for rounding
     std::vector<ElementId> touched_;  // crossed, made of such, or with a face on the surface
     std::vector<ElementId> ring_;     // scratch
-    std::vector<std::pair<ElementId, std::uint64_t>> crumbs_;  // and the number of the cut
+    std::vector<std::pair<ElementId, std::uint64_t>> slivers_;  // and the number of the cut
     SplitReport report_;
 };
 
@@ -218,16 +223,16 @@ Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
     return rest.transpose().inverse() * (current.transpose() * normal);
 }
 
-Passages Splitter::passages(const Edge& edge, ElementId element) const {
+EdgeIntersections Splitter::intersections(const Edge& edge, ElementId element) const {
     const CrossableEdge crossable{point(edge.a), point(edge.b), rest_edge(edge.a, edge.b)};
     const bool is_tetrahedron = mesh_.kind(element) == CellKind::tetrahedron;
-    Passages passages;
+    EdgeIntersections intersections;
     for (const Crossing& crossing : crossings_of(surface_, crossable, snap_)) {
         const Vec3 normal =
             is_tetrahedron ? normal_at_rest(element, crossing.normal) : Vec3(Vec3::Zero());
-        passages.push_back(passage_at(crossing, surface_, crossable, normal));
+        intersections.push_back(intersection_at(crossing, surface_, crossable, normal));
     }
-    return passages;
+    return intersections;
 }
 
 void Splitter::find_crossed_edges() {
@@ -250,13 +255,13 @@ void Splitter::find_crossed_edges() {
 
     struct Found {
         EdgeList::Entry entry;
-        Passages passages;
+        EdgeIntersections intersections;
     };
     std::vector<Found> found;
     std::vector<bool> is_crossed(edges.entries().size());
     for (std::size_t i = 0; i < edges.entries().size(); ++i) {
         const EdgeList::Entry& entry = edges.entries()[i];
-        auto passed = passages(entry.edge, entry.element);
+        auto passed = intersections(entry.edge, entry.element);
         if (passed.empty()) continue;
         is_crossed[i] = true;
         found.push_back({entry, std::move(passed)});
@@ -282,11 +287,12 @@ void Splitter::find_crossed_edges() {
         last = e;
     }
     if (!found.empty())
-        for (const auto& [n, time] : recognize(tissue_, surface_, edges.entries(), scars_, front_))
+        for (const auto& [n, time] :
+             recognize(tissue_, surface_, edges.entries(), snap_history_, front_))
             came_on_[n] = time;
     for (const Found& f : found)
-        if (f.passages.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
-    for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.passages));
+        if (f.intersections.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
+    for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.intersections));
 }
 
 /// Opens what lies on the cut, and on those of the blades that are in the body besides.
@@ -295,30 +301,30 @@ void Splitter::part() {
                          [&](ElementId e) { return mesh_.is_alive(e); });
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto parting_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut,
-                                const std::function<bool(FaceId)>& is_reached, bool snaps,
-                                const Course& course) {
-        return parting(mesh_, front, scars_, touched_, place_on_cut, is_reached,
-                       snaps ? std::optional(course) : std::nullopt);
+    const auto separation_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut,
+                                   const std::function<bool(FaceId)>& is_reached, bool snaps,
+                                   const Course& course) {
+        return separation(mesh_, front, snap_history_, touched_, place_on_cut, is_reached,
+                          snaps ? std::optional(course) : std::nullopt);
     };
-    const PlaceOnCut place_at_fold = [&](ElementId e) { return this->place_at_fold(e); };
+    const PlaceOnCut position_at_crease = [&](ElementId e) { return this->position_at_crease(e); };
     const auto is_behind_end = [&](FaceId f) { return !end_ || end_->is_behind(f); };
     // A surface at rest does not go on, nor does a blade at its end: all is decided at once.
-    Parting own = parting_of(
-        front_, surface_.has_folds() ? place_at_fold : PlaceOnCut(), is_behind_end,
+    Separation own = separation_of(
+        front_, surface_.has_creases() ? position_at_crease : PlaceOnCut(), is_behind_end,
         options_.snap > 0.0,
-        {[&](FaceId f) { return time_of_parting(f); },
+        {[&](FaceId f) { return time_of_separation(f); },
          [&](FaceId f) { return !end_ && surface_.ends_inside(points(f)).value_or(false); }});
-    std::vector<Parting> others;
-    for (const RestingBlade& blade : resting_)
+    std::vector<Separation> others;
+    for (const SuspendedCut& blade : suspended_)
         others.push_back(
-            parting_of(blade.front, {}, {}, blade.snaps,
-                       {[](FaceId) { return 0.0; },
-                        [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
+            separation_of(blade.front, {}, {}, blade.snaps,
+                          {[](FaceId) { return 0.0; },
+                           [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
     open(front_, own);
     front_.set_waiting(std::move(own.waiting));
     for (std::size_t i = 0; i < others.size(); ++i) {
-        CutFront& front = resting_[i].front;
+        CutFront& front = suspended_[i].front;
         open(front, others[i]);
         std::ranges::copy(front.waiting(), std::back_inserter(others[i].waiting));
         front.set_waiting(std::move(others[i].waiting));
@@ -327,7 +333,7 @@ void Splitter::part() {
 
 /// By its middle. Corners that the edit has made do not tell: rounding has moved them off their
 /// edges, and crossings are counted as if it had not.
-std::optional<CutFront::Place> Splitter::place_at_fold(ElementId e) const {
+std::optional<CutFront::Place> Splitter::position_at_crease(ElementId e) const {
     std::array<MovingPoint, 4> points;
     NodeId old;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -339,19 +345,19 @@ std::optional<CutFront::Place> Splitter::place_at_fold(ElementId e) const {
     return CutFront::Place{old, is_crossed_from_middle(surface_, points, point(old))};
 }
 
-void Splitter::open(const CutFront& front, const Parting& parting) {
-    for (const FaceId f : parting.faces) {
+void Splitter::open(const CutFront& front, const Separation& separation) {
+    for (const FaceId f : separation.faces) {
         if (!mesh_.neighbor(f).is_valid()) continue;  // it is on another cut, too
         report_.cut_area += topology::rest_area(mesh_, f);
         ++report_.faces_opened;
         edit_->open(f);
     }
-    for (const ElementId e : parting.crumbs) crumbs_.emplace_back(e, front.number());
+    for (const ElementId e : separation.slivers) slivers_.emplace_back(e, front.number());
 }
 
 /// When the face came to have its three nodes on the cut and its elements on different sides of
 /// it; before the step, if a look at them does not tell.
-double Splitter::time_of_parting(FaceId f) const {
+double Splitter::time_of_separation(FaceId f) const {
     double last = -1.0;
     for (int p = 0; p < 3; ++p)
         if (const auto place = came_on_.find(mesh_.face_corner(f, p)); place != came_on_.end())
@@ -362,8 +368,8 @@ double Splitter::time_of_parting(FaceId f) const {
         for (const NodeId apex : mesh_.corners(e)) {
             if (std::ranges::find(corners, apex) != corners.end()) continue;
             for (const NodeId n : corners)
-                for (const Passage& passage : passages(edge_between(apex, n), e))
-                    last = std::max(last, passage.time);
+                for (const EdgeIntersection& intersection : intersections(edge_between(apex, n), e))
+                    last = std::max(last, intersection.time);
         }
     return last;
 }
@@ -375,13 +381,13 @@ void Splitter::put_on_lying_nodes() {
         if (front_.is_on(n)) continue;
         snap_to(n, reach);
         const Vec3 x = point(n)[1];
-        scars_.add(n, {normal, Vec3::Zero(), false, front_.rank(n), surface_.identity(), x});
+        snap_history_.add(n, {normal, Vec3::Zero(), false, front_.rank(n), surface_.identity(), x});
     }
 }
 
 void Splitter::put_on(NodeId n, bool is_exact, double reach) {
     if (!front_.is_on(n)) came_on_[n] = now_;
-    front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : scars_.take_rank());
+    front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : snap_history_.take_rank());
 }
 
 void Splitter::snap_to(NodeId n, double reach) {
@@ -389,31 +395,33 @@ void Splitter::snap_to(NodeId n, double reach) {
     put_on(n, false, reach);
 }
 
-Scar Splitter::scar_at(NodeId n, const Passage& passage) const {
+CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) const {
     const Vec3 x = point(n)[1];
     const bool is_exact = front_.is_on(n) && !front_.is_near(n);
-    return {passage.normal, passage.point - x, is_exact, front_.rank(n), surface_.identity(), x};
+    return {intersection.normal, intersection.point - x, is_exact,
+            front_.rank(n),      surface_.identity(),    x};
 }
 
-/// Whether a passage through an edge counts as at the end.
-bool Splitter::is_at(const EdgeEnd& end, const Passage& passage) {
-    if (near_nodes_.has(end, passage.normal_at_rest)) return true;
-    const double size = (point(end.node)[1] - passage.point).norm();
-    return scars_.has(end.node, scar_at(end.node, passage), size);
+/// Whether an intersection through an edge counts as at the end.
+bool Splitter::is_at(const EdgeEnd& end, const EdgeIntersection& intersection) {
+    if (near_nodes_.has(end, intersection.normal_at_rest)) return true;
+    const double size = (point(end.node)[1] - intersection.point).norm();
+    return snap_history_.has(end.node, record_at(end.node, intersection), size);
 }
 
-/// Whether the passage through the edge to `other` is no more than where the surface passes by a
-/// node that is near it.
-bool Splitter::passes_by(NodeId n, NodeId other, const Passage& passage) const {
+/// Whether the intersection through the edge to `other` is no more than where the surface passes by
+/// a node that is near it.
+bool Splitter::passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const {
     if (!front_.is_near(n)) return false;
-    if (!surface_.has_folds()) return true;
+    if (!surface_.has_creases()) return true;
     const double length = (point(other)[1] - point(n)[1]).norm();
-    return is_same_sheet(scars_.of(n), scar_at(n, passage), length);
+    return is_same_branch(snap_history_.of(n), record_at(n, intersection), length);
 }
 
 // Of a node near the surface, the nearest crossing of any edge counts as at the node.
-bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& passages) {
-    auto begin = passages.begin(), end = passages.end();
+bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
+                                EdgeIntersections& intersections) {
+    auto begin = intersections.begin(), end = intersections.end();
     const auto drop_bends = [&] {
         while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
         while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
@@ -425,45 +433,45 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element, Passages& p
     drop_bends();
     if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
     const double length = rest_length(edge);
-    const auto is_near_a = [&](const Passage& p) {
+    const auto is_near_a = [&](const EdgeIntersection& p) {
         return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
     };
-    const auto is_near_b = [&](const Passage& p) {
+    const auto is_near_b = [&](const EdgeIntersection& p) {
         return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
     };
     // At both of them: at the nearer one.
-    const auto is_at_a = [&](const Passage& p) {
+    const auto is_at_a = [&](const EdgeIntersection& p) {
         return is_near_a(p) && (p.from_a <= p.from_b || !is_near_b(p));
     };
-    const auto is_at_b = [&](const Passage& p) {
+    const auto is_at_b = [&](const EdgeIntersection& p) {
         return is_near_b(p) && (p.from_b < p.from_a || !is_near_a(p));
     };
-    const auto bring = [&](NodeId n, const Passage& passage) {
+    const auto bring = [&](NodeId n, const EdgeIntersection& intersection) {
         if (front_.is_on(n)) return;
         snap_to(n, length);
-        scars_.add(n, scar_at(n, passage));
+        snap_history_.add(n, record_at(n, intersection));
     };
     for (; begin != end && is_at_a(*begin); ++begin) bring(edge.a, *begin);
     for (; begin != end && is_at_b(*(end - 1)); --end) bring(edge.b, *(end - 1));
     drop_bends();
     if (begin == end || are_both_on()) return false;
-    passages = Passages(begin, end);
+    intersections = EdgeIntersections(begin, end);
     return true;
 }
 
-void Splitter::receive(const Edge& edge, ElementId element, Passages passages) {
-    queue_.push({first_of(passages).time, rest_length(edge), edge});
-    pending_.insert_or_assign(edge, Pending{element, std::move(passages)});
+void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections intersections) {
+    queue_.push({first_of(intersections).time, rest_length(edge), edge});
+    pending_.insert_or_assign(edge, Pending{element, std::move(intersections)});
 }
 
 /// The edge is not divided: what passes through it counts as at its ends.
-void Splitter::settle(const Edge& edge, const Passages& passages) {
-    for (const Passage& passage : passages) {
+void Splitter::settle(const Edge& edge, const EdgeIntersections& intersections) {
+    for (const EdgeIntersection& intersection : intersections) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
-        if (is_at_a && (!is_at_b || passage.from_a <= passage.from_b))
-            scars_.add(edge.a, scar_at(edge.a, passage));
-        if (is_at_b && (!is_at_a || passage.from_b <= passage.from_a))
-            scars_.add(edge.b, scar_at(edge.b, passage));
+        if (is_at_a && (!is_at_b || intersection.from_a <= intersection.from_b))
+            snap_history_.add(edge.a, record_at(edge.a, intersection));
+        if (is_at_b && (!is_at_a || intersection.from_b <= intersection.from_a))
+            snap_history_.add(edge.b, record_at(edge.b, intersection));
     }
 }
 
@@ -473,35 +481,39 @@ void Splitter::divide_next() {
     now_ = time;
     const auto place = pending_.find(edge);
     const ElementId element = place->second.element;
-    Passages due = std::move(place->second.passages), later;
+    EdgeIntersections due = std::move(place->second.intersections), later;
     pending_.erase(place);
     // Of later ones it is decided when the blade is there, as if they were in another step.
-    const auto is_later = [&](const Passage& passage) { return passage.time > now_ + at_once; };
+    const auto is_later = [&](const EdgeIntersection& intersection) {
+        return intersection.time > now_ + at_once;
+    };
     std::ranges::copy_if(due, std::back_inserter(later), is_later);
     if (!later.empty()) std::erase_if(due, is_later);
-    if (Passages left = due; is_to_be_divided(edge, element, left)) {
-        const Passage& passage = first_of(left);
-        const double t = place_to_divide(edge, element, passage);
+    if (EdgeIntersections left = due; is_to_be_divided(edge, element, left)) {
+        const EdgeIntersection& intersection = first_of(left);
+        const double t = place_to_divide(edge, element, intersection);
         if (t > 0.0) {
-            const NodeId middle = divide(edge, element, t, passage);
-            scars_.add(middle, scar_at(middle, passage));
+            const NodeId middle = divide(edge, element, t, intersection);
+            snap_history_.add(middle, record_at(middle, intersection));
             return;
         }
-        const NodeId end = passage.from_a < passage.from_b ? edge.a : edge.b;
+        const NodeId end = intersection.from_a < intersection.from_b ? edge.a : edge.b;
         snap_to(end, rest_length(edge));
-        scars_.add(end, scar_at(end, passage));  // beside a fold, even of a node made on the cut
+        snap_history_.add(
+            end, record_at(end, intersection));  // beside a crease, even of a node made on the cut
     }
     settle(edge, due);
     if (!later.empty()) receive(edge, element, std::move(later));
 }
 
 /// Where to divide the edge; negative if the nearer end is to count as on the surface.
-double Splitter::place_to_divide(const Edge& edge, ElementId element, const Passage& passage) {
+double Splitter::place_to_divide(const Edge& edge, ElementId element,
+                                 const EdgeIntersection& intersection) {
     if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
-    if (options_.uncut.step_length.empty()) return passage.place;
+    if (options_.uncut.step_length.empty()) return intersection.place;
     ring_.clear();
     topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
-    return fitting_place(mesh_, {edge.a, edge.b, ring_}, passage,
+    return fitting_place(mesh_, {edge.a, edge.b, ring_}, intersection,
                          {options_.uncut, least_step_share(options_.snap), farthest_});
 }
 
@@ -528,7 +540,7 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
     const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
-    scars_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
+    snap_history_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
     return {middle, std::move(ring), halves.elements};
 }
 
@@ -536,19 +548,20 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
 void Splitter::place_halves(const Edge& edge, const Division& division, double reach) {
     const auto& [middle, ring, elements] = division;
     front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
-    for (const RestingBlade& blade : resting_) {
-        place_for_resting(blade, edge, middle, ring, reach, scars_,
-                          [&](NodeId n) { return point(n); });
+    for (const SuspendedCut& blade : suspended_) {
+        position_of_suspended(blade, edge, middle, ring, reach, snap_history_,
+                              [&](NodeId n) { return point(n); });
         blade.front.place_halves(mesh_, edge.a, edge.b, middle, elements);
     }
 }
 
 /// Returns the new node.
-NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Passage& passage) {
+NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
+                        const EdgeIntersection& intersection) {
     const double reach = rest_length(edge);
     const Division division = bisect(edge, element, t);
     const auto& [middle, ring, elements] = division;
-    put_on(middle, t == passage.place, reach);
+    put_on(middle, t == intersection.place, reach);
 
     const auto holder = [&](NodeId other) {
         ElementId found;
@@ -558,28 +571,29 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t, const Pas
         return found;
     };
     const auto ask = [&](NodeId other) {
-        return passages(edge_between(other, middle), holder(other));
+        return intersections(edge_between(other, middle), holder(other));
     };
-    std::vector<Passages> to_ring;
+    std::vector<EdgeIntersections> to_ring;
     for (const NodeId n : ring) to_ring.push_back(ask(n));
-    Passages to_a = ask(edge.a), to_b = ask(edge.b);
-    const auto has_border = [&](NodeId p, NodeId q, NodeId r) {
+    EdgeIntersections to_a = ask(edge.a), to_b = ask(edge.b);
+    const auto has_boundary = [&](NodeId p, NodeId q, NodeId r) {
         return surface_.ends_inside({point(p), point(q), point(r)});
     };
-    const auto place = [&](NodeId a, NodeId b, const Passages& towards_b) {
-        place_on_side(front_, a, b, middle, ring, has_border, [&](std::size_t i) {
+    const auto place = [&](NodeId a, NodeId b, const EdgeIntersections& towards_b) {
+        place_on_side(front_, a, b, middle, ring, has_boundary, [&](std::size_t i) {
             return (to_ring[i].size() + towards_b.size()) % 2 == 1;
         });
     };
-    if (t < passage.place)
+    if (t < intersection.place)
         place(edge.b, edge.a, to_a);
     else
         place(edge.a, edge.b, to_b);
     place_halves(edge, division, reach);
     // What the blade did before, it did to the edge that was there then: in smaller steps these
     // would not be asked for it.
-    const auto take = [&](NodeId other, Passages&& passed) {
-        std::erase_if(passed, [&](const Passage& p) { return p.time < passage.time; });
+    const auto take = [&](NodeId other, EdgeIntersections&& passed) {
+        std::erase_if(passed,
+                      [&](const EdgeIntersection& p) { return p.time < intersection.time; });
         if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
     };
     take(edge.a, std::move(to_a));
@@ -593,20 +607,20 @@ void Splitter::divide_at_end() {
     if (!end_) return;
     now_ = 1.0;
     const PlaceOnCut unknown;
-    const auto faces = Sides(mesh_, front_, touched_, unknown).parted_faces();
-    for (const auto& [edge, element, passage] : end_->crossed_edges(faces, snap_, farthest_))
-        receive(edge, element, {passage});
+    const auto faces = Sides(mesh_, front_, touched_, unknown).separated_faces();
+    for (const auto& [edge, element, intersection] : end_->crossed_edges(faces, snap_, farthest_))
+        receive(edge, element, {intersection});
     while (!queue_.empty()) {
         const Edge edge = queue_.top().edge;
         queue_.pop();
-        const auto [element, passages] = std::move(pending_.extract(edge).mapped());
+        const auto [element, intersections] = std::move(pending_.extract(edge).mapped());
         if (end_->is_at(edge.a) || end_->is_at(edge.b)) continue;
-        const Passage& passage = passages.front();
-        const double t = place_to_divide(edge, element, passage);
+        const EdgeIntersection& intersection = intersections.front();
+        const double t = place_to_divide(edge, element, intersection);
         if (t > 0.0)
             end_->put_at(divide_on_cut(edge, element, t));
         else
-            end_->put_at(passage.from_a < passage.from_b ? edge.a : edge.b);
+            end_->put_at(intersection.from_a < intersection.from_b ? edge.a : edge.b);
     }
 }
 
@@ -629,17 +643,19 @@ NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
 double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
-            const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
-    return Splitter(mesh, tissue, surface, front, options, scars, resting).run();
+            const SplitOptions& options, SnapHistory& snap_history,
+            std::span<SuspendedCut> resting) {
+    return Splitter(mesh, tissue, surface, front, options, snap_history, resting).run();
 }
 
 Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
-             const SplitOptions& options, Scars& scars, std::span<RestingBlade> resting) {
+             const SplitOptions& options, SnapHistory& snap_history,
+             std::span<SuspendedCut> resting) {
     if (front.is_empty()) return {};
     const BladeEnd end =
         away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
     Split result = Splitter(mesh, tissue, end.continuation(way_out(tissue, end)), front, options,
-                            scars, resting, &end)
+                            snap_history, resting, &end)
                        .run();
     front = {};
     return result;

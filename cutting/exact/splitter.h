@@ -7,9 +7,9 @@
 
 #include "incise/cutting/exact/blade_end.h"
 #include "incise/cutting/exact/cut_front.h"
-#include "incise/cutting/exact/resting_blade.h"
-#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/exact/step_length.h"
+#include "incise/cutting/exact/suspended_cut.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/topology/change_set.h"
@@ -57,11 +57,11 @@ struct Split {
 /// nodes lie on the surface and whose elements are on different sides of it. A body through which
 /// the surface passes right across is parted; where the surface ends, so do the opened faces,
 /// within one element. Small pieces at its end wait in the front, for the step in which the blade
-/// has gone on or away: parting.h.
+/// has gone on or away: separation.h.
 ///
 /// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
 ///               brought up to date
-/// @param scars  of all cuts of this body so far; brought up to date
+/// @param snap_history  of all cuts of this body so far; brought up to date
 /// @param resting  the blades that are in the body besides; their fronts know of what is divided,
 ///                 but not yet of nodes that the edit copies: CutFront::follow. What comes to lie
 ///                 on their cuts behind them opens too.
@@ -69,8 +69,8 @@ struct Split {
 /// Cost: a few microseconds for each element that is crossed, and the search for them: what is near
 /// the surface, if the motion has boxes, else O(#elements).
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-            CutFront& front, const SplitOptions& options, Scars& scars,
-            std::span<RestingBlade> resting = {});
+            CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
+            std::span<SuspendedCut> resting = {});
 
 /// Ends the cut of a blade whose way has ended, at its edge: elements that the edge is in are
 /// divided along the continuation of its way, the faces on the cut at the edge, to the same limits,
@@ -80,7 +80,7 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
 /// @param tissue  at rest: before and after are the same
 /// Else as split(). Nothing happens if the front is empty.
 Split finish(topology::Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade,
-             CutFront& front, const SplitOptions& options, Scars& scars,
-             std::span<RestingBlade> resting = {});
+             CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
+             std::span<SuspendedCut> resting = {});
 
 }  // namespace incise::cutting

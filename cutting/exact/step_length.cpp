@@ -30,7 +30,7 @@ struct Shape {
 
 }  // namespace
 
-double own_step_length(const std::array<Vec3, 4>& corners) {
+double element_step_length(const std::array<Vec3, 4>& corners) {
     const Shape shape(corners);
     const double largest =
         *std::max_element(shape.inverse_altitudes.begin(), shape.inverse_altitudes.end());

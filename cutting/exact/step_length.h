@@ -15,7 +15,7 @@ namespace incise::cutting {
 /// it: 1 / sqrt(max_i (1/h_i) sum_j (1/h_j)), h the altitudes, m. A body's stable step
 /// (physics::StableStep) is never below the least of its elements': masses and stiffnesses of a
 /// node are sums over its elements.
-double own_step_length(const std::array<Vec3, 4>& corners);
+double element_step_length(const std::array<Vec3, 4>& corners);
 
 /// The bound of physics::StableStep at rest for a body of tetrahedra of one material, times the
 /// speed of waves in it, m. Infinite without elements. Cost: O(n).

@@ -22,7 +22,7 @@ inline constexpr SurfaceIdentity no_identity = 0, identity_of_planes = 1;
 
 /// A surface at rest cuts tissue as it is after the step; a moving edge, what it meets during the
 /// step. All answers are exact up to the places, and agree with each other: round any triangle of
-/// tissue the crossings are even in number, unless the border of the surface runs through it.
+/// tissue the crossings are even in number, unless the boundary of the surface runs through it.
 class CutSurface {
   public:
     virtual ~CutSurface() = default;
@@ -40,15 +40,15 @@ class CutSurface {
     /// crossings, so that its planes tell.
     virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
     /// Whether it may turn sharply within an element and is there all at once. Not so if it is
-    /// swept: what is decided at folds would depend on the steps.
-    virtual bool has_folds() const { return false; }
-    /// Normal, of unit length, of a surface with folds where it is no farther from the point than
-    /// `distance`, m, and its border is; nothing else.
+    /// swept: what is decided at creases would depend on the steps.
+    virtual bool has_creases() const { return false; }
+    /// Normal, of unit length, of a surface with creases where it is no farther from the point than
+    /// `distance`, m, and its boundary is; nothing else.
     virtual std::optional<Vec3> normal_near(const Vec3&, double /*distance*/) const {
         return std::nullopt;
     }
     virtual SurfaceIdentity identity() const { return no_identity; }
-    /// Whether the border at which a sweep ends, and the next one begins, runs through the
+    /// Whether the boundary at which a sweep ends, and the next one begins, runs through the
     /// triangle (as it is after the step), an odd number of times. Exact, and in agreement with the
     /// crossings of this step and the next. Nothing if the surface is not swept.
     virtual std::optional<bool> ends_inside(const std::array<MovingPoint, 3>&) const {

@@ -21,7 +21,7 @@ struct MovingSegment {
 struct Crossing {
     double place;       ///< 0 at a, 1 at b
     Vec3 normal;        ///< of the cut there, of any length but zero, unless it is not known
-    double time = 0.0;  ///< of the passage: 0 before the step, 1 after it
+    double time = 0.0;  ///< of the intersection: 0 before the step, 1 after it
     bool operator<(const Crossing& other) const { return place < other.place; }
 };
 

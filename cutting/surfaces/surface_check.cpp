@@ -68,7 +68,7 @@ bool has_separating_edge(const PlacedTriangle& t, const PlacedTriangle& other, c
 }
 
 /// Whether the edge from p to q goes through the triangle. One that begins or ends in its plane
-/// does so within it, not on its rim; one that lies in the plane does not.
+/// does so within it, not on its boundary; one that lies in the plane does not.
 bool passes_through(const Vec3& p, int side_of_p, const Vec3& q, int side_of_q,
                     const PlacedTriangle& t) {
     if (side_of_p == side_of_q) return false;

@@ -14,9 +14,8 @@ namespace incise::cutting {
 /// those that lie upon each other; empty for a sheet. Where sheets meet, an edge of tissue may be
 /// passed twice, which counts as not at all: tissue stays joined.
 /// Points at the same place count as one. Triangles without area count for nothing. Corners that
-/// lie on the rim of another triangle are none of these, and so sheets that cross just along edges
-/// of both, divided differently there, go unnoticed.
-/// To rounding errors. Cost: O(n log n).
+/// lie on the boundary of another triangle are none of these, and so sheets that cross just along
+/// edges of both, divided differently there, go unnoticed. To rounding errors. Cost: O(n log n).
 std::vector<std::string> defects_of_sheet(const topology::SurfaceData& surface);
 
 }  // namespace incise::cutting

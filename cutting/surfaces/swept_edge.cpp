@@ -15,7 +15,7 @@ double rounding_of_heights(const Vec3& normal, const Box& box) {
 }
 
 /// Of the height of a hull: what lies nearer to it counts as in it. An earlier cut that is met
-/// again is found to as much (Scars::rounding).
+/// again is found to as much (SnapHistory::rounding).
 constexpr double hull_margin = 1e-6;
 
 }  // namespace

@@ -140,7 +140,7 @@ void fill(TriangleTree& tree, const std::vector<Triangle>& triangles) {
 }
 
 /// Edges of an odd number of triangles, as triangles without area.
-std::vector<Triangle> border_of(const std::vector<Triangle>& triangles) {
+std::vector<Triangle> boundary_of(const std::vector<Triangle>& triangles) {
     const auto is_before = [](const Vec3& a, const Vec3& b) {
         return std::ranges::lexicographical_compare(a, b);
     };
@@ -154,22 +154,22 @@ std::vector<Triangle> border_of(const std::vector<Triangle>& triangles) {
     std::ranges::sort(edges, [&](const Segment& s, const Segment& t) {
         return s.first == t.first ? is_before(s.second, t.second) : is_before(s.first, t.first);
     });
-    std::vector<Triangle> border;
+    std::vector<Triangle> boundary;
     for (std::size_t begin = 0; begin < edges.size();) {
         std::size_t end = begin;
         while (end < edges.size() && edges[end] == edges[begin]) ++end;
         if ((end - begin) % 2 == 1)
-            border.push_back({edges[begin].first, edges[begin].second, edges[begin].second});
+            boundary.push_back({edges[begin].first, edges[begin].second, edges[begin].second});
         begin = end;
     }
-    return border;
+    return boundary;
 }
 
 }  // namespace
 
 struct TriangleSurface::Tree {
-    TriangleTree bvh, border;
-    bool is_empty = true, has_border = false;
+    TriangleTree bvh, boundary;
+    bool is_empty = true, has_boundary = false;
 };
 
 TriangleSurface::TriangleSurface(const topology::SurfaceData& surface)
@@ -184,9 +184,9 @@ TriangleSurface::TriangleSurface(const topology::SurfaceData& surface)
     identity_ = identity_of(triangles);
     tree_->is_empty = triangles.empty();
     fill(tree_->bvh, triangles);
-    const std::vector<Triangle> border = border_of(triangles);
-    tree_->has_border = !border.empty();
-    fill(tree_->border, border);
+    const std::vector<Triangle> boundary = boundary_of(triangles);
+    tree_->has_boundary = !boundary.empty();
+    fill(tree_->boundary, boundary);
 }
 
 TriangleSurface::~TriangleSurface() = default;
@@ -211,10 +211,10 @@ std::optional<Vec3> TriangleSurface::normal_near(const Vec3& x, double distance)
     if (tree_->is_empty) return std::nullopt;
     const Vec3 reach = Vec3::Constant(distance);
     const Box box(x - reach, x + reach);
-    if (tree_->has_border) {
-        AnyWithin is_at_border{x, distance * distance, box};
-        Eigen::BVIntersect(tree_->border, is_at_border);
-        if (is_at_border.found) return std::nullopt;
+    if (tree_->has_boundary) {
+        AnyWithin is_at_boundary{x, distance * distance, box};
+        Eigen::BVIntersect(tree_->boundary, is_at_boundary);
+        if (is_at_boundary.found) return std::nullopt;
     }
     NearestWithin query{x, distance * distance, box};
     Eigen::BVIntersect(tree_->bvh, query);

@@ -13,10 +13,10 @@ using topology::Mesh;
 
 namespace {
 
-/// Weights of a face's corners for its passage: where, at rest, the straight line between the
+/// Weights of a face's corners for its intersection: where, at rest, the straight line between the
 /// centres of its elements pierces it, so that the path is nearly straight and a blade seldom
 /// passes it twice; the face's centre if the line misses the face, and on quadrilaterals.
-std::array<double, topology::max_face_corners> passage(const Mesh& mesh, FaceId f) {
+std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, FaceId f) {
     const int size = mesh.face_size(f);
     std::array<double, topology::max_face_corners> centre{};
     centre.fill(1.0 / size);
@@ -62,10 +62,10 @@ bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3
 }
 
 /// Takes out the faces that would cut a single element off from several others. Such an element
-/// at the rim of the cut, its centre on one side and its neighbours' on the other, would fall off
-/// as a crumb; hanging by one face it is a leaf, over which nothing passes from side to side. An
-/// element that the source joins to one other only is no crumb but an end, and may be cut off.
-void leave_no_crumbs(const Mesh& mesh, std::vector<FaceId>& faces) {
+/// at the boundary of the cut, its centre on one side and its neighbours' on the other, would fall
+/// off as a sliver; hanging by one face it is a leaf, over which nothing passes from side to side.
+/// An element that the source joins to one other only is no sliver but an end, and may be cut off.
+void leave_no_slivers(const Mesh& mesh, std::vector<FaceId>& faces) {
     std::map<ElementId, int> num_joined;
     const auto joined = [&](ElementId e) -> int& {
         const auto [place, is_new] = num_joined.try_emplace(e, 0);
@@ -74,7 +74,7 @@ void leave_no_crumbs(const Mesh& mesh, std::vector<FaceId>& faces) {
                 place->second += mesh.neighbor({e, f}).is_valid();
         return place->second;
     };
-    const auto is_crumb = [&](ElementId e) {
+    const auto is_sliver = [&](ElementId e) {
         int num_inside = 0;
         for (int f = 0; f < mesh.num_faces(e); ++f) num_inside += mesh.was_inside({e, f});
         return joined(e) == 1 && num_inside > 1;
@@ -82,7 +82,7 @@ void leave_no_crumbs(const Mesh& mesh, std::vector<FaceId>& faces) {
     std::vector<FaceId> kept;
     for (const FaceId f : faces) {
         const ElementId here = f.element, there = mesh.neighbor(f).element;
-        if (is_crumb(here) != is_crumb(there)) continue;
+        if (is_sliver(here) != is_sliver(there)) continue;
         --joined(here);
         --joined(there);
         kept.push_back(f);
@@ -114,7 +114,7 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
             if (other < face && swept.intersects(tissue.box(other.element))) continue;
             const FaceId lower = std::min(face, other), higher = std::max(face, other);
             // From the lower side, so that sums are in the same order every time.
-            const auto weights = passage(mesh, lower);
+            const auto weights = intersection(mesh, lower);
             const MovingPoint middle = {on_face(mesh, lower, weights, tissue.before),
                                         on_face(mesh, lower, weights, tissue.after)};
             const bool is_odd = is_crossed(centre(lower.element), middle, before, after) !=
@@ -123,7 +123,7 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
         }
     });
     std::sort(faces.begin(), faces.end());
-    leave_no_crumbs(mesh, faces);
+    leave_no_slivers(mesh, faces);
     return faces;
 }
 

@@ -18,7 +18,7 @@ namespace incise::cutting {
 /// crossings are counted exactly (space_time.h): once the blade has passed right through, no chain
 /// of elements leads past it, so the body is parted; until then the opened faces are a sheet that
 /// ends at the blade, within one element of where it went. An element that had several neighbours
-/// is not cut off alone: it would be a crumb, its centre beyond the blade and the rest of it not.
+/// is not cut off alone: it would be a sliver, its centre beyond the blade and the rest of it not.
 /// Cost: follows what is near the blade's way, if the motion has boxes; else O(#elements).
 std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Vec3> before,
                                   std::span<const Vec3> after);

@@ -115,12 +115,14 @@ void Scanner::require_room(std::uint64_t count, std::size_t bytes_each,
              " bytes; the file is cut short or damaged");
 }
 
-std::string Scanner::place() const {
+std::string Scanner::location() const {
     const auto name = file_.name() + (is_binary_ ? ": byte " : ":");
     return name + std::to_string(is_binary_ ? item_begin_ : file_.line_of(item_begin_));
 }
 
-void Scanner::fail(const std::string& message) const { throw InputError(place() + ": " + message); }
+void Scanner::fail(const std::string& message) const {
+    throw InputError(location() + ": " + message);
+}
 
 void Scanner::fail_expected(std::string_view what, std::string_view found,
                             const std::string& remark) const {

@@ -75,7 +75,7 @@ class Scanner {
     void require_room(std::uint64_t count, std::size_t bytes_each, std::string_view what) const;
 
     /// The file and the line or byte of the last item read.
-    std::string place() const;
+    std::string location() const;
     /// Throws InputError with that place.
     [[noreturn]] void fail(const std::string& message) const;
     /// @param remark  about what was found

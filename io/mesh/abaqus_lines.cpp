@@ -86,12 +86,12 @@ double AbaqusLines::real(std::string_view field, std::string_view what) const {
     return *parsed;
 }
 
-std::string AbaqusLines::place() const {
+std::string AbaqusLines::location() const {
     return file_.name() + ":" + std::to_string(file_.line_of(byte_));
 }
 
 void AbaqusLines::fail(const std::string& message) const {
-    throw InputError(place() + ": " + message);
+    throw InputError(location() + ": " + message);
 }
 
 }  // namespace incise::io

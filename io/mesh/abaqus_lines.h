@@ -51,7 +51,7 @@ class AbaqusLines {
     /// Where messages point: the byte at which the line begins, unless moved elsewhere.
     std::size_t byte() const { return byte_; }
     void point_to(std::size_t byte) { byte_ = byte; }
-    std::string place() const;
+    std::string location() const;
     [[noreturn]] void fail(const std::string& message) const;
 
   private:

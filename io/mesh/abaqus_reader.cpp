@@ -183,7 +183,7 @@ class AbaqusReader {
                 lines_.number(field, row_.empty() ? "the number of an element" : "a node"));
         if (is_new) row_place_ = lines_.byte();
         if (form_->use == CellForm::Use::refuse)
-            collector_.refuse(*form_, lines_.place() + ": " + element_name(row_.front()), type_);
+            collector_.refuse(*form_, lines_.location() + ": " + element_name(row_.front()), type_);
         const auto num_nodes = row_.size() - 1, wanted = static_cast<std::size_t>(form_->num_nodes);
         if (num_nodes < wanted) return;
         if (num_nodes > wanted)

@@ -6,9 +6,9 @@
 
 namespace incise::io {
 
-void CellCollector::refuse(const CellForm& form, const std::string& place,
+void CellCollector::refuse(const CellForm& form, const std::string& location,
                            std::string_view code) const {
-    throw InputError(place + ": a " + form.name + " (" + type_word_ + " " + std::string(code) +
+    throw InputError(location + ": a " + form.name + " (" + type_word_ + " " + std::string(code) +
                      ") cannot be used; export linear elements (tetrahedra, hexahedra, wedges, "
                      "pyramids)");
 }

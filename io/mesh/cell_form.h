@@ -49,11 +49,11 @@ class CellCollector {
 
     /// Throws InputError about a cell of a form that cannot be used. `place` is what the message
     /// begins with: the file and the cell.
-    [[noreturn]] void refuse(const CellForm& form, const std::string& place) const {
-        refuse(form, place, std::to_string(form.code));
+    [[noreturn]] void refuse(const CellForm& form, const std::string& location) const {
+        refuse(form, location, std::to_string(form.code));
     }
     /// The same where the format calls the kind by a word.
-    [[noreturn]] void refuse(const CellForm& form, const std::string& place,
+    [[noreturn]] void refuse(const CellForm& form, const std::string& location,
                              std::string_view code) const;
 
     /// Appends a cell of a form that is kept; `number` is what the file calls it.

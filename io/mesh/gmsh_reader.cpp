@@ -237,7 +237,7 @@ class GmshReader {
 
     void refuse_form(const CellForm& form, std::int64_t tag) const {
         if (form.use == refuse)
-            collector_.refuse(form, scanner_.place() + ": " + element_name(tag));
+            collector_.refuse(form, scanner_.location() + ": " + element_name(tag));
     }
 
     /// Keeps the element with the node tags in nodes_, which are replaced by point numbers.

@@ -158,7 +158,7 @@ class MeditReader {
         const auto num_cells = scanner_.count("the number of rows of " + std::string(keyword),
                                               (num_nodes + 1) * bytes_of_number);
         if (num_cells == 0) return;
-        if (form.use == refuse) collector_.refuse(form, scanner_.place(), keyword);
+        if (form.use == refuse) collector_.refuse(form, scanner_.location(), keyword);
         if (form.use == ignore) {
             for (std::size_t i = 0; i < num_cells * (num_nodes + 1); ++i)
                 scanner_.number<std::int64_t>("a vertex or a reference");

@@ -69,7 +69,7 @@ class NumberLines {
                                    scanner_.token("the end"));
     }
     [[noreturn]] void fail(const std::string& message) const { scanner_.fail(message); }
-    std::string place() const { return scanner_.place(); }
+    std::string location() const { return scanner_.location(); }
 
   private:
     Scanner scanner_;
@@ -151,7 +151,7 @@ class TetgenReader {
         if (form == nullptr)
             elements_.fail("elements have " + std::to_string(num_corners) +
                            " nodes; they must have 4");
-        if (form->use == refuse) collector_.refuse(*form, elements_.place());
+        if (form->use == refuse) collector_.refuse(*form, elements_.location());
         if (num_attributes > 1)
             result_.warnings.push_back("elements have " + std::to_string(num_attributes) +
                                        " attributes; the first one of each is taken as the region");

@@ -87,7 +87,7 @@ std::string frame_name(const std::string& series, std::size_t index) {
 
 }  // namespace
 
-// What is no UTF-8, control characters and the last two of the first plane have no place in XML,
+// What is no UTF-8, control characters and the last two of the first plane have no location in XML,
 // a slash has none in a name.
 void require_series_name(std::string_view name) {
     bool is_fit = !name.empty();

@@ -90,35 +90,35 @@ std::string quoted_list(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void refuse_missing_vectors(const std::string& place, const std::string& name,
+void refuse_missing_vectors(const std::string& location, const std::string& name,
                             const std::vector<std::string>& others) {
-    throw InputError(place + ": has no cell array " + in_quotes(name) + " of three components" +
+    throw InputError(location + ": has no cell array " + in_quotes(name) + " of three components" +
                      (others.empty()
                           ? ", nor another; add it to the file's cell data"
                           : "; its cell arrays of three components: " + quoted_list(others)));
 }
 
-void refuse_missing_regions(const std::string& place, const std::string& name,
+void refuse_missing_regions(const std::string& location, const std::string& name,
                             const std::vector<std::string>& others) {
     throw InputError(
-        place + ": has no cell array " + in_quotes(name) + " to take the regions from" +
+        location + ": has no cell array " + in_quotes(name) + " to take the regions from" +
         (others.empty() ? ", nor another of whole numbers; without a name all regions are 0"
                         : "; its cell arrays of whole numbers: " + quoted_list(others)));
 }
 
 CellCollector make_vtk_collector(const std::string& file) { return {file, "VTK cell type"}; }
 
-void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& place) {
+void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& location) {
     if (offsets.empty() || offsets.front() != 0)
-        throw InputError(place + ": the offsets of the cells do not begin with 0");
+        throw InputError(location + ": the offsets of the cells do not begin with 0");
     for (std::size_t i = 1; i < offsets.size(); ++i)
         if (offsets[i] < offsets[i - 1])
-            throw InputError(place + ": cell " + std::to_string(i - 1) + ": ends at offset " +
+            throw InputError(location + ": cell " + std::to_string(i - 1) + ": ends at offset " +
                              std::to_string(offsets[i]) + ", before it begins at " +
                              std::to_string(offsets[i - 1]) + "; offsets must ascend");
 }
 
-void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& file,
+void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& file,
                   CellCollector& collector) {
     topology::MeshData& mesh = file.mesh;
     mesh.points_may_coincide = mesh.points_may_coincide || piece.is_frame;
@@ -132,7 +132,7 @@ void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& fil
     const auto first_cell = static_cast<std::int64_t>(mesh.num_cells() + collector.num_ignored());
     std::array<std::int64_t, topology::max_corners> nodes{};
     for (std::size_t c = 0; c < piece.types.size(); ++c) {
-        const auto here = [&] { return place + ": cell " + std::to_string(c); };
+        const auto here = [&] { return location + ": cell " + std::to_string(c); };
         const auto* form = find_form(forms, piece.types[c]);
         if (form == nullptr)
             throw InputError(here() + ": cell type " + std::to_string(piece.types[c]) +

@@ -28,24 +28,24 @@ struct VtkPiece {
 };
 
 /// Throws InputError unless offsets ascend from 0: then all are in range if the last is.
-/// `place` is what the message begins with.
-void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& place);
+/// `location` is what the message begins with.
+void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& location);
 
 /// Appends the points, the volume cells and their vectors of the piece; checks kinds, sizes, point
-/// numbers and regions. `place` is what messages begin with: the file, and the piece if there are
-/// several.
+/// numbers and regions. `location` is what messages begin with: the file, and the piece if there
+/// are several.
 /// @pre check_offsets has passed, and the last offset is connectivity.size()
-void append_piece(const VtkPiece& piece, const std::string& place, MeshFile& file,
+void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& file,
                   CellCollector& collector);
 
 /// Throws InputError: the file has no cell array `name`, which was asked for. `others` are those
 /// from which regions could be taken: of whole numbers, one a cell.
-[[noreturn]] void refuse_missing_regions(const std::string& place, const std::string& name,
+[[noreturn]] void refuse_missing_regions(const std::string& location, const std::string& name,
                                          const std::vector<std::string>& others);
 
 /// Throws InputError: the file has no cell array `name` of vectors, which was asked for. `others`
 /// are those that it has.
-[[noreturn]] void refuse_missing_vectors(const std::string& place, const std::string& name,
+[[noreturn]] void refuse_missing_vectors(const std::string& location, const std::string& name,
                                          const std::vector<std::string>& others);
 
 /// A collector with VTK's words.

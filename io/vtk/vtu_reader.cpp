@@ -78,9 +78,9 @@ class VtuReader {
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());
         std::size_t index = 0;
         for (const auto piece : pieces) {
-            auto place = file_.name();
-            if (num_pieces > 1) place += ": piece " + std::to_string(index++);
-            read_piece(arrays, piece, place);
+            auto location = file_.name();
+            if (num_pieces > 1) location += ": piece " + std::to_string(index++);
+            read_piece(arrays, piece, location);
         }
         if (num_pieces > 1)
             result_.warnings.push_back(std::to_string(num_pieces) +
@@ -138,7 +138,7 @@ class VtuReader {
         return encoding;
     }
 
-    void read_piece(const VtkXmlArrays& arrays, pugi::xml_node node, const std::string& place) {
+    void read_piece(const VtkXmlArrays& arrays, pugi::xml_node node, const std::string& location) {
         const auto num_points = arrays.count_attribute(node, "NumberOfPoints");
         const auto num_cells = arrays.count_attribute(node, "NumberOfCells");
         VtkPiece piece;
@@ -152,11 +152,11 @@ class VtuReader {
             piece.types = arrays.integers(required(arrays, cells, node, "types"), num_cells);
             const auto ends = arrays.integers(required(arrays, cells, node, "offsets"), num_cells);
             piece.offsets.insert(piece.offsets.end(), ends.begin(), ends.end());
-            check_offsets(piece.offsets, place);
+            check_offsets(piece.offsets, location);
             // Bounds the size asked for next; no compressor packs more densely.
             const auto most = file_.bytes.size() * max_expansion(Compressor::lzma);
             if (static_cast<std::uint64_t>(piece.offsets.back()) > most)
-                throw InputError(place + ": the last cell ends at offset " +
+                throw InputError(location + ": the last cell ends at offset " +
                                  std::to_string(piece.offsets.back()) +
                                  ", more than a file of this size can hold; it is damaged");
             piece.connectivity = arrays.integers(required(arrays, cells, node, "connectivity"),
@@ -168,13 +168,13 @@ class VtuReader {
                                              std::to_string(arrays.num_components(regions)));
                 piece.regions = arrays.reals(regions, num_cells);
             } else if (options_.must_have_regions()) {
-                refuse_missing_regions(place, options_.region_array,
+                refuse_missing_regions(location, options_.region_array,
                                        whole_number_arrays(arrays, node.child("CellData")));
             }
             for (const auto& name : options_.vector_arrays) {
                 const auto array = named(node.child("CellData"), name);
                 if (!array)
-                    refuse_missing_vectors(place, name,
+                    refuse_missing_vectors(location, name,
                                            vector_arrays(arrays, node.child("CellData")));
                 if (arrays.num_components(array) != 3)
                     arrays.fail(array, "vectors need 3 components, this array has " +
@@ -182,7 +182,7 @@ class VtuReader {
                 piece.vectors[name] = arrays.reals(array, 3 * num_cells);
             }
         }
-        append_piece(piece, place, result_, collector_);
+        append_piece(piece, location, result_, collector_);
     }
 
     /// The array of the points at rest: those of a frame of a run are in rest_position.

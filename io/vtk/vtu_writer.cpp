@@ -82,12 +82,13 @@ void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
 }
 
 void add_fields(vtkFieldData& data, const std::vector<Field>& fields, std::size_t num_tuples,
-                const char* place) {
+                const char* location) {
     std::set<std::string> names = {"region"};
     if (data.GetNumberOfArrays() == 0) names.clear();
     for (const auto& field : fields) {
         const auto fail = [&](const std::string& why) {
-            throw std::invalid_argument(std::string(place) + " field '" + field.name + "' " + why);
+            throw std::invalid_argument(std::string(location) + " field '" + field.name + "' " +
+                                        why);
         };
         if (field.name.empty()) fail("has no name");
         if (!names.insert(field.name).second) fail("is there twice");

@@ -23,9 +23,9 @@ void sort_and_make_unique(std::vector<T>& values) {
 
 template <class Record, class Id>
 const Record* find_record(const std::vector<Record>& records, Id id) {
-    const auto place = std::lower_bound(records.begin(), records.end(), id,
-                                        [](const Record& r, Id i) { return r.id < i; });
-    return place != records.end() && place->id == id ? &*place : nullptr;
+    const auto it = std::lower_bound(records.begin(), records.end(), id,
+                                     [](const Record& r, Id i) { return r.id < i; });
+    return it != records.end() && it->id == id ? &*it : nullptr;
 }
 
 /// The parts that an edit has made, by the element that there was before it.
@@ -79,13 +79,13 @@ class Ancestor {
         const auto corner =
             std::find(rest_positions_.begin(), rest_positions_.end(), mesh_.rest_position(n));
         if (corner != rest_positions_.end()) return 1u << (corner - rest_positions_.begin());
-        const auto [place, is_new] = known_.try_emplace(n, ~0u);
+        const auto [it, is_new] = known_.try_emplace(n, ~0u);
         const NodeRecord* record = find_record(changes_.nodes_added, n);
-        if (!is_new || !record) return place->second;
+        if (!is_new || !record) return it->second;
         unsigned corners = 0;
         for (int s = 0; s < record->num_sources; ++s)
             corners |= surrounding(record->sources[static_cast<std::size_t>(s)].node);
-        return place->second = corners;
+        return it->second = corners;
     }
 
     const Mesh& mesh_;

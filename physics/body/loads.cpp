@@ -46,11 +46,12 @@ class ShareSums {
         shares_.push_back({static_cast<std::uint32_t>(n.index()), share});
     }
     /// In ascending order of nodes, each once.
-    std::vector<NodeShare> sums() && {
-        std::stable_sort(shares_.begin(), shares_.end(),
-                         [](const NodeShare& a, const NodeShare& b) { return a.node < b.node; });
+    std::vector<NodalContribution> sums() && {
+        std::stable_sort(
+            shares_.begin(), shares_.end(),
+            [](const NodalContribution& a, const NodalContribution& b) { return a.node < b.node; });
         std::size_t num_nodes = 0;
-        for (const NodeShare& next : shares_) {
+        for (const NodalContribution& next : shares_) {
             if (num_nodes > 0 && shares_[num_nodes - 1].node == next.node)
                 shares_[num_nodes - 1].share += next.share;
             else
@@ -61,21 +62,21 @@ class ShareSums {
     }
 
   private:
-    std::vector<NodeShare> shares_;
+    std::vector<NodalContribution> shares_;
 };
 
 /// What the nodes have of a load, in its own order of summation: that of its members.
 struct ShareFinder {
     const BodyView& body;
 
-    std::vector<NodeShare> operator()(const NodalLoad& load) const {
+    std::vector<NodalContribution> operator()(const NodalLoad& load) const {
         ShareSums shares;
         const auto& members = load.nodes.members();
         for (std::size_t i = 0; i < members.size(); ++i)
             if (load.shares[i] > 0.0) shares.add(members[i].node, load.shares[i]);
         return std::move(shares).sums();
     }
-    std::vector<NodeShare> operator()(const TractionLoad& load) const {
+    std::vector<NodalContribution> operator()(const TractionLoad& load) const {
         ShareSums shares;
         for_loaded(load.faces, body.mesh, [&](FaceId f) {
             const PressedCorner face = first_corner(body.mesh, f);
@@ -85,7 +86,7 @@ struct ShareFinder {
         });
         return std::move(shares).sums();
     }
-    std::vector<NodeShare> operator()(const BodyLoad& load) const {
+    std::vector<NodalContribution> operator()(const BodyLoad& load) const {
         ShareSums shares;
         for (const ElementId e : load.elements.members()) {
             if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
@@ -96,7 +97,7 @@ struct ShareFinder {
         }
         return std::move(shares).sums();
     }
-    std::vector<NodeShare> operator()(const PressureLoad&) const { return {}; }
+    std::vector<NodalContribution> operator()(const PressureLoad&) const { return {}; }
 };
 
 /// N for a share of one.
@@ -223,16 +224,16 @@ void Loads::remove(std::size_t i) {
 
 void Loads::update(const BodyView& body) {
     if (is_up_to_date_) return;
-    burdens_.clear();
-    for (const Load& load : loads_) burdens_.push_back(find_burden(load, body));
+    assembled_.clear();
+    for (const Load& load : loads_) assembled_.push_back(assemble(load, body));
     is_up_to_date_ = true;
 }
 
-Loads::Burden Loads::find_burden(const Load& load, const BodyView& body) {
-    Burden burden{std::visit(ShareFinder{body}, load.kind), {}};
+Loads::AssembledLoad Loads::assemble(const Load& load, const BodyView& body) {
+    AssembledLoad assembled{std::visit(ShareFinder{body}, load.kind), {}};
     if (const auto* pressure = std::get_if<PressureLoad>(&load.kind))
-        burden.pressed = pressed_corners(pressure->faces, body.mesh);
-    return burden;
+        assembled.pressed = pressed_corners(pressure->faces, body.mesh);
+    return assembled;
 }
 
 void Loads::add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
@@ -243,12 +244,12 @@ void Loads::add_forces(const BodyView& body, NodeRange range, std::span<const Ve
         const double factor = factor_of(loads_[i], time);
         if (factor == 0.0) continue;
         const Vec3 force = factor * std::visit(ForcePerShare{}, loads_[i].kind);
-        for (const NodeShare& entry : entries_of(burdens_[i].shares, range))
+        for (const NodalContribution& entry : entries_of(assembled_[i].shares, range))
             forces[entry.node] += entry.share * force;
         const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
         if (!load) continue;
         const double pressure = factor * load->pressure;
-        for (const PressedCorner& corner : entries_of(burdens_[i].pressed, range))
+        for (const PressedCorner& corner : entries_of(assembled_[i].pressed, range))
             forces[corner.node] -= pressure / corner.num_corners * area_vector(corner, positions);
     }
 }
@@ -259,7 +260,7 @@ void Loads::visit_tangents(std::span<const Vec3> positions, double time, Tangent
         const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
         const double factor = factor_of(loads_[i], time);
         if (!load || factor == 0.0) continue;
-        for (const PressedCorner& corner : burdens_[i].pressed)
+        for (const PressedCorner& corner : assembled_[i].pressed)
             if (corner.node == corner.corners[0])
                 visit_tangent(corner, factor * load->pressure, positions, sink);
     }

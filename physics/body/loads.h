@@ -60,7 +60,7 @@ struct Load {
 
 /// What one node has of all that a load acts on: a part of the members (nodal forces), m2
 /// (traction) or m3 (body forces).
-struct NodeShare {
+struct NodalContribution {
     std::uint32_t node;
     double share;
 };
@@ -109,16 +109,16 @@ class Loads final : public ForceTerm {
   private:
     static void share_out(Load& load, const BodyView& body);
     /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
-    struct Burden {
-        std::vector<NodeShare> shares;
+    struct AssembledLoad {
+        std::vector<NodalContribution> shares;
         std::vector<PressedCorner> pressed;
     };
-    static Burden find_burden(const Load& load, const BodyView& body);
+    static AssembledLoad assemble(const Load& load, const BodyView& body);
 
     Vec3 gravity_;
     std::vector<Load> loads_;
-    std::vector<Burden> burdens_;  // of each load
-    bool is_up_to_date_ = false;   // the burdens, with the mesh
+    std::vector<AssembledLoad> assembled_;  // of each load
+    bool is_up_to_date_ = false;            // the burdens, with the mesh
 };
 
 }  // namespace incise::physics

@@ -29,30 +29,33 @@ MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh, Archi
     return table;
 }
 
-Surroundings read_surroundings(const topology::Mesh& mesh, ArchiveReader& ar) {
-    Surroundings surroundings;
-    ar(surroundings.gravity, surroundings.damping, surroundings.supports, surroundings.loads);
-    for (const Support& support : surroundings.supports) support.require_fit(mesh);
-    for (const Load& load : surroundings.loads) load.require_fit(mesh);
-    return surroundings;
+BoundaryConditions read_boundary_conditions(const topology::Mesh& mesh, ArchiveReader& ar) {
+    BoundaryConditions boundary_conditions;
+    ar(boundary_conditions.gravity, boundary_conditions.damping, boundary_conditions.constraints,
+       boundary_conditions.loads);
+    for (const Constraint& constraint : boundary_conditions.constraints)
+        constraint.require_fit(mesh);
+    for (const Load& load : boundary_conditions.loads) load.require_fit(mesh);
+    return boundary_conditions;
 }
 
 }  // namespace
 
-Model::Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings)
+Model::Model(const topology::Mesh& mesh, const MaterialTable& table,
+             BoundaryConditions boundary_conditions)
     : mesh_(mesh),
       epoch_(mesh),
       elements_(mesh, table),
       state_(mesh, elements_.history_size()),
-      damping_(surroundings.damping),
+      damping_(boundary_conditions.damping),
       body_size_(diagonal(mesh)),
       masses_(mesh.node_capacity(), 0.0),
-      supports_(mesh, std::move(surroundings.supports)),
-      loads_(surroundings.gravity, {}, view()),
-      reactions_(supports_.size()) {
+      constraints_(mesh, std::move(boundary_conditions.constraints)),
+      loads_(boundary_conditions.gravity, {}, view()),
+      reactions_(constraints_.size()) {
     resize(mesh.node_capacity());
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) gather(NodeId(n));
-    loads_ = Loads(surroundings.gravity, std::move(surroundings.loads), view());
+    loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
     compute_forces(0.0);
 }
 
@@ -70,7 +73,7 @@ void Model::gather(NodeId n) {
     double mass = 0.0, stiffness = 0.0;
     mesh_.star(n, star_);
     for (const ElementId e : star_) {
-        const ElementShares& shares = elements_.block_of(mesh_, e).shares(e);
+        const NodalContributions& shares = elements_.block_of(mesh_, e).contributions(e);
         mass += shares.mass;
         stiffness += shares.stiffness[static_cast<std::size_t>(mesh_.corner_of(e, n))];
     }
@@ -178,19 +181,19 @@ void Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
     elements_.number_nodes(masses_.size());
     const std::vector<NodeId> touched = touched_nodes(changes);
     for (const NodeId n : touched) gather(n);
-    supports_.apply(mesh_, changes);
+    constraints_.apply(mesh_, changes);
     loads_.apply(view(), changes, touched);
     for (const auto& term : added_terms_) term->apply(view(), changes, touched);
 }
 
-void Model::add_support(Support support) {
-    supports_.add(mesh_, std::move(support));
+void Model::add_constraint(Constraint constraint) {
+    constraints_.add(mesh_, std::move(constraint));
     reactions_.emplace_back();
     ++structure_version_;
 }
 
-void Model::remove_support(std::size_t i) {
-    supports_.remove(mesh_, i);
+void Model::remove_constraint(std::size_t i) {
+    constraints_.remove(mesh_, i);
     reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
     ++structure_version_;
 }
@@ -214,7 +217,7 @@ void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
 
 void Model::save(ArchiveWriter& ar) const {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
-    ar(copy(fibres()), loads_.gravity(), damping_, copy(supports_.all()), copy(loads_.all()));
+    ar(copy(fibres()), loads_.gravity(), damping_, copy(constraints_.all()), copy(loads_.all()));
     state_.save(ar);
     ar(reactions_, external_work_, dissipated_energy_, largest_move_, body_size_,
        structure_version_);
@@ -222,7 +225,7 @@ void Model::save(ArchiveWriter& ar) const {
 
 Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time)
     // Braces, as they read the archive from left to right.
-    : Model{mesh, read_fibres(std::move(table), mesh, ar), read_surroundings(mesh, ar)} {
+    : Model{mesh, read_fibres(std::move(table), mesh, ar), read_boundary_conditions(mesh, ar)} {
     restore_state(ar, time);
 }
 
@@ -237,8 +240,8 @@ void Model::restore_state(ArchiveReader& ar, double time) {
     compute_forces(time);
 }
 
-double Model::own_step(ElementId e) const {
-    const ElementShares& shares = elements_.block_of(mesh_, e).shares(e);
+double Model::element_stable_step(ElementId e) const {
+    const NodalContributions& shares = elements_.block_of(mesh_, e).contributions(e);
     const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());
     return 2.0 / std::sqrt(stiffness / shares.mass);
 }

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/physics/body/constraints.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/loads.h"
 #include "incise/physics/body/node_lanes.h"
 #include "incise/physics/body/node_sums.h"
-#include "incise/physics/body/supports.h"
 #include "incise/physics/elements/element_store.h"
 #include "incise/physics/elements/stable_step.h"
 #include "incise/physics/elements/state.h"
@@ -25,10 +25,10 @@
 namespace incise::physics {
 
 /// What acts on a body besides its own elasticity.
-struct Surroundings {
+struct BoundaryConditions {
     Vec3 gravity = Vec3::Zero();  ///< m/s2
     double damping = 0.0;         ///< mass-proportional, 1/s
-    std::vector<Support> supports;
+    std::vector<Constraint> constraints;
     std::vector<Load> loads;
 };
 
@@ -66,8 +66,9 @@ class Model {
   public:
     /// Starts at rest in the rest positions, with the forces of that state.
     /// @param mesh must outlive the model, which reads it and never changes it
-    /// Throws InputError: see ElementStore, Supports.
-    Model(const topology::Mesh& mesh, const MaterialTable& table, Surroundings surroundings = {});
+    /// Throws InputError: see ElementStore, Constraints.
+    Model(const topology::Mesh& mesh, const MaterialTable& table,
+          BoundaryConditions boundary_conditions = {});
 
     /// Goes on from what save() has written of a model of this mesh.
     /// @param table  of that model; its fibres come from the archive
@@ -128,11 +129,11 @@ class Model {
     /// Goes to the given positions and velocities (m, m/s, by node id), dt after the present ones;
     /// infinite in statics. Viscous elements follow, whose energy comes back, J; forces are those
     /// of before until compute_forces is called.
-    /// @param reactions of supports on their nodes, N, by node id, zero in free components
+    /// @param reactions of constraints on their nodes, N, by node id, zero in free components
     double take_step(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                      std::span<const Vec3> reactions, double dt);
     /// Adds to external_work() and dissipated_energy(), J.
-    void book(double external_work, double dissipated_energy);
+    void record_work(double external_work, double dissipated_energy);
 
     /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
     /// the edited mesh with the same state and history. Copied nodes copy their state, a node
@@ -150,11 +151,13 @@ class Model {
 
     /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
     /// prescribes what another one does. Cost: O(#nodes) of it.
-    void add_support(Support support);
+    void add_constraint(Constraint constraint);
     /// Removes constraint `i`; those behind it move up. Cost: O(n) in the nodes of all constraints.
-    void remove_support(std::size_t i);
-    /// Gives the grip of constraint `i` another way; see Support::grip.
-    void set_grip(std::size_t i, TimeCurve<Pose> grip) { supports_.set_grip(i, std::move(grip)); }
+    void remove_constraint(std::size_t i);
+    /// Gives the grip of constraint `i` another way; see Constraint::grip.
+    void set_grip(std::size_t i, TimeCurve<Pose> grip) {
+        constraints_.set_grip(i, std::move(grip));
+    }
 
     /// Adds a load at the end of the list. Forces are those of before until compute_forces is
     /// called, as with the next two.
@@ -176,7 +179,7 @@ class Model {
     void save(ArchiveWriter& ar) const;
 
     const ElementStore& elements() const { return elements_; }
-    const Supports& supports() const { return supports_; }
+    const Constraints& constraints() const { return constraints_; }
     double damping() const { return damping_; }  ///< 1/s
     double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
     std::span<const Vec3> outer_forces() const {
@@ -207,11 +210,11 @@ class Model {
     }
 
     /// The same bound for the element alone, were its nodes no other's, seconds.
-    double own_step(ElementId e) const;
+    double element_stable_step(ElementId e) const;
 
     /// The element with the lowest id at the node that sets the stable step.
     ElementId limiting_element() const {
-        return mesh_.anchor(NodeId(stable_step_.limiting_node()));
+        return mesh_.incident_element(NodeId(stable_step_.limiting_node()));
     }
     /// Energy that a strain of the order of one would take, J: what rounding errors of the elastic
     /// energy are small against.
@@ -236,14 +239,14 @@ class Model {
     /// Density of what the elements of a region are made of, kg/m3.
     double density(int region) const { return elements_.density(region); }
 
-    /// Work since the start, joules: of gravity, loads and supports; and what damping and viscosity
-    /// took. What viscous elements can still give back counts as taken until they do.
+    /// Work since the start, joules: of gravity, loads and constraints; and what damping and
+    /// viscosity took. What viscous elements can still give back counts as taken until they do.
     double external_work() const { return external_work_; }
     double dissipated_energy() const { return dissipated_energy_; }
 
-    std::size_t num_supports() const { return supports_.size(); }
-    const std::string& support_name(std::size_t i) const { return supports_.name(i); }
-    /// What each support did to the body during the last step.
+    std::size_t num_constraints() const { return constraints_.size(); }
+    const std::string& constraint_name(std::size_t i) const { return constraints_.name(i); }
+    /// What each constraint did to the body during the last step.
     std::span<const Reaction> reactions() const { return reactions_; }
 
     const topology::Mesh& mesh() const { return mesh_; }
@@ -251,14 +254,14 @@ class Model {
   private:
     struct NodeStep {
         Vec3 x, v;    ///< at its end
-        double work;  ///< that supports do, J
+        double work;  ///< that constraints do, J
     };
     /// Takes the body through a step by move_range(range, reactions), which returns the sums of its
-    /// nodes and adds to the reactions of all supports; then adds up, and viscosity follows.
+    /// nodes and adds to the reactions of all constraints; then adds up, and viscosity follows.
     template <class MoveRange>
     void step_ranges(double time, double dt, MoveRange move_range);
     /// Integrates the nodes of a range, which touches no others.
-    /// @param reactions of all supports; added to
+    /// @param reactions of all constraints; added to
     StepSums move_nodes(NodeRange range, const State::Values& values, double time, double dt,
                         std::span<Reaction> reactions);
     /// Likewise one that is alive.
@@ -268,17 +271,18 @@ class Model {
     /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
     /// nothing, before `end`.
     std::size_t num_free_nodes(std::size_t n, std::size_t end) const;
-    /// Leads the supported components of node `n` to where they have to be at time + dt.
+    /// Leads the constrained components of node `n` to where they have to be at time + dt.
     /// @param v     m/s, of the beginning of the step
-    /// @param free  what the node does without supports
-    /// @param force N, on the node without the supports
-    NodeStep support_node(std::size_t n, const Vec3& v, double time, double dt, const Vec3& force,
-                          NodeStep free, std::span<Reaction> reactions) const;
-    /// Supports also bear what an impulse does to prescribed components: `force`, N, over the step.
+    /// @param free  what the node does without constraints
+    /// @param force N, on the node without the constraints
+    NodeStep constrain_node(std::size_t n, const Vec3& v, double time, double dt, const Vec3& force,
+                            NodeStep free, std::span<Reaction> reactions) const;
+    /// Constraints also bear what an impulse does to prescribed components: `force`, N, over the
+    /// step.
     void add_reactions_to_impulse(std::size_t n, const Vec3& force, const Vec3& x,
                                   std::span<Reaction> reactions) const;
-    /// Adds what a support does to a component of a node at x, N, to its reaction.
-    void add_reaction(int support, int component, double force, const Vec3& x,
+    /// Adds what a constraint does to a component of a node at x, N, to its reaction.
+    void add_reaction(int constraint, int component, double force, const Vec3& x,
                       std::span<Reaction> reactions) const;
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
                           std::span<Vec3> forces) const;
@@ -305,13 +309,13 @@ class Model {
     std::vector<double> masses_;
     StableStep stable_step_;
     mutable KeptNodeSums node_sums_;
-    Supports supports_;
+    Constraints constraints_;
     Loads loads_;
     std::vector<std::unique_ptr<ForceTerm>> added_terms_;
-    std::vector<Reaction> reactions_;  // of each support
+    std::vector<Reaction> reactions_;  // of each constraint
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
     std::vector<StepSums> step_sums_;        // scratch, by range of nodes
-    std::vector<Reaction> range_reactions_;  // scratch, of all supports by range of nodes
+    std::vector<Reaction> range_reactions_;  // scratch, of all constraints by range of nodes
     std::vector<ElementId> star_;            // scratch
     std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
     std::vector<Vec3> previous_velocities_;  // from kick to drift, by node id

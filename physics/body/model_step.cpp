@@ -20,21 +20,21 @@ template <class MoveRange>
 void Model::step_ranges(double time, double dt, MoveRange move_range) {
     const std::size_t num_ranges = num_node_ranges(masses_.size());
     step_sums_.assign(num_ranges, {});
-    range_reactions_.assign(num_ranges * supports_.size(), {});
+    range_reactions_.assign(num_ranges * constraints_.size(), {});
     if (!history().is_empty()) previous_positions_.resize(positions().size());
     workers_.for_each_range(masses_.size(), [&](NodeRange range) {
         if (!history().is_empty())
             for (std::size_t n = range.begin; n < range.end; ++n)
                 previous_positions_[n] = positions()[n];
         step_sums_[range.number] = move_range(
-            range,
-            std::span(range_reactions_).subspan(range.number * supports_.size(), supports_.size()));
+            range, std::span(range_reactions_)
+                       .subspan(range.number * constraints_.size(), constraints_.size()));
     });
     StepSums sums;
     for (const StepSums& range : step_sums_) sums += range;
-    reactions_.assign(supports_.size(), {});
+    reactions_.assign(constraints_.size(), {});
     for (std::size_t i = 0; i < range_reactions_.size(); ++i)
-        reactions_[i % supports_.size()] += range_reactions_[i];
+        reactions_[i % constraints_.size()] += range_reactions_[i];
     external_work_ += sums.work;
     dissipated_energy_ += damping_ * sums.mass_times_square * dt;
     largest_move_ = std::sqrt(sums.largest_square) * dt;
@@ -66,7 +66,7 @@ StepSums Model::move_nodes(NodeRange range, const State::Values& values, double 
 
 std::size_t Model::num_free_nodes(std::size_t n, std::size_t end) const {
     std::size_t count = 0;
-    for (std::size_t i = n; i < end && masses_[i] != 0.0 && !supports_.of_node(i); ++i) ++count;
+    for (std::size_t i = n; i < end && masses_[i] != 0.0 && !constraints_.of_node(i); ++i) ++count;
     return count - count % nodes_together;
 }
 
@@ -80,27 +80,27 @@ StepSums Model::move_node(std::size_t n, const State::Values& values, double tim
     step.v = slowing * (v + dt / mass * force);
     step.x = x + dt * step.v;
     step.work = 0.0;
-    if (supports_.of_node(n)) step = support_node(n, v, time, dt, force, step, reactions);
+    if (constraints_.of_node(n)) step = constrain_node(n, v, time, dt, force, step, reactions);
     values.positions[n] = step.x;
     values.velocities[n] = step.v;
     const double square = step.v.squaredNorm();
     return {step.work + outer.dot(step.x - x), mass * square, square};
 }
 
-Model::NodeStep Model::support_node(std::size_t n, const Vec3& v, double time, double dt,
-                                    const Vec3& force, NodeStep step,
-                                    std::span<Reaction> reactions) const {
-    const auto& support_of = *supports_.of_node(n);
+Model::NodeStep Model::constrain_node(std::size_t n, const Vec3& v, double time, double dt,
+                                      const Vec3& force, NodeStep step,
+                                      std::span<Reaction> reactions) const {
+    const auto& constraint_of = *constraints_.of_node(n);
     const double mass = masses_[n];
     const Vec3& x = positions()[n];
-    supports_.place(support_of, mesh_, NodeId(n), time + dt, step.x);
+    constraints_.prescribe(constraint_of, mesh_, NodeId(n), time + dt, step.x);
     for (int c = 0; c < 3; ++c) {
-        const int s = support_of[static_cast<std::size_t>(c)];
+        const int s = constraint_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
         step.v[c] = (step.x[c] - x[c]) / dt;
         const double reaction = mass * ((step.v[c] - v[c]) / dt + damping_ * step.v[c]) - force[c];
         add_reaction(s, c, reaction, step.x, reactions);
-        // At the mean velocity: a support that sets off at once gives the node just the kinetic
+        // At the mean velocity: a constraint that sets off at once gives the node just the kinetic
         // energy that it then has.
         step.work +=
             reaction * (step.x[c] - x[c]) - 0.5 * mass * (step.v[c] - v[c]) * (step.v[c] - v[c]);
@@ -108,11 +108,11 @@ Model::NodeStep Model::support_node(std::size_t n, const Vec3& v, double time, d
     return step;
 }
 
-void Model::add_reaction(int support, int component, double force, const Vec3& x,
+void Model::add_reaction(int constraint, int component, double force, const Vec3& x,
                          std::span<Reaction> reactions) const {
-    const auto s = static_cast<std::size_t>(support);
+    const auto s = static_cast<std::size_t>(constraint);
     reactions[s].force[component] += force;
-    reactions[s].moment += (x - supports_.point(s)).cross(force * Vec3::Unit(component));
+    reactions[s].moment += (x - constraints_.point(s)).cross(force * Vec3::Unit(component));
 }
 
 void Model::kick(double time, double dt) {
@@ -126,13 +126,14 @@ void Model::kick(double time, double dt) {
             const Vec3 force = elastic_forces_[n] + outer_forces_[n];
             Vec3& v = values.velocities[n];
             v = slowing * (v + dt / masses_[n] * force);
-            const auto* support_of = supports_.of_node(n);
-            if (!support_of) continue;
+            const auto* constraint_of = constraints_.of_node(n);
+            if (!constraint_of) continue;
             const Vec3& x = values.positions[n];
             Vec3 target = x + dt * v;
-            supports_.place(*support_of, mesh_, NodeId(n), time + dt, target);
+            constraints_.prescribe(*constraint_of, mesh_, NodeId(n), time + dt, target);
             for (int c = 0; c < 3; ++c)
-                if ((*support_of)[static_cast<std::size_t>(c)] >= 0) v[c] = (target[c] - x[c]) / dt;
+                if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0)
+                    v[c] = (target[c] - x[c]) / dt;
         }
     });
 }
@@ -142,9 +143,9 @@ void Model::give_impulses(std::span<const Vec3> impulses) {
     impulses_.resize(impulses.size(), Vec3::Zero());
     for (std::size_t n = 0; n < impulses.size(); ++n) {
         if (masses_[n] == 0.0 || impulses[n].isZero(0.0)) continue;
-        const auto* support_of = supports_.of_node(n);
+        const auto* constraint_of = constraints_.of_node(n);
         for (int c = 0; c < 3; ++c) {
-            if (support_of && (*support_of)[static_cast<std::size_t>(c)] >= 0) {
+            if (constraint_of && (*constraint_of)[static_cast<std::size_t>(c)] >= 0) {
                 impulses_[n][c] += impulses[n][c];
                 continue;
             }
@@ -164,10 +165,10 @@ void Model::drift(double time, double dt) {
             if (masses_[n] == 0.0) continue;  // dead
             const Vec3 x = values.positions[n], outer = outer_forces_[n];
             NodeStep step{x + dt * values.velocities[n], values.velocities[n], 0.0};
-            if (supports_.of_node(n)) {
+            if (constraints_.of_node(n)) {
                 const Vec3 impulse = impulses_.empty() ? Vec3(Vec3::Zero()) : impulses_[n];
-                step = support_node(n, previous_velocities_[n], time, dt,
-                                    elastic_forces_[n] + outer, step, reactions);
+                step = constrain_node(n, previous_velocities_[n], time, dt,
+                                      elastic_forces_[n] + outer, step, reactions);
                 add_reactions_to_impulse(n, impulse / dt, step.x, reactions);
             }
             values.positions[n] = step.x;
@@ -181,15 +182,15 @@ void Model::drift(double time, double dt) {
 
 void Model::add_reactions_to_impulse(std::size_t n, const Vec3& force, const Vec3& x,
                                      std::span<Reaction> reactions) const {
-    const auto& support_of = *supports_.of_node(n);
+    const auto& constraint_of = *constraints_.of_node(n);
     for (int c = 0; c < 3; ++c)
-        if (const int s = support_of[static_cast<std::size_t>(c)]; s >= 0 && force[c] != 0.0)
+        if (const int s = constraint_of[static_cast<std::size_t>(c)]; s >= 0 && force[c] != 0.0)
             add_reaction(s, c, -force[c], x, reactions);
 }
 
 void Model::begin_step() {
     update_outer_terms();
-    reactions_.assign(supports_.size(), {});
+    reactions_.assign(constraints_.size(), {});
     largest_move_ = 0.0;
 }
 
@@ -203,9 +204,9 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
         if (masses_[n] == 0.0) continue;  // dead
         largest_square =
             std::max(largest_square, (positions[n] - values.positions[n]).squaredNorm());
-        if (const auto* support_of = supports_.of_node(n))
+        if (const auto* constraint_of = constraints_.of_node(n))
             for (int c = 0; c < 3; ++c) {
-                const int s = (*support_of)[static_cast<std::size_t>(c)];
+                const int s = (*constraint_of)[static_cast<std::size_t>(c)];
                 if (s < 0) continue;
                 add_reaction(s, c, reactions[n][c], positions[n], reactions_);
             }
@@ -219,7 +220,7 @@ double Model::take_step(std::span<const Vec3> positions, std::span<const Vec3> v
     return taken;
 }
 
-void Model::book(double external_work, double dissipated_energy) {
+void Model::record_work(double external_work, double dissipated_energy) {
     external_work_ += external_work;
     dissipated_energy_ += dissipated_energy;
 }

@@ -20,7 +20,8 @@ std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, d
     std::vector<ElementId> star;
     const topology::Mesh& mesh = model.mesh();
     mesh.star(n, star);
-    std::pair<ElementId, double> lowest{mesh.anchor(n), std::numeric_limits<double>::infinity()};
+    std::pair<ElementId, double> lowest{mesh.incident_element(n),
+                                        std::numeric_limits<double>::infinity()};
     for (const ElementId e : star)
         if (const double J =
                 model.elements().block_of(mesh, e).result(e, before, model.history()).volume_ratio;
@@ -54,7 +55,7 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
         text << "the step of " << dt << " s is above the stable step of " << stable_step << " s";
         return FailureCause::step_above_bound;
     }
-    if (model.supports().of_node(n.index())) {
+    if (model.constraints().of_node(n.index())) {
         text << "its support is moved too fast";
         return FailureCause::constraint_too_fast;
     }
@@ -80,7 +81,7 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
 MotionFailure failure_of_step(const Model& model, double time, double dt) {
     const auto [n, speed] = lost_node(model);
     const topology::Mesh& mesh = model.mesh();
-    const ElementId e = mesh.anchor(n);
+    const ElementId e = mesh.incident_element(n);
     std::ostringstream text;
     text << "element " << mesh.label(e) << ", node " << mesh.label(n) << " (at rest at "
          << mesh.rest_position(n).transpose() << ") ";

@@ -14,7 +14,7 @@ namespace incise::physics {
 
 /// What a step adds up over nodes.
 struct StepSums {
-    double work = 0.0;                                     ///< of loads, gravity and supports, J
+    double work = 0.0;                                     ///< of loads, gravity and constraints, J
     double mass_times_square = 0.0, largest_square = 0.0;  ///< of velocities: kg m2/s2, m2/s2
 
     bool is_finite() const { return std::isfinite(mass_times_square); }

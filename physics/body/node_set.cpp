@@ -14,9 +14,9 @@ NodeSet::NodeSet(std::vector<NodeId> nodes) {
 }
 
 const NodeSet::Member* NodeSet::find(NodeId n) const {
-    const auto place = std::lower_bound(members_.begin(), members_.end(), n,
-                                        [](const Member& m, NodeId id) { return m.node < id; });
-    return place != members_.end() && place->node == n ? &*place : nullptr;
+    const auto it = std::lower_bound(members_.begin(), members_.end(), n,
+                                     [](const Member& m, NodeId id) { return m.node < id; });
+    return it != members_.end() && it->node == n ? &*it : nullptr;
 }
 
 void NodeSet::apply(const topology::Mesh&, const topology::ChangeSet& changes) {

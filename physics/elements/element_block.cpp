@@ -3,24 +3,24 @@
 
 namespace incise::physics {
 
-std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions,
-                                                           std::vector<LocalVector>& places) const {
-    places.reserve(max_elements * topology::max_corners + 1);  // of any block
-    places.resize(nodes_.size() + 1);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) places[i] = positions[nodes_[i]];
-    places.back() = {};
-    return places;
+std::span<const LocalVector> ElementBlock::local_positions(
+    std::span<const Vec3> positions, std::vector<LocalVector>& offsets) const {
+    offsets.reserve(max_elements * topology::max_corners + 1);  // of any block
+    offsets.resize(nodes_.size() + 1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) offsets[i] = positions[nodes_[i]];
+    offsets.back() = {};
+    return offsets;
 }
 
 std::span<const LocalVector> ElementBlock::local_positions(std::span<const Vec3> positions) const {
-    thread_local std::vector<LocalVector> places;
-    return local_positions(positions, places);
+    thread_local std::vector<LocalVector> offsets;
+    return local_positions(positions, offsets);
 }
 
 std::size_t ElementBlock::add_slot(ElementId e) {
-    const auto place = std::lower_bound(elements_.begin(), elements_.end(), e);
-    const auto s = static_cast<std::size_t>(place - elements_.begin());
-    elements_.insert(place, e);
+    const auto it = std::lower_bound(elements_.begin(), elements_.end(), e);
+    const auto s = static_cast<std::size_t>(it - elements_.begin());
+    elements_.insert(it, e);
     local_corners_.insert(local_corners_.begin() + static_cast<std::ptrdiff_t>(s * num_corners_),
                           num_corners_, unnumbered);
     is_numbered_ = false;

@@ -21,7 +21,7 @@
 namespace incise::physics {
 
 /// What one element brings to its corners for good; a pure function of its rest shape.
-struct ElementShares {
+struct NodalContributions {
     double mass = 0.0;                  ///< kg, to each corner alike
     std::array<double, 8> stiffness{};  ///< N/m, by corner: part of the nodal bound
 };
@@ -52,7 +52,7 @@ class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
     static constexpr std::size_t max_elements = 512;
-    static_assert(4 * (max_elements * topology::max_corners + 1) <= 0xffff);  // place_of
+    static_assert(4 * (max_elements * topology::max_corners + 1) <= 0xffff);  // offset_of
 
     virtual ~ElementBlock() = default;
     virtual std::shared_ptr<ElementBlock> clone() const = 0;
@@ -68,10 +68,10 @@ class ElementBlock {
     /// @param local_numbers scratch, by node id; `unnumbered` before and after
     void number_nodes(std::span<std::uint16_t> local_numbers);
 
-    /// Those of its nodes by local number, and a place more, in `places`: the caller's thread keeps
-    /// that from block to block, so that it takes memory once and never again.
+    /// Those of its nodes by local number, and a place more, in `offsets`: the caller's thread
+    /// keeps that from block to block, so that it takes memory once and never again.
     std::span<const LocalVector> local_positions(std::span<const Vec3> positions,
-                                                 std::vector<LocalVector>& places) const;
+                                                 std::vector<LocalVector>& offsets) const;
     /// The same in the thread's own place for them, until the next call.
     std::span<const LocalVector> local_positions(std::span<const Vec3> positions) const;
 
@@ -110,7 +110,7 @@ class ElementBlock {
     /// Those of all, in the order of elements(); within rounding of those one by one.
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
                          std::span<ElementResult> results) const = 0;
-    virtual const ElementShares& shares(ElementId e) const = 0;
+    virtual const NodalContributions& contributions(ElementId e) const = 0;
     virtual double rest_volume(ElementId e) const = 0;
 
     /// Takes the element in and precomputes it from the rest positions (by node id).
@@ -149,9 +149,9 @@ class ElementBlock {
         const auto from_first = static_cast<std::size_t>(e.value - elements_.front().value);
         const auto last = elements_.begin() +
                           static_cast<std::ptrdiff_t>(std::min(from_first, elements_.size() - 1));
-        const auto place = *last == e ? last : std::lower_bound(elements_.begin(), last, e);
-        assert(*place == e);
-        return static_cast<std::size_t>(place - elements_.begin());
+        const auto it = *last == e ? last : std::lower_bound(elements_.begin(), last, e);
+        assert(*it == e);
+        return static_cast<std::size_t>(it - elements_.begin());
     }
 
     std::size_t num_corners_;

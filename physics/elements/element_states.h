@@ -15,7 +15,7 @@
 namespace incise::physics {
 
 /// Elements of a group, for these purposes always in doubles. Those of a block lie in groups as
-/// set_places_of_lanes has them; lanes that are left over have anything.
+/// set_offsets_of_lanes has them; lanes that are left over have anything.
 inline constexpr std::size_t elements_together = 8;
 
 /// What the elements of a group have at given positions.

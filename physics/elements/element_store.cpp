@@ -162,18 +162,18 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
     local_numbers_.resize(std::max(local_numbers_.size(), num_nodes), ElementBlock::unnumbered);
     ranges_.resize(std::max(ranges_.size(), num_node_ranges(num_nodes)));
     parts_.resize(blocks_.size());
-    const auto place_of = [](std::vector<Piece>& range, std::size_t block) {
+    const auto offset_of = [](std::vector<Piece>& range, std::size_t block) {
         return std::lower_bound(range.begin(), range.end(), block,
                                 [](const Piece& p, std::size_t b) { return p.block < b; });
     };
     for (const std::size_t b : changed_blocks_) {
         ElementBlock& block = editable(b);
         for_each_range(block.nodes(), [&](std::size_t r, std::size_t, std::size_t) {
-            ranges_[r].erase(place_of(ranges_[r], b));
+            ranges_[r].erase(offset_of(ranges_[r], b));
         });
         block.number_nodes(local_numbers_);
         for_each_range(block.nodes(), [&](std::size_t r, std::size_t begin, std::size_t end) {
-            ranges_[r].insert(place_of(ranges_[r], b), {b, begin, end});
+            ranges_[r].insert(offset_of(ranges_[r], b), {b, begin, end});
         });
         parts_[b].resize(block.nodes().size() + 1);
     }

@@ -9,8 +9,8 @@
 #include <array>
 
 #include "incise/base/types.h"
-#include "incise/physics/elements/heml_lanes.h"
 #include "incise/physics/elements/precision.h"
+#include "incise/physics/elements/simd_heml_elements.h"
 #include "incise/physics/laws/law.h"
 
 namespace incise::physics {
@@ -64,7 +64,7 @@ struct HemlKernel {
     static constexpr std::size_t num_corners = 4;
     using Corners = std::array<Vec3, 4>;
     using Element = LinkElement;
-    using Lanes = HemlLanes;
+    using Lanes = SimdHemlElements;
 
     Law law;
     double inversion_threshold;

@@ -45,7 +45,8 @@ double distance_from_box(const std::array<Vec3, 8>& x) {
 
 }  // namespace
 
-std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulus, double ratio) {
+std::optional<SpringContributions> spring_contributions(const Vec3& edges, double shear_modulus,
+                                                        double ratio) {
     if (edges.maxCoeff() > largest_aspect * edges.minCoeff()) return std::nullopt;
     if (ratio == 0.0 && !is_cube(edges)) return std::nullopt;
     const Vec3 squares = edges.cwiseAbs2();
@@ -71,7 +72,7 @@ std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulu
         inner = std::clamp(inner, std::max(low + 0.5 * range, 0.0), high - 0.1 * range);
     }
 
-    SpringShares shares{};
+    SpringContributions shares{};
     for (int c = 0; c < 3; ++c) {
         const auto [p, q] = others(c);
         const double face_square = squares[p] + squares[q];
@@ -103,7 +104,8 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
              << size.str() << "; the method hybmss needs boxes, such as voxels or a grid";
         return text.str();
     }
-    if (spring_shares(edges, material.shear_modulus, material.stiffness_ratio)) return std::nullopt;
+    if (spring_contributions(edges, material.shear_modulus, material.stiffness_ratio))
+        return std::nullopt;
     text << "is a box of " << size.str() << "; ";
     if (material.stiffness_ratio == 0.0)
         text << "without face diagonals the method hybmss needs cubes";
@@ -116,8 +118,8 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
 HybmssKernel::Element HybmssKernel::precompute(const Corners& X) const {
     const BoxFrame frame(X);
     const auto shares =
-        spring_shares(edge_lengths(frame), material.shear_modulus, material.stiffness_ratio);
-    return {frame.volume(), shares.value_or(SpringShares{})};
+        spring_contributions(edge_lengths(frame), material.shear_modulus, material.stiffness_ratio);
+    return {frame.volume(), shares.value_or(SpringContributions{})};
 }
 
 // A cube's highest frequency is omega^2 = 12 max(K, 5 G / 3) / (rho l^2), which is that of its own

@@ -12,8 +12,8 @@
 #include <string>
 
 #include "incise/base/types.h"
-#include "incise/physics/elements/hybmss_lanes.h"
 #include "incise/physics/elements/precision.h"
+#include "incise/physics/elements/simd_hybmss_elements.h"
 #include "incise/physics/laws/material.h"
 
 namespace incise::physics {
@@ -48,7 +48,7 @@ struct BoxFrame {
 /// along a, b and c, face diagonals across a, b and c, inner diagonals. A cell owns a quarter of
 /// each of its edges' springs, half of each face diagonal's and its inner ones, so that the shares
 /// of neighbours add up to what the paper's shared springs are, and a cell that goes takes its own.
-struct SpringShares {
+struct SpringContributions {
     std::array<double, 7> stiffnesses, lengths;
 };
 
@@ -60,7 +60,8 @@ struct SpringShares {
 /// Nothing if the longest edge is more than 1.42 times the shortest; or for A = 0 and other boxes
 /// than cubes, which cannot be without face diagonals.
 /// Source: derived in docs/theory.md.
-std::optional<SpringShares> spring_shares(const Vec3& edges, double shear_modulus, double ratio);
+std::optional<SpringContributions> spring_contributions(const Vec3& edges, double shear_modulus,
+                                                        double ratio);
 
 /// Why a hexahedron cannot be a cell of this material: its corners are not those of a box, or the
 /// box has no springs. Nothing if it can. Corners at rest, m.
@@ -70,7 +71,7 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
 /// What a cell keeps of its rest shape.
 struct HybmssElement {
     double volume;  ///< m3
-    SpringShares springs;
+    SpringContributions springs;
 };
 
 /// W = sum of k/2 (l - l0)^2 + kappa V/2 (V'/V - 1)^2, V' the volume of BoxFrame.
@@ -78,7 +79,7 @@ struct HybmssKernel {
     static constexpr std::size_t num_corners = 8;
     using Corners = std::array<Vec3, 8>;
     using Element = HybmssElement;
-    using Lanes = HybmssLanes;
+    using Lanes = SimdHybmssElements;
 
     /// Springs by group, four each.
     static constexpr std::array<std::array<std::array<std::size_t, 2>, 4>, 7> springs = {{

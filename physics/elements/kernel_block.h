@@ -24,8 +24,8 @@ concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, 
 };
 
 /// A kernel with a fast twin, `Kernel::Lanes`, that does the elastic forces of all elements of a
-/// block: HemlLanes. What a history adds to them comes from the kernel itself or, if it has any,
-/// its MemoryLanes.
+/// block: SimdHemlElements. What a history adds to them comes from the kernel itself or, if it has
+/// any, its MemoryLanes.
 template <class Kernel>
 concept HasLanes = requires {
     typename Kernel::Lanes;
@@ -40,7 +40,7 @@ concept HasLanesOfResults = HasLanes<Kernel> &&
 };
 
 /// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
-/// forces for all elements of a block: ViscousLanes.
+/// forces for all elements of a block: SimdViscousElements.
 template <class Kernel>
 concept HasMemoryLanes = requires {
     typename Kernel::MemoryLanes;
@@ -198,7 +198,9 @@ class KernelBlock final : public ElementBlock {
             results[s] = result_of(s, positions, history);
     }
 
-    const ElementShares& shares(ElementId e) const override { return row(slot_of(e)).shares; }
+    const NodalContributions& contributions(ElementId e) const override {
+        return row(slot_of(e)).shares;
+    }
     double rest_volume(ElementId e) const override { return row(slot_of(e)).rest.volume; }
 
     void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
@@ -246,7 +248,7 @@ class KernelBlock final : public ElementBlock {
     struct Row {
         std::array<std::uint32_t, num_corners> nodes;
         typename Kernel::Element rest;
-        ElementShares shares;
+        NodalContributions shares;
     };
 
     struct NoLanes {};

@@ -28,25 +28,25 @@ struct alignas(32) LocalVector {
 
 /// Where the vector of the node of the given local number begins, in numbers: what processors add
 /// to an address as it is, while a number of vectors of 32 bytes has to be multiplied first.
-inline std::uint16_t place_of(std::uint16_t node) {
+inline std::uint16_t offset_of(std::uint16_t node) {
     assert(node < 0x4000);  // blocks are smaller
     return static_cast<std::uint16_t>(4 * node);
 }
 
-/// Sets the places of the corners of elements that lie side by side in groups: one after the other
+/// Sets the offsets of the corners of elements that lie side by side in groups: one after the other
 /// in the first lane of each group, then in the second. So neighbours lie in different groups, as
 /// far as may be, and the lanes of a group seldom add to the same node.
 /// @param corners  local numbers of the nodes of all elements, those of one after the other
 /// @param spare    local number of a node that lanes without an element work on
 template <class Group>
-void set_places_of_lanes(std::vector<Group>& groups, std::span<const std::uint16_t> corners,
-                         std::uint16_t spare) {
-    constexpr std::size_t num_corners = std::extent_v<decltype(Group::places)>;
+void set_offsets_of_lanes(std::vector<Group>& groups, std::span<const std::uint16_t> corners,
+                          std::uint16_t spare) {
+    constexpr std::size_t num_corners = std::extent_v<decltype(Group::offsets)>;
     std::size_t next = 0;
     for (std::size_t lane = 0; lane < Group::size; ++lane)
         for (Group& group : groups)
             for (std::size_t k = 0; k < num_corners; ++k)
-                group.places[k][lane] = place_of(next < corners.size() ? corners[next++] : spare);
+                group.offsets[k][lane] = offset_of(next < corners.size() ? corners[next++] : spare);
 }
 
 }  // namespace incise::physics

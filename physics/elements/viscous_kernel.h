@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "incise/physics/elements/heml_kernel.h"
-#include "incise/physics/elements/viscous_lanes.h"
+#include "incise/physics/elements/simd_viscous_elements.h"
 #include "incise/physics/laws/material.h"
 
 namespace incise::physics {
@@ -35,7 +35,7 @@ PronyStep prony_step(const PronyTerm& term, double dt);
 /// which is (1 - sum of alpha_i) S + sum of H_i where S(x) is the one remembered, and answers any
 /// change since then with the instantaneous moduli.
 struct ViscousKernel : HemlKernel {
-    using MemoryLanes = ViscousLanes;
+    using MemoryLanes = SimdViscousElements;
 
     std::vector<PronyTerm> terms;
     std::vector<PronyStep> steps;  ///< of the terms, for the dt last given to begin_step

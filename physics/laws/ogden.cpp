@@ -25,7 +25,7 @@ LawResponse<double> Ogden::response(const LinkStrain<double>& s, double J0) cons
 // The sum P of h(c_k) as a function of I1, I2 and I3 = J^2: by the characteristic polynomial p(c),
 // dc = (c^2 dI1 - c dI2 + dI3) / p'(c). With e = (c^2, -c, 1) the first derivatives of P are the
 // divided differences of e_i h' over c0, c1, c2, and the second ones those of e_i e_j h' over the
-// same places, each taken twice.
+// same offsets, each taken twice.
 // Both to more digits than forces need them, which take the derivatives all together.
 LawResponse<Dual> Ogden::response(const LinkStrain<Dual>& strain, double J0) const {
     const LinkStrain<double> s{strain.a.value, strain.b.value, strain.J.value};

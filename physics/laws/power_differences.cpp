@@ -9,33 +9,33 @@ namespace incise::physics {
 
 namespace {
 
-constexpr std::size_t max_places = 6;
+constexpr std::size_t max_points = 6;
 
-/// Sums over all products of `degree` of the places, by degree after degree: the divided
-/// differences of x^(n + degree) over n + 1 places.
+/// Sums over all products of `degree` of the points, by degree after degree: the divided
+/// differences of x^(n + degree) over n + 1 points.
 class SymmetricSums {
   public:
-    explicit SymmetricSums(std::span<const double> places) : places_(places) { sums_.fill(1.0); }
+    explicit SymmetricSums(std::span<const double> points) : points_(points) { sums_.fill(1.0); }
 
     /// Of the present degree, at first 0.
-    double value() const { return sums_[places_.size() - 1]; }
+    double value() const { return sums_[points_.size() - 1]; }
     void raise_degree() {
         double sum = 0.0;
-        for (std::size_t k = 0; k < places_.size(); ++k)
-            sums_[k] = sum = sum + places_[k] * sums_[k];
+        for (std::size_t k = 0; k < points_.size(); ++k)
+            sums_[k] = sum = sum + points_[k] * sums_[k];
     }
 
   private:
-    std::span<const double> places_;
-    std::array<double, max_places> sums_;  // of the first places, up to each
+    std::span<const double> points_;
+    std::array<double, max_points> sums_;  // of the first points, up to each
 };
 
-/// Of x^q over places within a factor of two: the binomial series about their middle.
-double of_close_places(std::span<const double> places, double q) {
-    const std::size_t n = places.size() - 1;
-    const double middle = 0.5 * (places.front() + places.back());
-    std::array<double, max_places> offsets{};
-    for (std::size_t k = 0; k <= n; ++k) offsets[k] = (places[k] - middle) / middle;
+/// Of x^q over points within a factor of two: the binomial series about their middle.
+double of_close_points(std::span<const double> points, double q) {
+    const std::size_t n = points.size() - 1;
+    const double middle = 0.5 * (points.front() + points.back());
+    std::array<double, max_points> offsets{};
+    for (std::size_t k = 0; k <= n; ++k) offsets[k] = (points[k] - middle) / middle;
     double binomial = 1.0;
     for (std::size_t k = 0; k < n; ++k)
         binomial *= (q - static_cast<double>(k)) / static_cast<double>(k + 1);
@@ -45,7 +45,7 @@ double of_close_places(std::span<const double> places, double q) {
     for (std::size_t k = n; k < n + max_terms; ++k) {
         const double term = binomial * sums.value();
         total += term;
-        // Odd sums vanish where the places lie evenly about the middle.
+        // Odd sums vanish where the points lie evenly about the middle.
         if (k > n + 1 && k % 2 == n % 2 && std::abs(term) <= 1e-18 * std::abs(total)) break;
         binomial *= (q - static_cast<double>(k)) / static_cast<double>(k + 1);
         sums.raise_degree();
@@ -54,15 +54,15 @@ double of_close_places(std::span<const double> places, double q) {
 }
 
 /// Of x^q, q a whole number.
-double of_whole_power(std::span<const double> places, std::size_t q) {
-    const std::size_t n = places.size() - 1;
+double of_whole_power(std::span<const double> points, std::size_t q) {
+    const std::size_t n = points.size() - 1;
     if (q < n) return 0.0;
-    SymmetricSums sums(places);
+    SymmetricSums sums(points);
     for (std::size_t degree = n; degree < q; ++degree) sums.raise_degree();
     return sums.value();
 }
 
-/// Over all the places, which are c0, c1, c2, each `times` times, of x^m times the slope for all m
+/// Over all the points, which are c0, c1, c2, each `times` times, of x^m times the slope for all m
 /// that the result has room for.
 template <std::size_t times, std::size_t num_powers>
 std::array<double, num_powers> differences_of_powers(const std::array<double, 3>& c,
@@ -72,23 +72,23 @@ std::array<double, num_powers> differences_of_powers(const std::array<double, 3>
     for (std::size_t k = 3; k-- > 0;)
         is_above[k] = c[k] >= slope.floor ||
                       (k < 2 && is_above[k + 1] && c[k + 1] - c[k] < kink * slope.floor);
-    constexpr std::size_t num_places = 3 * times;
-    std::array<double, num_places> places;
-    for (std::size_t i = 0; i < num_places; ++i) places[i] = c[i / times];
+    constexpr std::size_t num_points = 3 * times;
+    std::array<double, num_points> points;
+    for (std::size_t i = 0; i < num_points; ++i) points[i] = c[i / times];
     const double line = slope.p * std::pow(slope.floor, slope.p - 2.0);
 
     std::array<double, num_powers> result;
     for (std::size_t m = 0; m < num_powers; ++m) {
-        std::array<double, num_places> table;  // over `size` places from each on
-        for (std::size_t size = 1; size <= num_places; ++size)
-            for (std::size_t i = 0; i + size <= num_places; ++i) {
+        std::array<double, num_points> table;  // over `size` points from each on
+        for (std::size_t size = 1; size <= num_points; ++size)
+            for (std::size_t i = 0; i + size <= num_points; ++i) {
                 const std::size_t last = i + size - 1;
-                const auto part = std::span<const double>(places).subspan(i, size);
+                const auto part = std::span<const double>(points).subspan(i, size);
                 if (!is_above[last / times])
                     table[i] = line * of_whole_power(part, m + 1);
                 else if (is_above[i / times] && part.back() <= 2.0 * part.front())
                     table[i] =
-                        slope.p * of_close_places(part, slope.p - 1.0 + static_cast<double>(m));
+                        slope.p * of_close_points(part, slope.p - 1.0 + static_cast<double>(m));
                 else
                     table[i] = (table[i + 1] - table[i]) / (part.back() - part.front());
             }

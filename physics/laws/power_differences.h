@@ -17,8 +17,8 @@ struct PowerSlope {
 std::array<double, 3> differences(const std::array<double, 3>& c, const PowerSlope& slope);
 
 /// Divided differences over c0, c0, c1, c1, c2, c2 of c^m times the slope, for m = 0 to 4. To
-/// rounding wherever the places lie, also where they coincide, if these are all above the floor or
-/// all below; places on both sides of it but within a hundredth of it count as above: there the
+/// rounding wherever the points lie, also where they coincide, if these are all above the floor or
+/// all below; points on both sides of it but within a hundredth of it count as above: there the
 /// slope has a kink, and its derivatives are those of one side.
 /// @param c ascending, none below zero
 std::array<double, 5> doubled_differences(const std::array<double, 3>& c, const PowerSlope& slope);

@@ -19,9 +19,9 @@ using Quad = double __attribute__((vector_size(32)));  // a LocalVector
 using Doubles = Lanes<double>::Vector;
 using HalfFloats = float __attribute__((vector_size(vector_bytes / 2)));
 
-inline Doubles load_quads(const LocalVector* nodes, const std::uint16_t* places) {
+inline Doubles load_quads(const LocalVector* nodes, const std::uint16_t* offsets) {
     const auto quad = [&](int l) {
-        return *reinterpret_cast<const Quad*>(reinterpret_cast<const double*>(nodes) + places[l]);
+        return *reinterpret_cast<const Quad*>(reinterpret_cast<const double*>(nodes) + offsets[l]);
     };
 #ifdef __AVX512F__
     return __builtin_shufflevector(quad(0), quad(4), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -55,24 +55,25 @@ Quad quad_of(Lanes<float> a) {
 #endif
 }
 
-/// The edges from corner 0 of the elements to each of the others, by the places of corners in
+/// The edges from corner 0 of the elements to each of the others, by the offsets of corners in
 /// `nodes`. Differences are those of doubles, whatever kind of number comes out: a body far from
 /// the origin is as good as one near it. Like scatter_add made anew in each loop that calls it, as
 /// vectors that went through memory would take a tenth of the loop's time.
 template <class Number, std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline std::array<Lanes3<Number>, num_corners - 1> gather_edges(
-    const LocalVector* nodes, const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+    const LocalVector* nodes, const std::uint16_t (&offsets)[num_corners][size],
+    std::size_t first) {
     constexpr std::size_t num_parts = sizeof(double) / sizeof(Number), part = num_lanes<double>;
     // Row p has the elements p, p + 4, p + 8, ...
     Doubles origins[4][num_parts];
     for (std::size_t p = 0; p < 4; ++p)
         for (std::size_t i = 0; i < num_parts; ++i)
-            origins[p][i] = load_quads(nodes, places[0] + first + p + i * part);
+            origins[p][i] = load_quads(nodes, offsets[0] + first + p + i * part);
     std::array<Lanes3<Number>, num_corners - 1> edges;
 #pragma GCC unroll 7
     for (std::size_t k = 1; k < num_corners; ++k) {
         const auto edge = [&](std::size_t p, std::size_t i) -> Doubles {
-            return load_quads(nodes, places[k] + first + p + i * part) - origins[p][i];
+            return load_quads(nodes, offsets[k] + first + p + i * part) - origins[p][i];
         };
         Lanes<Number> rows[4];
         for (std::size_t p = 0; p < 4; ++p)
@@ -90,12 +91,13 @@ template <class Number, std::size_t num_corners, std::size_t size>
 /// rounded once.
 template <std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline std::array<Lanes3<double>, num_corners> gather_corners(
-    const LocalVector* nodes, const std::uint16_t (&places)[num_corners][size], std::size_t first) {
+    const LocalVector* nodes, const std::uint16_t (&offsets)[num_corners][size],
+    std::size_t first) {
     std::array<Lanes3<double>, num_corners> corners;
 #pragma GCC unroll 8
     for (std::size_t k = 0; k < num_corners; ++k) {
         Lanes<double> rows[4];
-        for (std::size_t p = 0; p < 4; ++p) rows[p] = load_quads(nodes, places[k] + first + p);
+        for (std::size_t p = 0; p < 4; ++p) rows[p] = load_quads(nodes, offsets[k] + first + p);
         transpose(rows[0], rows[1], rows[2], rows[3]);
         corners[k] = {rows[0], rows[1], rows[2]};
     }
@@ -103,13 +105,13 @@ template <std::size_t num_corners, std::size_t size>
 }
 
 /// Adds the elements' vectors, given for all corners but corner 0, to what `nodes` has at their
-/// places; corner 0 gets minus their sum in doubles, so that those of an element add up to nothing.
-/// Element by element in fours, corner by corner within: elements may share nodes, and sums must
-/// not depend on how many lanes there are.
+/// offsets; corner 0 gets minus their sum in doubles, so that those of an element add up to
+/// nothing. Element by element in fours, corner by corner within: elements may share nodes, and
+/// sums must not depend on how many lanes there are.
 template <class Number, std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline void scatter_add(const std::array<Lanes3<Number>, num_corners - 1>& f,
                                                LocalVector* nodes,
-                                               const std::uint16_t (&places)[num_corners][size],
+                                               const std::uint16_t (&offsets)[num_corners][size],
                                                std::size_t first) {
     Lanes<Number> rows[num_corners][4];  // of those but corner 0
 #pragma GCC unroll 7
@@ -132,7 +134,7 @@ template <class Number, std::size_t num_corners, std::size_t size>
 #pragma GCC unroll 4
             for (std::size_t p = 0; p < 4; ++p)
                 *reinterpret_cast<Quad*>(reinterpret_cast<double*>(nodes) +
-                                         places[k][first + 4 * q + p]) += all[k][p];
+                                         offsets[k][first + 4 * q + p]) += all[k][p];
     };
     [&]<std::size_t... q>(std::index_sequence<q...>) {
         (add_four(std::integral_constant<std::size_t, q>()), ...);

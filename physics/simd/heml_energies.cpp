@@ -16,7 +16,7 @@ using DoubleGroup = LinkGroup<double>;
 [[gnu::always_inline]] inline std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions,
                                                                        const DoubleGroup& group,
                                                                        std::size_t first) {
-    const auto corners = gather_corners(positions, group.places, first);
+    const auto corners = gather_corners(positions, group.offsets, first);
     constexpr std::size_t ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}};
     std::array<DoubleLanes3, 6> links;
 #pragma GCC unroll 6

@@ -19,7 +19,7 @@ template <class Law, class Number>
     const std::size_t n = links.size() * num_parts;
     if (n == 0) return;
     const auto edges_of = [&](std::size_t part) {
-        return gather_edges<Number>(positions, links[part / num_parts].places,
+        return gather_edges<Number>(positions, links[part / num_parts].offsets,
                                     part % num_parts * num_lanes<Number>);
     };
     const FetchAhead fetch_ahead(links, next);
@@ -30,7 +30,7 @@ template <class Law, class Number>
         const auto* const fibres = groups.fibres.empty() ? nullptr : &groups.fibres[g];
         const LinkVectors<Number> f = link_forces(law, J0, links[g], fibres, first, edges);
         edges = edges_of(std::min(part + 1, n - 1));
-        scatter_add<Number>(f, forces, links[g].places, first);
+        scatter_add<Number>(f, forces, links[g].offsets, first);
     }
 }
 

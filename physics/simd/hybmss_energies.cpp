@@ -62,7 +62,7 @@ template <class Visit>
     for (std::size_t g = 0; g < groups.size(); ++g) {
         fetch_ahead(g);
         for (std::size_t first = 0; first < elements_together; first += DoubleLanes::size)
-            visit(g, first, gather_corners(positions, groups[g].places, first));
+            visit(g, first, gather_corners(positions, groups[g].offsets, first));
     }
 }
 

@@ -20,7 +20,7 @@ template <class Number>
     std::array<Vector, 8> x, f;
     x.fill({0.0, 0.0, 0.0});
     f = x;
-    const auto edges = gather_edges<Number>(positions, group.places, first);
+    const auto edges = gather_edges<Number>(positions, group.offsets, first);
     std::copy(edges.begin(), edges.end(), x.begin() + 1);
 #pragma GCC unroll 7
     for (std::size_t g = 0; g < 7; ++g) {
@@ -40,7 +40,7 @@ template <class Number>
     }
     std::array<Vector, 7> others;
     std::copy(f.begin() + 1, f.end(), others.begin());
-    scatter_add<Number>(others, forces, group.places, first);
+    scatter_add<Number>(others, forces, group.offsets, first);
 }
 
 template <class Number>

@@ -1,7 +1,7 @@
 // Several numbers that the processor computes with at once, one of each of as many elements.
-// Only for files that are compiled once for each kind of processor (CMakeLists.txt: incise_lanes):
-// all of this stands in a namespace of its own for each, so that the linker cannot mix them up.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// Only for files that are compiled once for each kind of processor (CMakeLists.txt:
+// incise_kernels): all of this stands in a namespace of its own for each, so that the linker cannot
+// mix them up. SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "incise/physics/elements/heml_lanes.h"
+#include "incise/physics/elements/simd_heml_elements.h"
 #include "incise/physics/simd/lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {

@@ -1,6 +1,6 @@
 // What ViscousKernel does, on lanes. Compiled for each kind of processor: see lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/elements/viscous_lanes.h"
+#include "incise/physics/elements/simd_viscous_elements.h"
 #include "incise/physics/simd/gather_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
@@ -267,8 +267,8 @@ double advance(const Law& law, const ViscousRule& rule, const ViscousGroups& gro
         fetch_ahead(g);
         const ViscousGroup& group = groups.elements[g];
         for (std::size_t first = 0; first < ViscousGroup::size; first += num_together) {
-            const Edges v = gather_edges<double>(positions, group.places, first),
-                        old_v = gather_edges<double>(before, group.places, first);
+            const Edges v = gather_edges<double>(positions, group.offsets, first),
+                        old_v = gather_edges<double>(before, group.offsets, first);
             Tensor rest_links;
             for (std::size_t k = 0; k < 6; ++k)
                 rest_links[k] = Scalar::load(group.rest_links[k] + first);
@@ -324,10 +324,10 @@ void add_forces_of_memory(const ViscousRule& rule, const ViscousGroups& groups,
             Tensor t = congruent(inverse_edges(group, first), relaxed.tensor());
             const Scalar volume = Scalar::load(group.volume + first);
             for (Scalar& x : t) x = -volume * x;
-            const auto [v1, v2, v3] = gather_edges<double>(positions, group.places, first);
+            const auto [v1, v2, v3] = gather_edges<double>(positions, group.offsets, first);
             const Edges f{t[0] * v1 + t[3] * v2 + t[5] * v3, t[3] * v1 + t[1] * v2 + t[4] * v3,
                           t[5] * v1 + t[4] * v2 + t[2] * v3};
-            scatter_add<double>(f, forces, group.places, first);
+            scatter_add<double>(f, forces, group.offsets, first);
         }
     }
 }

@@ -16,11 +16,15 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
     const auto before = model.positions(), v = model.velocities();
     const double damping = model.damping(), slowed = 1.0 + damping * dt;
     x_.assign(before.begin(), before.end());
-    anchor_.resize(x_.size());
-    for (std::size_t n = 0; n < x_.size(); ++n) anchor_[n] = x_[n] + dt / slowed * v[n];
-    const NewtonReport report = newton_.solve(
-        model, {.time = time + dt, .dt = dt, .inertia = slowed / (dt * dt), .anchor = anchor_}, x_,
-        elastic_);
+    predicted_positions_.resize(x_.size());
+    for (std::size_t n = 0; n < x_.size(); ++n)
+        predicted_positions_[n] = x_[n] + dt / slowed * v[n];
+    const NewtonReport report = newton_.solve(model,
+                                              {.time = time + dt,
+                                               .dt = dt,
+                                               .inertia = slowed / (dt * dt),
+                                               .predicted_positions = predicted_positions_},
+                                              x_, elastic_);
     if (!report.has_converged) {
         constexpr int most_halvings = 10;
         if (halvings < most_halvings) {
@@ -44,10 +48,11 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
     for (std::size_t n = 0; n < x_.size(); ++n) {
         const double mass = model.masses()[n];
         if (mass == 0.0) continue;  // dead
-        const Vec3 way = x_[n] - before[n], v_new = way / dt, change = v_new - v[n];
+        const Vec3 displacement = x_[n] - before[n], v_new = displacement / dt,
+                   change = v_new - v[n];
         const Vec3 force = elastic_[n] + outer_[n];
-        work += outer_[n].dot(way);
-        dissipated += damping * mass * dt * v_new.squaredNorm() - elastic_[n].dot(way);
+        work += outer_[n].dot(displacement);
+        dissipated += damping * mass * dt * v_new.squaredNorm() - elastic_[n].dot(displacement);
         for (int c = 0; c < 3; ++c) {
             const double swing = 0.5 * mass * change[c] * change[c];
             if (newton_.is_free(n, c)) {
@@ -56,14 +61,14 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
             }
             // At the mean velocity, as in Model::integrate.
             reactions_[n][c] = mass * (change[c] / dt + damping * v_new[c]) - force[c];
-            work += reactions_[n][c] * way[c] - swing;
+            work += reactions_[n][c] * displacement[c] - swing;
         }
         velocities_[n] = v_new;
     }
     const double energy = model.elastic_energy();
     model.take_step(x_, velocities_, reactions_, dt);
     // The work on the elements less what they keep: viscosity and the rule have taken it.
-    model.book(work, dissipated - (model.elastic_energy() - energy));
+    model.record_work(work, dissipated - (model.elastic_energy() - energy));
 }
 
 }  // namespace incise::physics

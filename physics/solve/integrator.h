@@ -20,7 +20,7 @@ class Integrator {
     /// Throws PhysicsError if there is no way.
     virtual void step(Model& model, double time, double dt) = 0;
     /// Called after the edits of a step, `time` being its end. Whether it has moved the body.
-    virtual bool settle(Model&, double /*time*/) { return false; }
+    virtual bool equilibrate(Model&, double /*time*/) { return false; }
 
     /// What it keeps from step to step, for one that goes on with a restored model; most keep
     /// nothing.
@@ -54,8 +54,8 @@ class SemiImplicitEuler final : public Integrator {
 /// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'), with the forces, viscous
 /// and damping ones too, of the end of the step. Stable at any dt; of first order; it damps what
 /// changes faster than dt. Steps that Newton's method does not solve are halved, up to ten times.
-/// Books: loads and supports work with their forces of the end of the step, and what the rule takes
-/// from the energy by itself counts as dissipated.
+/// Books: loads and constraints work with their forces of the end of the step, and what the rule
+/// takes from the energy by itself counts as dissipated.
 class ImplicitEuler final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
@@ -64,11 +64,12 @@ class ImplicitEuler final : public Integrator {
     void part_of_step(Model& model, double time, double dt, int halvings);
 
     NewtonSolver newton_{false};
-    std::vector<Vec3> x_, velocities_, anchor_, elastic_, outer_, reactions_;  // by node id
+    std::vector<Vec3> x_, velocities_, predicted_positions_, elastic_, outer_,
+        reactions_;  // by node id
 };
 
 /// Equilibrium at each moment: no inertia, no velocities, viscosity relaxed. From one moment to the
-/// next in one increment, or where Newton's method fails in smaller ones: supports and loads go
+/// next in one increment, or where Newton's method fails in smaller ones: constraints and loads go
 /// with the time, and what was out of balance before (after a cut, or under loads that are there
 /// from the start) is let go in proportion. Its work counts as dissipated. Pieces that can move
 /// freely stay where they are; they must be in equilibrium under their loads.
@@ -76,12 +77,12 @@ class Statics final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
     /// To the equilibrium of the edited body.
-    bool settle(Model& model, double time) override;
+    bool equilibrate(Model& model, double time) override;
     void save(ArchiveWriter& ar) const override { newton_.save(ar); }
     void restore(ArchiveReader& ar, const Model& model) override { newton_.restore(ar, model); }
 
   private:
-    void require_equilibrium_of_free_pieces(const Model& model, double time);
+    void require_equilibrium_of_free_components(const Model& model, double time);
 
     NewtonSolver newton_{true};
     std::uint64_t structure_version_ = 0;  // of the model, at the last equilibrium

@@ -22,13 +22,14 @@ constexpr double stagnation = 1e3;
 // Of edits: the body has not been looked at yet.
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
-/// Pins of a piece that is held in part go with its supports, by the mean of what these go.
-void follow_supports(const FreePiece& piece, const Model& model, std::vector<Vec3>& increments) {
+/// Pins of a piece that is held in part go with its constraints, by the mean of what these go.
+void follow_constraints(const FreeComponent& piece, const Model& model,
+                        std::vector<Vec3>& increments) {
     Vec3 sum = Vec3::Zero(), count = Vec3::Zero();
     for (const NodeId n : piece.nodes)
-        if (const auto* support_of = model.supports().of_node(n.index()))
+        if (const auto* constraint_of = model.constraints().of_node(n.index()))
             for (int c = 0; c < 3; ++c)
-                if ((*support_of)[static_cast<std::size_t>(c)] >= 0) {
+                if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0) {
                     sum[c] += increments[n.index()][c];
                     count[c] += 1.0;
                 }
@@ -45,8 +46,9 @@ struct NewtonSolver::Forces {
 
 void NewtonSolver::follow(const Model& model) {
     if (structure_version_ == model.structure_version()) return;
-    if (pins_free_pieces_)
-        free_pieces_ = find_free_pieces(model.mesh(), model.positions(), model.supports());
+    if (pins_free_components_)
+        free_components_ =
+            find_free_components(model.mesh(), model.positions(), model.constraints());
     prepare(model);
 }
 
@@ -54,9 +56,9 @@ void NewtonSolver::prepare(const Model& model) {
     const topology::Mesh& mesh = model.mesh();
     is_free_.assign(mesh.node_capacity(), {true, true, true});
     for (std::size_t n = 0; n < is_free_.size(); ++n)
-        if (const auto* support_of = model.supports().of_node(n))
-            for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*support_of)[c] < 0;
-    for (const FreePiece& piece : free_pieces_)
+        if (const auto* constraint_of = model.constraints().of_node(n))
+            for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*constraint_of)[c] < 0;
+    for (const FreeComponent& piece : free_components_)
         for (const auto& [node, component] : piece.pins)
             is_free_[node.index()][static_cast<std::size_t>(component)] = false;
     tangent_.set_pattern(mesh, is_free_);
@@ -66,16 +68,16 @@ void NewtonSolver::prepare(const Model& model) {
 }
 
 void NewtonSolver::save(ArchiveWriter& ar) const {
-    ar(structure_version_.value_or(never), free_pieces_);
+    ar(structure_version_.value_or(never), free_components_);
 }
 
 void NewtonSolver::restore(ArchiveReader& ar, const Model& model) {
     const auto structure_version = ar.read<std::uint64_t>();
-    ar(free_pieces_);
+    ar(free_components_);
     const auto is_there = [&](NodeId n) {
         return n.is_valid() && n.index() < model.mesh().node_capacity();
     };
-    for (const FreePiece& piece : free_pieces_) {
+    for (const FreeComponent& piece : free_components_) {
         const bool fits = std::all_of(piece.nodes.begin(), piece.nodes.end(), is_there) &&
                           std::all_of(piece.pins.begin(), piece.pins.end(), [&](const auto& pin) {
                               return is_there(pin.first) && pin.second >= 0 && pin.second < 3;
@@ -99,7 +101,7 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
         elastic += elastic_[n].squaredNorm();
         outer += outer_[n].squaredNorm();
         if (problem.inertia > 0.0) {
-            const Vec3 force = problem.inertia * mass * (x[n] - problem.anchor[n]);
+            const Vec3 force = problem.inertia * mass * (x[n] - problem.predicted_positions[n]);
             inertial += force.squaredNorm();
             net -= force;
         }
@@ -151,11 +153,12 @@ double NewtonSolver::potential(const Model& model, const StepProblem& problem,
         for (std::size_t n = 0; n < x.size(); ++n)
             if (model.masses()[n] > 0.0)
                 sum += 0.5 * problem.inertia * model.masses()[n] *
-                       (x[n] - problem.anchor[n]).squaredNorm();
+                       (x[n] - problem.predicted_positions[n]).squaredNorm();
     return sum.value();
 }
 
-// Along the straight way, by Simpson's rule: exact, as pressure is quadratic in the positions.
+// Along the straight path, by Simpson's rule: exact, as pressure is quadratic in the
+// positions.
 double NewtonSolver::work_of_loads(const Model& model, const StepProblem& problem,
                                    const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     Sum work;
@@ -176,24 +179,25 @@ double NewtonSolver::work_of_loads(const Model& model, const StepProblem& proble
 
 bool NewtonSolver::find_increments(const Model& model, double time, const std::vector<Vec3>& x) {
     increments_.assign(x.size(), Vec3::Zero());
-    bool supports_move = false;
+    bool constraints_move = false;
     for (std::size_t n = 0; n < x.size(); ++n)
-        if (const auto* support_of = model.supports().of_node(n);
-            support_of && model.masses()[n] > 0.0) {
+        if (const auto* constraint_of = model.constraints().of_node(n);
+            constraint_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.supports().place(*support_of, model.mesh(), NodeId(n), time, target);
+            model.constraints().prescribe(*constraint_of, model.mesh(), NodeId(n), time, target);
             increments_[n] = target - x[n];
-            supports_move = supports_move || !increments_[n].isZero(0.0);
+            constraints_move = constraints_move || !increments_[n].isZero(0.0);
         }
-    for (const FreePiece& piece : free_pieces_) follow_supports(piece, model, increments_);
-    return supports_move;
+    for (const FreeComponent& piece : free_components_)
+        follow_constraints(piece, model, increments_);
+    return constraints_move;
 }
 
 NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
                                  std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
     const double stiffness_energy = model.stiffness_energy();
     // The first iteration takes the rest of the body along.
-    bool supports_move = find_increments(model, problem.time, x);
+    bool constraints_move = find_increments(model, problem.time, x);
 
     NewtonReport report;
     Forces forces = evaluate(model, problem, x);
@@ -204,36 +208,37 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
         const double goal = tolerance * forces.scale + forces.rounding;
         const bool falls = forces.imbalance < 0.5 * last_imbalance;
         report.has_converged =
-            !supports_move && std::isfinite(goal) &&
+            !constraints_move && std::isfinite(goal) &&
             (forces.imbalance <= goal || (!falls && forces.imbalance <= stagnation * goal));
         if (report.has_converged || report.iterations == max_iterations ||
             !std::isfinite(forces.imbalance) || !std::isfinite(goal))
             break;
-        last_imbalance = supports_move ? std::numeric_limits<double>::infinity() : forces.imbalance;
+        last_imbalance =
+            constraints_move ? std::numeric_limits<double>::infinity() : forces.imbalance;
 
         factorise(model, problem, x,
-                  supports_move ? std::span<const Vec3>(increments_) : std::span<const Vec3>());
-        way_ = net_ + tangent_.load();
-        tangent_.solve(way_);
+                  constraints_move ? std::span<const Vec3>(increments_) : std::span<const Vec3>());
+        direction_ = net_ + tangent_.load();
+        tangent_.solve(direction_);
         const auto go = [&](double share) {
             for (std::size_t n = 0; n < x.size(); ++n) {
                 trial_[n] = x[n];
                 for (int c = 0; c < 3; ++c)
                     if (const auto row = tangent_.row_of(n, c); row >= 0)
-                        trial_[n][c] += share * way_[row];
+                        trial_[n][c] += share * direction_[row];
             }
         };
-        if (supports_move) {
+        if (constraints_move) {
             go(1.0);
             for (std::size_t n = 0; n < x.size(); ++n) x[n] = trial_[n] + increments_[n];
-            supports_move = false;
+            constraints_move = false;
             forces = evaluate(model, problem, x);
             continue;
         }
 
         // Down in energy, as far as rounding lets see; the first trial nearly always does.
         constexpr double enough = 1e-4, shortest = 1e-6;
-        const double slope = -net_.dot(way_);
+        const double slope = -net_.dot(direction_);
         const double start = potential(model, problem, x);
         double share = 1.0;
         for (; share > shortest; share *= 0.5) {

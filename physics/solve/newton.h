@@ -9,19 +9,20 @@
 #include <vector>
 
 #include "incise/physics/body/model.h"
-#include "incise/physics/solve/free_pieces.h"
+#include "incise/physics/solve/free_components.h"
 #include "incise/physics/solve/tangent_matrix.h"
 
 namespace incise::physics {
 
-/// Wanted are positions x, with supports where they have to be at `time`, at which for every free
-/// component of every node
-///     elastic and viscous forces + loads and gravity + holding = (inertia) m (x - anchor).
+/// Wanted are positions x, with constraints where they have to be at `time`, at which for every
+/// free component of every node
+///     elastic and viscous forces + loads and gravity + holding = (inertia) m (x - predicted).
 struct StepProblem {
-    double time;                         ///< s, at the end of the step
-    double dt;                           ///< s, by which viscosity relaxes; infinite in statics
-    double inertia;                      ///< 1/s2; 0 in statics
-    std::span<const Vec3> anchor = {};   ///< m, by node id; may be empty without inertia
+    double time;     ///< s, at the end of the step
+    double dt;       ///< s, by which viscosity relaxes; infinite in statics
+    double inertia;  ///< 1/s2; 0 in statics
+    std::span<const Vec3> predicted_positions =
+        {};                              ///< m, by node id; may be empty without inertia
     std::span<const Vec3> holding = {};  ///< N, by node id; may be empty
 };
 
@@ -38,9 +39,10 @@ struct NewtonReport {
 /// serves. Deterministic.
 class NewtonSolver {
   public:
-    /// @param pins_free_pieces statics: pieces that supports do not hold are held where they are by
-    /// as few components as do; see FreePiece
-    explicit NewtonSolver(bool pins_free_pieces) : pins_free_pieces_(pins_free_pieces) {}
+    /// @param pins_free_components statics: pieces that constraints do not hold are held where they
+    /// are by as few components as do; see FreeComponent
+    explicit NewtonSolver(bool pins_free_components)
+        : pins_free_components_(pins_free_components) {}
 
     /// Prepares for the body as it now is. Costs something only after edits: then the pattern of
     /// the tangent is found anew.
@@ -54,7 +56,7 @@ class NewtonSolver {
     NewtonReport solve(const Model& model, const StepProblem& problem, std::vector<Vec3>& x,
                        std::vector<Vec3>& elastic_forces);
 
-    const std::vector<FreePiece>& free_pieces() const { return free_pieces_; }
+    const std::vector<FreeComponent>& free_components() const { return free_components_; }
     /// By node id.
     bool is_free(std::size_t node, int component) const {
         return is_free_[node][static_cast<std::size_t>(component)];
@@ -65,7 +67,7 @@ class NewtonSolver {
     void prepare(const Model& model);
     /// Sets net_ to what is out of balance at x, and elastic_ and outer_ to the forces there.
     Forces evaluate(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x);
-    /// Sets increments_ to where supports go from x; whether one does.
+    /// Sets increments_ to where constraints go from x; whether one does.
     bool find_increments(const Model& model, double time, const std::vector<Vec3>& x);
     void assemble(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x,
                   TangentKind kind, std::span<const Vec3> increments);
@@ -76,12 +78,12 @@ class NewtonSolver {
     double work_of_loads(const Model& model, const StepProblem& problem,
                          const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
-    bool pins_free_pieces_;
+    bool pins_free_components_;
     std::optional<std::uint64_t> structure_version_;  // of the model, when the pattern was found
     std::vector<std::array<bool, 3>> is_free_;
-    std::vector<FreePiece> free_pieces_;
+    std::vector<FreeComponent> free_components_;
     TangentMatrix tangent_;
-    Eigen::VectorXd net_, way_;  // scratch, by row of the tangent
+    Eigen::VectorXd net_, direction_;  // scratch, by row of the tangent
     std::vector<Vec3> elastic_, outer_, middle_, trial_, increments_;  // scratch, by node id
 };
 

@@ -16,18 +16,18 @@ constexpr int few_iterations = 10;                   // the next increment may b
 
 }  // namespace
 
-bool Statics::settle(Model& model, double time) {
+bool Statics::equilibrate(Model& model, double time) {
     if (structure_version_ == model.structure_version()) return false;
     step(model, time, 0.0);
     return true;
 }
 
-void Statics::require_equilibrium_of_free_pieces(const Model& model, double time) {
-    if (newton_.free_pieces().empty()) return;
+void Statics::require_equilibrium_of_free_components(const Model& model, double time) {
+    if (newton_.free_components().empty()) return;
     next_outer_.resize(x_.size());
     model.outer_forces_at(x_, time, next_outer_);
     // Where they are now, for those held in part may have been led elsewhere.
-    for (const FreePiece& piece : find_free_pieces(model.mesh(), x_, model.supports()))
+    for (const FreeComponent& piece : find_free_components(model.mesh(), x_, model.constraints()))
         require_equilibrium(model.mesh(), piece, x_, next_outer_);
 }
 
@@ -36,7 +36,7 @@ void Statics::step(Model& model, double time, double dt) {
     newton_.follow(model);
     model.begin_step();
     x_.assign(model.positions().begin(), model.positions().end());
-    require_equilibrium_of_free_pieces(model, time + dt);
+    require_equilibrium_of_free_components(model, time + dt);
 
     const std::size_t num_nodes = x_.size();
     for (auto* field : {&velocities_, &elastic_, &reactions_, &holding_, &imbalance_})
@@ -72,26 +72,26 @@ void Statics::step(Model& model, double time, double dt) {
             throw MotionFailure(FailureCause::no_equilibrium, text.str());
         }
         model.outer_forces_at(x_, now, next_outer_);
-        // Forces go in proportion to the way, so that their mean does the work.
+        // Forces go in proportion to the displacement, so that their mean does the work.
         double work = 0.0, released = 0.0;
         const double held = 1.0 - 0.5 * (done + next);
         for (std::size_t n = 0; n < num_nodes; ++n) {
             if (model.masses()[n] == 0.0) continue;  // dead
-            const Vec3 way = x_[n] - model.positions()[n];
+            const Vec3 displacement = x_[n] - model.positions()[n];
             const Vec3 net = elastic_[n] + outer_[n], next_net = next_elastic_[n] + next_outer_[n];
             reactions_[n] = free_part(n, next_net) - next_net;
-            work += 0.5 *
-                    (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n]).dot(way);
-            released += held * imbalance_[n].dot(way);
+            work += 0.5 * (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n])
+                              .dot(displacement);
+            released += held * imbalance_[n].dot(displacement);
         }
         const double taken = model.take_step(x_, velocities_, reactions_, infinite);
-        model.book(work, released + taken);
+        model.record_work(work, released + taken);
         std::swap(elastic_, next_elastic_);
         std::swap(outer_, next_outer_);
         done = next;
         if (report.iterations <= few_iterations) increment *= 2.0;
     }
-    require_equilibrium_of_free_pieces(model, time + dt);
+    require_equilibrium_of_free_components(model, time + dt);
 }
 
 }  // namespace incise::physics

@@ -95,15 +95,15 @@ void TangentMatrix::add(std::span<const std::uint32_t> nodes, std::span<const do
             }
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 // The free components of a node stand together.
-                const int* place = nullptr;
+                const int* it = nullptr;
                 for (std::size_t d = 0; d < 3; ++d) {
                     const std::int32_t row = rows_[nodes[i]][d];
                     if (row < 0 || row > column) continue;
-                    if (!place)
-                        place = std::lower_bound(inner + starts[column], inner + starts[column + 1],
-                                                 row);
-                    upper_.valuePtr()[place - inner] += values[3 * i + d];
-                    ++place;
+                    if (!it)
+                        it = std::lower_bound(inner + starts[column], inner + starts[column + 1],
+                                              row);
+                    upper_.valuePtr()[it - inner] += values[3 * i + d];
+                    ++it;
                 }
             }
         }

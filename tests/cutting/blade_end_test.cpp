@@ -176,8 +176,8 @@ TEST(FinishedCut, EndsWithinSnapOfTheEdgeAndNowhereShortOnTheMean) {
                 EXPECT_LE(blade.ahead.dot(x - blade.stop), farthest * (1.0 + 1e-9));
             }
     }
-    // Without an end it is 0.58; of planes right through the body, 0.1, as the rough rim of a cut
-    // does not quite fill it.
+    // Without an end it is 0.58; of planes right through the body, 0.1, as the rough boundary of a
+    // cut does not quite fill it.
     EXPECT_LT(std::abs(missing) / static_cast<double>(num_seeds), 0.2);
     EXPECT_GT(least_step, 0.45);
 }

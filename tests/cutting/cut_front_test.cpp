@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "incise/cutting/exact/scars.h"
+#include "incise/cutting/exact/snap_history.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/mesh_families.h"
 
@@ -230,45 +230,48 @@ TEST(CutFront, KnowsWhereElementsAreThatHaveNoCornerOffTheCut) {
 }
 
 /// Of a cut that passed by the node at this distance along the normal.
-Scar scar(const Vec3& normal, double distance) { return {normal, distance * normal, false, 1}; }
+CutRecord cut_record(const Vec3& normal, double distance) {
+    return {normal, distance * normal, false, 1};
+}
 
-TEST(Scars, TellACutAtTheSamePlaceAndCopiesHaveThem) {
-    Scars scars;
+TEST(SnapHistory, TellACutAtTheSamePlaceAndCopiesHaveThem) {
+    SnapHistory snap_history;
     const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
     const NodeId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
-    scars.add(n, scar(z, 0.2));
-    scars.add(n, scar(x, -0.1));
-    EXPECT_TRUE(scars.has(n, scar(z, 0.2), 1.0));
-    EXPECT_TRUE(scars.has(n, scar(-z, -0.2), 1.0));                      // from the other side
-    EXPECT_TRUE(scars.has(n, {z, Vec3(0.5, 0.3, 0.2), false, 1}, 1.0));  // elsewhere in its plane
-    EXPECT_TRUE(scars.has(n, scar(x, -0.1 + 1e-9), 1.0));
-    EXPECT_FALSE(scars.has(n, scar(z, 0.19), 1.0));
-    EXPECT_FALSE(scars.has(n, scar(z, -0.2), 1.0));
-    EXPECT_FALSE(scars.has(n, scar(Vec3(0.0, 0.01, 1.0).normalized(), 0.2), 1.0));
-    EXPECT_FALSE(scars.has(other, scar(z, 0.2), 1.0));
+    snap_history.add(n, cut_record(z, 0.2));
+    snap_history.add(n, cut_record(x, -0.1));
+    EXPECT_TRUE(snap_history.has(n, cut_record(z, 0.2), 1.0));
+    EXPECT_TRUE(snap_history.has(n, cut_record(-z, -0.2), 1.0));  // from the other side
+    EXPECT_TRUE(
+        snap_history.has(n, {z, Vec3(0.5, 0.3, 0.2), false, 1}, 1.0));  // elsewhere in its plane
+    EXPECT_TRUE(snap_history.has(n, cut_record(x, -0.1 + 1e-9), 1.0));
+    EXPECT_FALSE(snap_history.has(n, cut_record(z, 0.19), 1.0));
+    EXPECT_FALSE(snap_history.has(n, cut_record(z, -0.2), 1.0));
+    EXPECT_FALSE(snap_history.has(n, cut_record(Vec3(0.0, 0.01, 1.0).normalized(), 0.2), 1.0));
+    EXPECT_FALSE(snap_history.has(other, cut_record(z, 0.2), 1.0));
     topology::ChangeSet changes;
     topology::NodeRecord record{copy, Vec3::Zero(), {}, 1};
     record.sources[0] = {n, 1.0};
     changes.nodes_added.push_back(record);
-    scars.apply(any_mesh(), changes);
-    EXPECT_TRUE(scars.has(copy, scar(x, -0.1), 1.0));
-    EXPECT_FALSE(scars.has(copy, scar(x, 0.1), 1.0));
+    snap_history.apply(any_mesh(), changes);
+    EXPECT_TRUE(snap_history.has(copy, cut_record(x, -0.1), 1.0));
+    EXPECT_FALSE(snap_history.has(copy, cut_record(x, 0.1), 1.0));
 }
 
-TEST(Scars, PartsOfACrumbAreCrumbs) {
-    Scars scars;
+TEST(SnapHistory, PartsOfACrumbAreCrumbs) {
+    SnapHistory snap_history;
     const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});
-    scars.add_crumb(whole, 1);
+    snap_history.add_sliver(whole, 1);
     topology::ChangeSet changes;
     changes.elements_added.push_back({part, topology::CellKind::tetrahedron, 0, whole, {}});
     changes.elements_added.push_back(
         {other, topology::CellKind::tetrahedron, 0, ElementId(std::size_t{4}), {}});
-    scars.apply(any_mesh(), changes);
-    EXPECT_TRUE(scars.is_crumb(whole));
-    EXPECT_TRUE(scars.is_crumb(part));
-    EXPECT_FALSE(scars.is_crumb(other));
-    EXPECT_TRUE(scars.is_earlier_crumb(part, 2));   // of an earlier cut
-    EXPECT_FALSE(scars.is_earlier_crumb(part, 1));  // of the same
+    snap_history.apply(any_mesh(), changes);
+    EXPECT_TRUE(snap_history.is_sliver(whole));
+    EXPECT_TRUE(snap_history.is_sliver(part));
+    EXPECT_FALSE(snap_history.is_sliver(other));
+    EXPECT_TRUE(snap_history.is_earlier_sliver(part, 2));   // of an earlier cut
+    EXPECT_FALSE(snap_history.is_earlier_sliver(part, 1));  // of the same
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ void choose_blade(RandomCut& cut, const Box& box, Random& random) {
                       std::to_string(num_steps) + " steps" + (is_flat ? ", flat" : "");
 }
 
-void choose_sheet(RandomCut& cut, const Box& box, Random& random) {
+void choose_branch(RandomCut& cut, const Box& box, Random& random) {
     const double size = box.diagonal().norm();
     const Vec3 centre = box.center() + 0.3 * box.sizes().cwiseProduct(random.vector(1.0));
     const Vec3 normal = direction(random), u = normal.unitOrthogonal(), v = normal.cross(u);
@@ -113,7 +113,7 @@ RandomCut random_cut(std::span<const Vec3> positions, Random& random) {
             choose_blade(cut, box, random);
             break;
         case CutKind::sheet:
-            choose_sheet(cut, box, random);
+            choose_branch(cut, box, random);
             break;
         case CutKind::sphere:
             choose_sphere(cut, box, random);

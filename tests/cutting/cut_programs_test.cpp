@@ -63,7 +63,8 @@ class Patient {
             if (cut.kind == CutKind::plane)
                 expect_parted(
                     mesh_, model_.positions(), {cut.point, cut.normal},
-                    how_far_off() * longest_edge(mesh_, model_.positions()) + 1e-6 * size_, scars_);
+                    how_far_off() * longest_edge(mesh_, model_.positions()) + 1e-6 * size_,
+                    snap_history_);
             if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
                 expect_halves(cut);
             if (cut.kind != CutKind::blade) repeat(cut);
@@ -99,7 +100,7 @@ class Patient {
         if (!cut.end) return;
         follow([&] {
             const auto here = model_.positions();
-            return finish(mesh_, {mesh_, here, here}, *cut.end, front, options_, scars_);
+            return finish(mesh_, {mesh_, here, here}, *cut.end, front, options_, snap_history_);
         });
         EXPECT_TRUE(front.is_empty());
     }
@@ -108,7 +109,7 @@ class Patient {
                          const std::vector<Vec3>& positions_before) {
         return follow([&] {
             return split(mesh_, {mesh_, positions_before, model_.positions()}, surface, front,
-                         options_, scars_);
+                         options_, snap_history_);
         });
     }
 
@@ -167,7 +168,7 @@ class Patient {
     Model model_;
     double rest_volume_, size_;
     SplitOptions options_;
-    Scars scars_;
+    SnapHistory snap_history_;
     bool is_at_rest_ = true;
 };
 

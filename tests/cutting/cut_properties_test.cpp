@@ -146,7 +146,7 @@ class Patient {
         if (cut.kind == Kind::blade) finish_and_check(cut, front);
         if (cut.kind != Kind::plane) return;
         expect_parted(mesh_, model_.positions(), plane_of(cut),
-                      how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm(), scars_);
+                      how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm(), snap_history_);
         const std::size_t num_cuts = done_.size();
         CutFront of_second;
         cut_and_check(*stroke.front(), of_second);
@@ -210,14 +210,14 @@ class Patient {
 
     void cut_and_check(const CutSurface& surface, CutFront& front) {
         edit_and_check([&](const TissueMotion& tissue) {
-            return split(mesh_, tissue, surface, front, options_, scars_);
+            return split(mesh_, tissue, surface, front, options_, snap_history_);
         });
     }
 
     void finish_and_check(const Cut& cut, CutFront& front) {
         const BladeEnd end(edge_of(cut, 1.0), {cut.places.size(), way_of(cut)});
         edit_and_check([&](const TissueMotion& tissue) {
-            return finish(mesh_, tissue, end, front, options_, scars_);
+            return finish(mesh_, tissue, end, front, options_, snap_history_);
         });
         EXPECT_TRUE(front.is_empty());
     }
@@ -254,7 +254,7 @@ class Patient {
     SplitOptions options_;
     Box box_;              // at first
     double longest_edge_;  // at first, m
-    Scars scars_;
+    SnapHistory snap_history_;
     std::vector<ChangeSet> done_;
 };
 

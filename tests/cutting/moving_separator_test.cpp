@@ -70,7 +70,7 @@ std::pair<ElementId, ElementId> held_elements(const Body& body,
     return found;
 }
 
-bool are_parted(const Body& body, ElementId a, ElementId b) {
+bool are_separated(const Body& body, ElementId a, ElementId b) {
     const auto pieces = topology::components(body.mesh);
     return pieces.of_element[a.index()] != pieces.of_element[b.index()];
 }
@@ -111,7 +111,7 @@ TEST(Separator, PartsTissueThatMovesHoweverItMoves) {
                 for (int i = 0; i < num_steps; ++i)
                     body.step(slow_edge(i), slow_edge(i + 1), motion.next(body, calm));
                 body.step(slow_edge(num_steps), edge(num_steps), motion.next(body, calm));
-                EXPECT_TRUE(are_parted(body, bottom, top));
+                EXPECT_TRUE(are_separated(body, bottom, top));
             }
     }
 }
@@ -196,7 +196,7 @@ TEST(Separator, ATurningBladePartsTheBody) {
             for (int i = 0; i < num_steps; ++i)
                 body.step(edge(static_cast<double>(i) / num_steps),
                           edge(static_cast<double>(i + 1) / num_steps));
-            EXPECT_TRUE(are_parted(body, bottom, top));
+            EXPECT_TRUE(are_separated(body, bottom, top));
             for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
                 // Well outside of the arc, or well within: the side is plain.
                 const Vec3 x = body.centre(ElementId(e)) - pivot;
@@ -205,7 +205,7 @@ TEST(Separator, ATurningBladePartsTheBody) {
                 if (std::abs(r) <
                     radius * (1 - std::cos(std::numbers::pi / num_steps / 2)) + 0.1 * size)
                     continue;
-                EXPECT_FALSE(are_parted(body, ElementId(e), r > 0 ? top : bottom));
+                EXPECT_FALSE(are_separated(body, ElementId(e), r > 0 ? top : bottom));
             }
         }
     }

@@ -110,7 +110,7 @@ TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {
 
 /// Where the path of a face passes it: on the straight line between the centres if that pierces
 /// the triangle, else at its centre.
-Vec3 passage(const Body& body, const topology::FacePair& pair) {
+Vec3 intersection(const Body& body, const topology::FacePair& pair) {
     const Mesh& mesh = body.mesh;
     if (mesh.face_size(pair.a) != 3) return body.centre(pair.a);
     const auto at = [&](int p) -> Vec3 { return mesh.rest_position(mesh.face_corner(pair.a, p)); };
@@ -127,7 +127,7 @@ Vec3 passage(const Body& body, const topology::FacePair& pair) {
 /// over |along u| < reach, from < along v < to; by rounded arithmetic, in tissue at rest.
 int crossings(const Body& body, const topology::FacePair& pair, const BladePlane& plane,
               double reach, double from, double to) {
-    const Vec3 middle = passage(body, pair);
+    const Vec3 middle = intersection(body, pair);
     int count = 0;
     for (const Vec3& end : {body.centre(pair.a.element), body.centre(pair.b.element)}) {
         const double h0 = plane.height(end), h1 = plane.height(middle);
@@ -196,7 +196,7 @@ std::vector<std::pair<NodeId, NodeId>> edges_of(const Mesh& mesh, FaceId f) {
 }
 
 TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
-    int num_sheets = 0;
+    int num_branches = 0;
     for (const auto& family : test::mesh_families()) {
         if (!is_convex(family.name)) continue;
         SCOPED_TRACE(family.name);
@@ -228,7 +228,7 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
             }
             EXPECT_GT(num_ends, 0);
             // All in one, over edges from face to face, but for what is within an element of the
-            // blade, where the sheet frays, and for crumbs.
+            // blade, where the sheet frays, and for slivers.
             const auto pieces = topology::components(body.mesh);
             const int main_piece = largest_piece(pieces);
             std::set<topology::FacePair> behind, reached;
@@ -240,7 +240,7 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
                     behind.insert(pair);
             }
             if (behind.empty()) continue;
-            ++num_sheets;
+            ++num_branches;
             std::vector<topology::FacePair> pending{*behind.begin()};
             while (!pending.empty()) {
                 const auto pair = pending.back();
@@ -253,13 +253,13 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
                 std::includes(reached.begin(), reached.end(), behind.begin(), behind.end()));
         }
     }
-    EXPECT_GE(num_sheets, test::num_cases(21));
+    EXPECT_GE(num_branches, test::num_cases(21));
 }
 
 TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
-    // But for which of its faces an element at the rim is left hanging by, and for faces beside
-    // the line between their elements' centres: the blade may pass their path twice, which a large
-    // step cancels and small steps do not.
+    // But for which of its faces an element at the boundary is left hanging by, and for faces
+    // beside the line between their elements' centres: the blade may pass their path twice, which a
+    // large step cancels and small steps do not.
     std::size_t num_opened = 0, num_other = 0;
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
@@ -292,7 +292,7 @@ TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
 }
 
 TEST(Separator, PartsAChainOfElementsAtEveryJoint) {
-    // The end of a chain is no crumb: it has one neighbour from the start.
+    // The end of a chain is no sliver: it has one neighbour from the start.
     for (int joint = 1; joint < 5; ++joint) {
         Body body(
             topology::box_mesh(topology::CellKind::hexahedron, {0, 0, 0}, {5, 1, 1}, {5, 1, 1}));

@@ -256,7 +256,7 @@ TEST(Crossing, AClosedBladeThatComesAndGoesCrossesAPathEvenly) {
 
 TEST(Crossing, DoesNotDependOnHowChainsAndStepsAreDivided) {
     // Both ends of the path are held out of the blade's reach, and those of the blade are far out:
-    // whatever is put in between, it is the same passage.
+    // whatever is put in between, it is the same intersection.
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);

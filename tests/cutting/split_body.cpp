@@ -94,9 +94,9 @@ SplitBody::SplitBody(const topology::MeshData& data)
       positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {}
 
 Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-                     const std::vector<Vec3>& moved, std::span<RestingBlade> resting) {
+                     const std::vector<Vec3>& moved, std::span<SuspendedCut> resting) {
     const Split done =
-        split(mesh, {mesh, positions, moved}, surface, front, options, scars, resting);
+        split(mesh, {mesh, positions, moved}, surface, front, options, snap_history, resting);
     positions = followed(moved, done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
     if (!done.changes.is_empty()) {
@@ -119,7 +119,8 @@ std::vector<Split> SplitBody::cut(const Stroke& stroke, const SplitOptions& opti
 
 Split SplitBody::finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options) {
     const std::vector<Vec3> here = positions;
-    const Split done = cutting::finish(mesh, {mesh, here, here}, blade, front, options, scars);
+    const Split done =
+        cutting::finish(mesh, {mesh, here, here}, blade, front, options, snap_history);
     positions = followed(here, done.changes);
     EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
     return done;
@@ -289,12 +290,12 @@ double enclosed_volume(const SurfaceData& surface) {
 }
 
 void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const PlaneOfCut& plane,
-                   double off, const Scars& scars) {
+                   double off, const SnapHistory& snap_history) {
     const auto pieces = topology::components(mesh);
     const auto num_pieces = static_cast<std::size_t>(pieces.count);
     std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
     for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
-        if (scars.is_crumb(ElementId(e))) continue;
+        if (snap_history.is_sliver(ElementId(e))) continue;
         const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
         for (const NodeId n : mesh.corners(ElementId(e))) {
             const Vec3 from = positions[n.index()] - plane.point;

@@ -26,7 +26,7 @@ class SplitBody {
 
     /// The nodes go to `moved` (m, by node id) meanwhile.
     Split cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-              const std::vector<Vec3>& moved, std::span<RestingBlade> resting = {});
+              const std::vector<Vec3>& moved, std::span<SuspendedCut> resting = {});
     /// A cut for itself through tissue that is still.
     Split cut(const CutSurface& surface, const SplitOptions& options = {0.0, {}});
 
@@ -40,7 +40,7 @@ class SplitBody {
 
     topology::Mesh mesh;
     std::vector<Vec3> positions;  ///< by node id, m
-    Scars scars;                  // of all cuts so far
+    SnapHistory snap_history;     // of all cuts so far
 };
 
 SplitReport sum(const std::vector<Split>& parts);
@@ -77,9 +77,9 @@ NodesOfCut nodes_of_cut(const topology::Mesh& mesh);
 struct PlaneOfCut {
     Vec3 point, normal;
 };
-/// Expects that no piece is on both sides of a plane, but for so much (m), and crumbs.
+/// Expects that no piece is on both sides of a plane, but for so much (m), and slivers.
 void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
-                   const PlaneOfCut& plane, double off, const Scars& scars);
+                   const PlaneOfCut& plane, double off, const SnapHistory& snap_history);
 
 /// A sphere of 20 * 4^n triangles with their corners on it.
 topology::SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions);

@@ -107,8 +107,8 @@ TEST(SplitAlongSurface, AClosedOneFreesItsInsideWithSnapping) {
             }
 }
 
-// At its folds there are elements all of whose corners are on the surface, and edges that could be
-// divided for ever: both are as the first cut has left them.
+// At its creases there are elements all of whose corners are on the surface, and edges that could
+// be divided for ever: both are as the first cut has left them.
 TEST(SplitAlongSurface, AClosedOneAgainChangesNothing) {
     for (const double snap : {0.0, 0.1, 0.3, 0.6})
         for (const bool is_guarded : {false, true})
@@ -243,7 +243,7 @@ TEST(SplitAlongSurface, FacesOfATetrahedronFreeItIfTheyAreAllOfThem) {
 }
 
 // All of its sides but one are in faces of the mesh, and that one is nearer than an edge to the
-// opposite side: passages of either in edges at nodes of the other are not to be forgotten.
+// opposite side: intersections of either in edges at nodes of the other are not to be forgotten.
 TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
     for (const double thickness : {0.4, 0.5, 0.6, 0.7, 0.8})
         for (const int across : {0, 1, 2})
@@ -263,8 +263,8 @@ TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
                 }
 }
 
-// What snapping takes away at folds is little beside what chords of elements do: 0.90 of the boxes
-// would come free if a node near one side forgot where the others pass through its edges.
+// What snapping takes away at creases is little beside what chords of elements do: 0.90 of the
+// boxes would come free if a node near one side forgot where the others pass through its edges.
 TEST(SplitAlongSurface, WithSnappingTurnedBoxesFreeMostOfWhatIsInThem) {
     double freed = 0.0, inside = 0.0;
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
@@ -282,7 +282,8 @@ TEST(SplitAlongSurface, WithSnappingTurnedBoxesFreeMostOfWhatIsInThem) {
     EXPECT_LT(freed, inside);
 }
 
-// Its folds lie in planes that hold faces of the mesh or halve its bricks: edges run through them.
+// Its creases lie in planes that hold faces of the mesh or halve its bricks: edges run through
+// them.
 TEST(SplitAlongSurface, ABoxAlongTheMeshAgainChangesNothing) {
     for (const double snap : {0.0, 0.1, 0.3, 0.6})
         for (const bool is_guarded : {false, true})
@@ -304,8 +305,8 @@ TEST(SplitAlongSurface, ABoxAlongTheMeshAgainChangesNothing) {
                     }
 }
 
-// Beside the folds of the box there are nodes that both cuts pass in the same direction, and faces
-// that only the plane passes.
+// Beside the creases of the box there are nodes that both cuts pass in the same direction, and
+// faces that only the plane passes.
 TEST(SplitAlongSurface, APlaneAlongASideOfABoxThatWasCutGoesOnBeyondIt) {
     for (const double snap : {0.0, 0.1, 0.3, 0.6})
         for (const bool is_guarded : {false, true})
@@ -328,7 +329,7 @@ TEST(SplitAlongSurface, APlaneAlongASideOfABoxThatWasCutGoesOnBeyondIt) {
                 EXPECT_GE(topology::components(body.mesh).count, 3);
                 const double edge = longest_edge(body.mesh, body.positions);
                 expect_parted(body.mesh, body.positions, {centre, normal},
-                              (snap > 0.0 ? 0.6 : 1e-9) * edge, body.scars);
+                              (snap > 0.0 ? 0.6 : 1e-9) * edge, body.snap_history);
             }
 }
 
@@ -415,13 +416,13 @@ std::set<std::array<double, 3>> rim_of_cut(const Mesh& mesh) {
             ++count;
             may_be_outside = is_outside(x) && is_outside(y);
         }
-    std::set<Point> rim;
+    std::set<Point> boundary;
     for (const auto& [ends, edge] : edges) {
         if (edge.first != 1 || edge.second) continue;
-        rim.insert(ends.first);
-        rim.insert(ends.second);
+        boundary.insert(ends.first);
+        boundary.insert(ends.second);
     }
-    return rim;
+    return boundary;
 }
 
 TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
@@ -446,7 +447,7 @@ TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
         EXPECT_GT(done.report.faces_opened, 20u);
         EXPECT_EQ(cut_faces(body.mesh).size(), done.report.faces_opened);
         EXPECT_LE(distance_of_cut(body, surface), 1e-14);
-        // It ends within one element of the surface's border: what is opened is less than the
+        // It ends within one element of the surface's boundary: what is opened is less than the
         // surface in the body, by less than that.
         if (is_patch) {
             const double whole = 0.7 * 0.7, least = std::pow(0.7 - 2.0 * edge, 2);
@@ -456,7 +457,7 @@ TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
             EXPECT_LE(done.report.cut_area, 0.6 * 1.1);
             EXPECT_GE(done.report.cut_area, (0.6 - edge) * 0.9);
         }
-        // Nodes at the rim are one for both sides; all others were copied.
+        // Nodes at the boundary are one for both sides; all others were copied.
         const auto nodes = nodes_of_cut(body.mesh);
         std::set<std::array<double, 3>> front;
         for (const NodeId node : nodes.front) {

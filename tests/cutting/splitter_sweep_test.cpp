@@ -287,12 +287,12 @@ TEST(SplitByBlade, StrokesThatOverlapByAnElementPartTheBody) {
             }
             EXPECT_GE(topology::components(body.mesh).count, 2);
             expect_parted(body.mesh, body.positions, {centre, across},
-                          (snap > 0.0 ? 0.6 : 1e-9) * overlap, body.scars);
+                          (snap > 0.0 ? 0.6 : 1e-9) * overlap, body.snap_history);
         }
 }
 
-// It ends in the body and slides out along itself, so that it crosses nothing: the border where it
-// was is there no more.
+// It ends in the body and slides out along itself, so that it crosses nothing: the boundary where
+// it was is there no more.
 TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
     for (const double snap : {0.0, default_snap}) {
         SplitBody body(test::jittered_cube(4, 0.2, 1));

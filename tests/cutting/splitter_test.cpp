@@ -290,10 +290,10 @@ TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
                     centre = TissueMotion::centre(mesh, ElementId(i), x);
             const MeshSnapshot before(mesh);
             CutFront front;
-            Scars scars;
+            SnapHistory snap_history;
             try {
                 split(mesh, {mesh, x, x}, Plane(centre, random.vector(1.0)), front, {0.1, {}},
-                      scars);
+                      snap_history);
                 ADD_FAILURE() << "it was split";
             } catch (const InputError& error) {
                 EXPECT_NE(std::string(error.what()).find("only tetrahedra can be split"),
@@ -308,9 +308,10 @@ TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
     Mesh mesh = Mesh::build(test::mesh_families().back().data).mesh;
     const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
     CutFront front;
-    Scars scars;
-    EXPECT_TRUE(split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1, {}}, scars)
-                    .changes.is_empty());
+    SnapHistory snap_history;
+    EXPECT_TRUE(
+        split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1, {}}, snap_history)
+            .changes.is_empty());
 }
 
 TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
@@ -383,7 +384,7 @@ TEST(Split, NeverDividesAnElementBelowTheLimit) {
                     std::array<Vec3, 4> x;
                     for (std::size_t k = 0; k < 4; ++k)
                         x[k] = body.mesh.rest_position(body.mesh.corners(e)[k]);
-                    return own_step_length(x);
+                    return element_step_length(x);
                 };
                 std::vector<double> first;
                 for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i)

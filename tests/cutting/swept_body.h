@@ -129,8 +129,8 @@ inline bool has_leaf(const Mesh& mesh, const topology::FacePair& pair) {
     return is_leaf(mesh, pair.a.element) || is_leaf(mesh, pair.b.element);
 }
 
-/// Pieces of more than `size` elements. Two elements at the rim that have only each other on their
-/// side of the cut come off together.
+/// Pieces of more than `size` elements. Two elements at the boundary that have only each other on
+/// their side of the cut come off together.
 inline long num_pieces_above(const Mesh& mesh, long size) {
     const auto pieces = topology::components(mesh);
     long count = 0;

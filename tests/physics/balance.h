@@ -157,7 +157,7 @@ inline void expect_balance(const Balance& before, const Model& model,
     EXPECT_LE(b.kinetic_energy, a.kinetic_energy * (1.0 + round_off));
     if (merges && !changes.elements_removed.empty()) return;  // which came first is not recorded
     EXPECT_LE((a.momentum - b.momentum - momentum).norm(), round_off * before.momentum_scale);
-    if (merges) return;  // what comes together from two places moves, at a loss of motion
+    if (merges) return;  // what comes together from two offsets moves, at a loss of motion
     // The parts of springs are other springs; all other laws see the deformation gradient, which
     // they share with the whole.
     if (divides_springs(changes)) energy += before.energy_of_springs - after.energy_of_springs;
@@ -170,7 +170,7 @@ inline void expect_balance(const Balance& before, const Model& model,
                              slenderness_of_removed * slenderness_of_removed) *
                     (before.elastic_scale + 0.1 * of_strain));
     if (!changes.elements_removed.empty()) return;
-    // Opened faces leave the same elements in the same places.
+    // Opened faces leave the same elements in the same offsets.
     if (changes.elements_added.empty()) {
         EXPECT_EQ(a.elastic_energy, b.elastic_energy);
     }

@@ -16,7 +16,7 @@
 
 namespace incise::physics {
 
-/// What supports hold and what loads load, in ascending order.
+/// What constraints hold and what loads load, in ascending order.
 struct Selections {
     std::vector<NodeId> held, moved;
     std::vector<FaceId> loaded_faces;

@@ -1,4 +1,4 @@
-// A body whose elements are divided: state, motion, supports and loads go on to the parts.
+// A body whose elements are divided: state, motion, constraints and loads go on to the parts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST(Bisection, ChangesTheMotionByTheFormulaForLumpedMasses) {
         test::Random random(11);
         for (int i = 0; i < 30; ++i) {
             Mesh mesh = Mesh::build(data).mesh;
-            Surroundings s;
+            BoundaryConditions s;
             s.gravity = {1.0, -2.0, 3.0};
             Model model(mesh, table, s);
             set_state(model, random_state(mesh, random, 0.02, 1.0));
@@ -200,7 +200,7 @@ TEST(Bisection, KeepsTheForceAndMomentOfTractionAndPressure) {
                 if (is_on_side) loaded.push_back(f);
             }
         ASSERT_EQ(loaded.size(), 16u);
-        Surroundings s;
+        BoundaryConditions s;
         if (is_pressure)
             s.loads.push_back({"gas", PressureLoad{loaded, pressure}, {}});
         else
@@ -254,7 +254,7 @@ struct LoadedTetrahedron {
 
     explicit LoadedTetrahedron(int loaded_face)
         : descent(mesh, {{}, {}, {{ElementId(0), loaded_face}}, {ElementId(0)}}),
-          model(mesh, table_of_one_law(soft_law), surroundings()) {}
+          model(mesh, table_of_one_law(soft_law), boundary_conditions()) {}
 
     void apply(const ChangeSet& changes) {
         model.apply(model.mesh(), changes);
@@ -262,12 +262,12 @@ struct LoadedTetrahedron {
         expect_loads_of_a_fresh_model();
     }
     void expect_loads_of_a_fresh_model() {
-        Model fresh(mesh, table_of_one_law(soft_law), surroundings());
+        Model fresh(mesh, table_of_one_law(soft_law), boundary_conditions());
         EXPECT_EQ(loads_at_rest(model), loads_at_rest(fresh));
     }
-    Surroundings surroundings() const {
+    BoundaryConditions boundary_conditions() const {
         const Selections now = descent.now(mesh);
-        Surroundings s;
+        BoundaryConditions s;
         s.loads = {{"traction", TractionLoad{now.loaded_faces, {3.0, -2.0, 5.0}}, {}},
                    {"pressure", PressureLoad{now.loaded_faces, 7.0}, {}},
                    {"body force", BodyLoad{now.loaded_elements, {0.0, 1.0, 0.0}}, {}}};
@@ -344,7 +344,7 @@ TEST(Bisection, AndJoiningInOneEditKeepsLoadsAndState) {
         std::vector<FaceId> loaded = topology::boundary_faces(mesh);
         std::erase(loaded, shared);
         std::erase(loaded, other);
-        Surroundings s;
+        BoundaryConditions s;
         s.loads = {{"wind", TractionLoad{loaded, traction}, {}}};
         Model model(mesh, table_of_one_law(soft_law), s);
         const Vec3 force = sum_of(loads_at_rest(model));
@@ -386,7 +386,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     const auto is_loaded = [](const Vec3& X) { return X.z() == 1.0; };
     const auto loaded = nodes_where(mesh, is_loaded);
     const Vec3 force(1.0, -2.0, 0.5);
-    Surroundings s;
+    BoundaryConditions s;
     s.loads.push_back({"hooks", NodalLoad{NodeSet(loaded), force, {}}, {}});
     Model model(mesh, table_of_one_law(soft_law), s);
     const std::vector<Vec3> before = loads_at_rest(model);
@@ -430,10 +430,10 @@ TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
     for (const Case& c : {Case{left, left, true}, Case{right, right, true},
                           Case{left, middle, false}, Case{middle, right, false}}) {
         Mesh mesh = cube();
-        Surroundings s;
+        BoundaryConditions s;
         s.gravity = {0.0, 0.0, -9.81};
-        s.supports = {holding("left", NodeSet(nodes_where(mesh, left))),
-                      holding("right", NodeSet(nodes_where(mesh, right)))};
+        s.constraints = {holding("left", NodeSet(nodes_where(mesh, left))),
+                         holding("right", NodeSet(nodes_where(mesh, right)))};
         Model model(mesh, table_of_one_law(soft_law), s);
         const ChangeSet changes = bisect(
             mesh, edge_where(mesh, [&](const Vec3& a, const Vec3& b) { return c.a(a) && c.b(b); }),
@@ -455,25 +455,25 @@ TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
     }
 }
 
-TEST(Supports, IndexedEditByEditEqualFreshOnes) {
+TEST(Constraints, IndexedEditByEditEqualFreshOnes) {
     for (const auto* family : test::tetrahedral_families()) {
         SCOPED_TRACE(family->name);
         Mesh mesh = Mesh::build(family->data).mesh;
         const auto all = nodes_where(mesh, [](const Vec3&) { return true; });
         test::Random random(15);
-        std::vector<Support> supports(3);
+        std::vector<Constraint> constraints(3);
         for (std::size_t i = 0; i < 3; ++i) {
             std::vector<NodeId> some;
             for (const NodeId n : all)
                 if (random.below(2) == 0) some.push_back(n);
-            supports[i] = holding("support " + std::to_string(i), NodeSet(some));
-            for (std::size_t c = 0; c < 3; ++c) supports[i].components[c] = c == i;
+            constraints[i] = holding("support " + std::to_string(i), NodeSet(some));
+            for (std::size_t c = 0; c < 3; ++c) constraints[i].components[c] = c == i;
         }
-        Supports followed(mesh, supports);
+        Constraints followed(mesh, constraints);
         const auto apply = [&](const ChangeSet& changes) {
             followed.apply(mesh, changes);
-            for (Support& support : supports) support.nodes.apply(mesh, changes);
-            const Supports fresh(mesh, supports);
+            for (Constraint& constraint : constraints) constraint.nodes.apply(mesh, changes);
+            const Constraints fresh(mesh, constraints);
             for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
                 const auto *a = followed.of_node(n), *b = fresh.of_node(n);
                 ASSERT_EQ(a == nullptr, b == nullptr) << n;

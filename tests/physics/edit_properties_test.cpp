@@ -15,7 +15,7 @@
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
 #include "tests/physics/balance.h"
-#include "tests/physics/generated_surroundings.h"
+#include "tests/physics/generated_boundary_conditions.h"
 #include "tests/physics/model_snapshot.h"
 
 namespace incise::physics {
@@ -260,7 +260,7 @@ bool removes_parts(const ChangeSet& changes) {
 
 struct ActedProgram {
     Program program;
-    GeneratedSurroundings acting;
+    GeneratedBoundaryConditions acting;
 };
 
 std::ostream& operator<<(std::ostream& out, const ActedProgram& acted) {
@@ -279,7 +279,7 @@ struct StepOf {
     StepOf(Model& model, const ModelSnapshot& before) {
         model.integrate(now_time, short_step);
         state = state_of(model);
-        for (std::size_t s = 0; s < model.num_supports(); ++s) {
+        for (std::size_t s = 0; s < model.num_constraints(); ++s) {
             reactions.push_back(model.reactions()[s].force);
             reactions.push_back(model.reactions()[s].moment);
         }
@@ -291,20 +291,20 @@ struct StepOf {
 /// A body in motion that follows the edits of its mesh.
 class FollowingBody {
   public:
-    FollowingBody(const GeneratedBody& body, const GeneratedSurroundings& acting)
+    FollowingBody(const GeneratedBody& body, const GeneratedBoundaryConditions& acting)
         : table_(table_for(body.mesh())),
           mesh_(with_regions(body.mesh(), table_.materials.size(), body.first_cell)),
           acting_(mesh_.mesh(), acting),
           model_(mesh_.mesh(), table_, acting_.at_start()) {
         test::Random random(3);
         BodyState state = random_state(mesh_.mesh(), random, 0.0005, 1.0);
-        // From afar they would come to their places faster than a body may.
-        for (const Support& support : acting_.at_start().supports)
-            for (const auto& member : support.nodes.members())
+        // From afar they would come to their offsets faster than a body may.
+        for (const Constraint& constraint : acting_.at_start().constraints)
+            for (const auto& member : constraint.nodes.members())
                 for (int c = 0; c < 3; ++c)
-                    if (support.components[static_cast<std::size_t>(c)])
+                    if (constraint.components[static_cast<std::size_t>(c)])
                         state.positions[member.node.index()][c] =
-                            support.target(mesh_.mesh(), member.node, now_time)[c];
+                            constraint.target(mesh_.mesh(), member.node, now_time)[c];
         set_state(model_, state, now_time);
     }
 
@@ -372,10 +372,10 @@ TEST(EditPrograms, KeepBodiesInBalanceAndEqualToFreshOnes) {
     for (const auto* family : test::families_of(topology::CellKind::hexahedron))
         families.push_back(family);
     const auto acted = rc::gen::apply(
-        [](Program program, GeneratedSurroundings acting) {
+        [](Program program, GeneratedBoundaryConditions acting) {
             return ActedProgram{std::move(program), std::move(acting)};
         },
-        programs(families), generated_surroundings());
+        programs(families), generated_boundary_conditions());
     test::expect_for_all(test::num_cases(1500), acted, [](const ActedProgram& one) {
         FollowingBody body(one.program.body, one.acting);
         const ModelSnapshot first = body.now();

@@ -30,16 +30,16 @@ using topology::Mesh;
 const std::vector<std::string> no_violations;
 
 /// Everything that acts in these tests but loads on nodes, whose division among copies a fresh
-/// model cannot know (supports_loads_test.cpp has them; so has UndoneToTheStart below).
-Surroundings surroundings(const Selections& selected) {
-    Surroundings s;
+/// model cannot know (constraints_loads_test.cpp has them; so has UndoneToTheStart below).
+BoundaryConditions boundary_conditions(const Selections& selected) {
+    BoundaryConditions s;
     s.gravity = {0.3, 0.2, -9.81};
     s.damping = 2.0;
-    const Support held = holding("held", NodeSet(selected.held));
-    Support moved = holding("moved", NodeSet(selected.moved), {false, true, true});
+    const Constraint held = holding("held", NodeSet(selected.held));
+    Constraint moved = holding("moved", NodeSet(selected.moved), {false, true, true});
     moved.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0.2, 0.3)}});
     moved.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.5}});
-    s.supports = {held, moved};
+    s.constraints = {held, moved};
     s.loads = {{"traction", TractionLoad{selected.loaded_faces, {1.0, 2.0, 3.0}}, {}},
                {"pressure", PressureLoad{selected.loaded_faces, 5.0}, {}},
                {"body force", BodyLoad{selected.loaded_elements, {0.0, 4.0, 0.0}}, {}}};
@@ -56,24 +56,24 @@ class EditedBody {
           mesh_(Mesh::build(with_regions(data, table_.materials.size(), seed)).mesh),
           selections_(selections(mesh_)),
           descent_(mesh_, selections_),
-          model_(mesh_, table_, surroundings(selections_)),
+          model_(mesh_, table_, boundary_conditions(selections_)),
           random_(seed) {
         shake();
     }
 
     bool is_used_up() const { return mesh_.num_elements() == 0; }
 
-    /// Strains the body as a whole, shakes the nodes it had at first and puts those on supports
+    /// Strains the body as a whole, shakes the nodes it had at first and puts those on constraints
     /// where these want them. Later nodes lie by their sources, shaken but little: so the strain of
     /// parts is that of the first elements, however small they are.
     void shake() {
         BodyState state = random_state(mesh_, random_, 0.02, 1.0);
-        for (const Support& support : surroundings(selections_).supports)
-            for (const auto& member : support.nodes.members())
+        for (const Constraint& constraint : boundary_conditions(selections_).constraints)
+            for (const auto& member : constraint.nodes.members())
                 for (int c = 0; c < 3; ++c)
-                    if (support.components[static_cast<std::size_t>(c)])
+                    if (constraint.components[static_cast<std::size_t>(c)])
                         state.positions[member.node.index()][c] =
-                            support.target(mesh_, member.node, time)[c];
+                            constraint.target(mesh_, member.node, time)[c];
         const double room = shortest_edge();
         for (const auto& record : nodes_born_) {
             Vec3 x = random_.vector(0.01 * room);
@@ -137,11 +137,11 @@ class EditedBody {
         model_.apply(model_.mesh(), inverse(changes));
     }
 
-    // Also after a step, in which supports and loads show, and which lets copies part.
+    // Also after a step, in which constraints and loads show, and which lets copies part.
     void expect_equal_to_a_fresh_model(const ModelSnapshot& expected) {
         MaterialTable table = table_;
         table.fibres = expected.fibres;
-        Model fresh(mesh_, table, surroundings(descent_.now(mesh_)));
+        Model fresh(mesh_, table, boundary_conditions(descent_.now(mesh_)));
         set_state(fresh, expected.state, time);
         fresh.set_history(expected.history);
         expect_equal(ModelSnapshot(fresh, time), expected);
@@ -150,7 +150,7 @@ class EditedBody {
         fresh.integrate(time, dt);
         expect_equal(ModelSnapshot(model_, time + dt), ModelSnapshot(fresh, time + dt));
         EXPECT_EQ(model_.min_volume_ratio(), fresh.min_volume_ratio());
-        for (std::size_t i = 0; i < model_.num_supports(); ++i)
+        for (std::size_t i = 0; i < model_.num_constraints(); ++i)
             EXPECT_EQ(model_.reactions()[i].force, fresh.reactions()[i].force);
     }
 
@@ -245,8 +245,8 @@ TEST(RandomEdits, OnEveryFamilyAreTested) {
               std::size(hexahedral_edit_programs));
 }
 
-// Many edits in a row, undone in reverse: supports, loads on nodes and all else are back, so that
-// the body moves on as if nothing had been.
+// Many edits in a row, undone in reverse: constraints, loads on nodes and all else are back, so
+// that the body moves on as if nothing had been.
 TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
     auto families = test::tetrahedral_families();
     for (const auto* family : test::families_of(topology::CellKind::hexahedron))
@@ -257,7 +257,7 @@ TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
         const auto data = with_regions(family->data, table.materials.size());
         Mesh mesh = Mesh::build(data).mesh;
         const Mesh untouched = Mesh::build(data).mesh;
-        Surroundings all = surroundings(selections(mesh));
+        BoundaryConditions all = boundary_conditions(selections(mesh));
         std::vector<NodeId> loaded = nodes_where(mesh, [](const Vec3& x) { return x.z() > 0.5; });
         all.loads.push_back({"nodes", NodalLoad{NodeSet(loaded), {1.0, -2.0, 3.0}, {}}, {}});
         Model model(mesh, table, all), reference(untouched, table, all);
@@ -282,7 +282,7 @@ TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
             step(reference, time_of_reference, dt);
         }
         expect_equal(ModelSnapshot(model, time), ModelSnapshot(reference, time));
-        for (std::size_t i = 0; i < model.num_supports(); ++i)
+        for (std::size_t i = 0; i < model.num_constraints(); ++i)
             EXPECT_EQ(model.reactions()[i].force, reference.reactions()[i].force);
     }
 }
@@ -371,7 +371,7 @@ TEST(ModelApply, JoiningTwoPiecesKeepsMassMomentumAndCentreOfMass) {
     const auto pieces = topology::components(mesh).of_element;
     BodyState state = rest_state(mesh);
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
-        const int piece = pieces[mesh.anchor(NodeId(n)).index()];
+        const int piece = pieces[mesh.incident_element(NodeId(n)).index()];
         state.positions[n] += (piece == 0 ? 1.0 : -2.0) * Vec3(0.1, 0.02, 0.03);
         state.velocities[n] = (piece == 0 ? 1.0 : -0.5) * Vec3(1.0, 2.0, -1.0);
     }

@@ -63,7 +63,7 @@ Outcome solve(const Experiment& experiment, int n) {
         return NodeSet(nodes_where(
             mesh, [&](const Vec3& X) { return std::abs(X.z() - z) < 1e-9 * size.z(); }));
     };
-    Support top = holding("top", plate(size.z()));
+    Constraint top = holding("top", plate(size.z()));
     const double amount = experiment.amount;
     if (experiment.kind == "tors") {
         top.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, amount}});
@@ -75,9 +75,9 @@ Outcome solve(const Experiment& experiment, int n) {
         top.displacement =
             TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, amount * size.z() * direction}});
     }
-    Surroundings surroundings;
-    surroundings.supports = {holding("base", plate(0.0)), top};
-    Model model(mesh, table_of_one_law(law_of_experiment(experiment)), surroundings);
+    BoundaryConditions boundary_conditions;
+    boundary_conditions.constraints = {holding("base", plate(0.0)), top};
+    Model model(mesh, table_of_one_law(law_of_experiment(experiment)), boundary_conditions);
     Statics statics;
     const int num_steps = amount > 0.1 ? 5 : 1;
     for (int i = 0; i < num_steps; ++i)

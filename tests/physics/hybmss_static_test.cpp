@@ -54,13 +54,13 @@ std::vector<Case> cases_of(const std::vector<std::string>& kinds) {
 }
 
 /// The plates at both ends in z: the lower one held, the upper one as `move` says.
-std::vector<Support> plates(const Case& c, const Mesh& mesh, double ramp_time) {
+std::vector<Constraint> plates(const Case& c, const Mesh& mesh, double ramp_time) {
     const double height = c.size().z();
     const auto at = [&](double z) {
         return NodeSet(
             nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.z() - z) < 1e-9 * height; }));
     };
-    Support top = holding("top", at(height));
+    Constraint top = holding("top", at(height));
     const double amount = c.kind() == "notch" ? c.at("d") : c.at("amt");
     const auto move_by = [&](const Vec3& u) {
         top.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {ramp_time, u}});
@@ -83,7 +83,7 @@ class PlateRelaxation {
         : mesh_(mesh),
           unit_(c.size().maxCoeff() *
                 std::sqrt(2.0 * (1.0 + c.at("nu")) * c.row.value("rho", 1000.0) / c.at("E"))),
-          model_(mesh, c.materials(), surroundings(c)),
+          model_(mesh, c.materials(), boundary_conditions(c)),
           dt_(0.9 * model_.stable_step()) {}
 
     void run_until(double units) {
@@ -101,7 +101,7 @@ class PlateRelaxation {
     }
 
     /// By statics, in so many load steps.
-    void settle(int num_steps) {
+    void equilibrate(int num_steps) {
         const double dt = 2.0 * unit_ / num_steps;
         for (int i = 0; i < num_steps; ++i) statics_.step(model_, i * dt, dt);
     }
@@ -110,16 +110,16 @@ class PlateRelaxation {
     double time() const { return time_; }
 
   private:
-    Surroundings surroundings(const Case& c) const {
-        Surroundings s;
+    BoundaryConditions boundary_conditions(const Case& c) const {
+        BoundaryConditions s;
         if (c.kind() == "cantilever_gravity") {
             s.gravity = {0.0, -c.at("g"), 0.0};
-            s.supports = {holding("root", NodeSet(nodes_where(mesh_, [](const Vec3& X) {
-                                      return std::abs(X.z()) < 1e-9;
-                                  })))};
+            s.constraints = {holding("root", NodeSet(nodes_where(mesh_, [](const Vec3& X) {
+                                         return std::abs(X.z()) < 1e-9;
+                                     })))};
             s.damping = 0.35 / unit_;  // near critical for the first bending mode
         } else {
-            s.supports = plates(c, mesh_, 2.0 * unit_);
+            s.constraints = plates(c, mesh_, 2.0 * unit_);
             s.damping = 3.0 / unit_;
         }
         return s;
@@ -150,7 +150,7 @@ TEST(HybMssStatic, PlatesGluedToABlockFeelTheForceAndTorqueOfTheReference) {
         const Mesh mesh = c.mesh();
         PlateRelaxation body(c, mesh);
         if (is_static)
-            body.settle(2);
+            body.equilibrate(2);
         else
             body.run_to_equilibrium();
         const Vec3 force = body.model().reactions()[1].force;

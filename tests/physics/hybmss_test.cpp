@@ -150,7 +150,7 @@ TEST(HybMss, StiffnessIsBelowItsBoundAndForCubesAtIt) {
 
 TEST(HybMss, SpringsOfACubeAreThoseOfThePaper) {
     for (const double A : {0.5, 1.0, 3.0}) {
-        const auto shares = spring_shares(Vec3::Constant(0.2), shear_modulus, A);
+        const auto shares = spring_contributions(Vec3::Constant(0.2), shear_modulus, A);
         ASSERT_TRUE(shares);
         const double k_c = 3.0 * shear_modulus * 0.2 / (4.0 + 3.0 * A);
         const double k_e = shear_modulus * 0.2 * (8.0 + 3.0 * A) / (4.0 + 3.0 * A);
@@ -163,7 +163,7 @@ TEST(HybMss, SpringsOfACubeAreThoseOfThePaper) {
         EXPECT_NEAR(shares->stiffnesses[6], k_c, 1e-12 * k_e);
         EXPECT_NEAR(shares->lengths[6], 0.2 * std::sqrt(3.0), 1e-15);
     }
-    const auto outer = spring_shares(Vec3::Constant(0.2), shear_modulus, infinity);
+    const auto outer = spring_contributions(Vec3::Constant(0.2), shear_modulus, infinity);
     ASSERT_TRUE(outer);
     EXPECT_EQ(outer->stiffnesses[6], 0.0);
     EXPECT_NEAR(outer->stiffnesses[0], shear_modulus * 0.2 / 4.0, 1e-10);
@@ -175,7 +175,7 @@ TEST(HybMss, NoSpringOfABoxIsMissingOrPushesWhenPulled) {
     int refused = 0;
     for (int i = 0; i < 2000; ++i) {
         const Vec3 edges(1.0, random.uniform(1.0, 2.0), random.uniform(1.0, 2.0));
-        const auto shares = spring_shares(edges, shear_modulus, random.uniform(0.1, 5.0));
+        const auto shares = spring_contributions(edges, shear_modulus, random.uniform(0.1, 5.0));
         EXPECT_EQ(shares.has_value(), edges.maxCoeff() <= 1.42 * edges.minCoeff());
         if (!shares) {
             ++refused;

@@ -24,11 +24,11 @@ std::vector<NamedMaterial> materials() {
 }
 
 /// Held at one end, falling at the other.
-Surroundings cantilever(const Mesh& mesh, double damping = 0.0) {
-    Surroundings s;
+BoundaryConditions cantilever(const Mesh& mesh, double damping = 0.0) {
+    BoundaryConditions s;
     s.gravity = {0.0, 0.0, -5.0};
     s.damping = damping;
-    s.supports = {holding("clamp", left_end(mesh))};
+    s.constraints = {holding("clamp", left_end(mesh))};
     return s;
 }
 
@@ -42,7 +42,7 @@ void run(Model& model, double dt, int num_steps) {
 
 TEST(ImplicitEuler, LetsABodyFallAsTheRuleSays) {
     const Mesh mesh = bar();
-    Surroundings s;
+    BoundaryConditions s;
     s.gravity = {0.0, 0.0, -10.0};
     Model model(mesh, table_of_one_law(soft_law), s);
     const double dt = 0.1;
@@ -74,8 +74,8 @@ TEST(ImplicitEuler, ConvergesForStiffTissueNearRest) {
                 named.law);
             const Mesh mesh = bar();
             for (const double damping : {0.0, 2.0}) {
-                Surroundings s = cantilever(mesh, damping);
-                s.supports.push_back(holding(
+                BoundaryConditions s = cantilever(mesh, damping);
+                s.constraints.push_back(holding(
                     "other end",
                     NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; }))));
                 Model model(mesh, table_of_one_law(law), s);
@@ -90,12 +90,12 @@ TEST(ImplicitEuler, ConvergesWhileViscousTissueRelaxes) {
             SCOPED_TRACE(named.name + ", strain " + std::to_string(strain) + ", step " +
                          std::to_string(dt));
             const Mesh mesh = bar();
-            Surroundings s;
-            Support hand = holding(
+            BoundaryConditions s;
+            Constraint hand = holding(
                 "hand", NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; })));
             hand.displacement =
                 TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.2, Vec3(0.2 * strain, 0.0, 0.0)}});
-            s.supports = {holding("clamp", left_end(mesh)), hand};
+            s.constraints = {holding("clamp", left_end(mesh)), hand};
             Model model(mesh,
                         table_of_one_material(HyperElasticLinks{named.law, 0.4, {{0.5, 6.0}}}), s);
             EXPECT_NO_THROW(run(model, dt, 20));
@@ -105,7 +105,7 @@ TEST(ImplicitEuler, ConvergesWhileViscousTissueRelaxes) {
 // Whose norm overflows: infinite is not small beside infinite.
 TEST(ImplicitEuler, RefusesForcesBeyondAllNumbers) {
     const Mesh mesh = bar();
-    Surroundings s = cantilever(mesh);
+    BoundaryConditions s = cantilever(mesh);
     s.gravity = {0.0, 0.0, -1e200};
     Model model(mesh, table_of_one_law(soft_law), s);
     EXPECT_THROW(run(model, 0.1, 1), PhysicsError);
@@ -172,8 +172,8 @@ TEST(ImplicitEuler, BooksAllEnergy) {
     for (const NamedMaterial& m : materials()) {
         SCOPED_TRACE(m.name);
         const Mesh mesh = bar(m.kind);
-        Surroundings s = cantilever(mesh, 3.0);
-        s.supports[0].displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.1, {0, 0.02, 0}}});
+        BoundaryConditions s = cantilever(mesh, 3.0);
+        s.constraints[0].displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.1, {0, 0.02, 0}}});
         Model model(mesh, m.table, s);
         double last = 0.0;
         ImplicitEuler integrator;
@@ -193,12 +193,12 @@ TEST(ImplicitEuler, BooksAllEnergy) {
 TEST(ImplicitEuler, RelaxesViscousStress) {
     const Mesh mesh = bar();
     const double tau = 0.5;
-    Surroundings s;
-    Support hand = holding(
+    BoundaryConditions s;
+    Constraint hand = holding(
         "hand",
         NodeSet(nodes_where(mesh, [](const Vec3& X) { return std::abs(X.x() - 0.2) < 1e-9; })));
     hand.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1e-6, {0.02, 0, 0}}});
-    s.supports = {holding("clamp", left_end(mesh)), hand};
+    s.constraints = {holding("clamp", left_end(mesh)), hand};
     const auto table = table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.4, tau}}});
     Model elastic(mesh, table_of_one_law(soft_law), s), body(mesh, table, s);
     Statics().step(elastic, 0.0, 1.0);

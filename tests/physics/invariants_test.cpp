@@ -213,7 +213,7 @@ TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
 
 TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    Surroundings s;
+    BoundaryConditions s;
     s.gravity = {0.1, -0.2, -0.981};
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
     set_state(model, swinging_state(mesh, 0.05));
@@ -234,16 +234,16 @@ TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
               1e-12 * end.mass * time * s.gravity.norm());
 }
 
-// Everything at once: gravity, a moving support, loads, damping. Energy gained is work done less
+// Everything at once: gravity, a moving constraint, loads, damping. Energy gained is work done less
 // what damping took, up to an error of first order in the step.
 TEST(DrivenMotion, KeepsTheEnergyLedger) {
     constexpr double end_time = 2.0;
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     const auto ledger_error = [&](int num_steps) {
-        Surroundings s;
+        BoundaryConditions s;
         s.gravity = {0.0, 0.5, -2.0};
         s.damping = 1.5;
-        Support support =
+        Constraint constraint =
             holding("hand", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0; })));
         // Smooth from rest: the kinks of linear keys have an error of their own.
         std::vector<std::pair<double, Vec3>> keys;
@@ -251,8 +251,8 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
             const double t = 1e-3 * i;
             keys.emplace_back(t, 0.1 * std::pow(std::sin(t), 2) * Vec3(1.0, 0.0, 2.0));
         }
-        support.displacement = TimeCurve<Vec3>(keys);
-        s.supports.push_back(support);
+        constraint.displacement = TimeCurve<Vec3>(keys);
+        s.constraints.push_back(constraint);
         s.loads.push_back({"gas", PressureLoad{topology::boundary_faces(mesh), 200.0}, {}});
         Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
         double time = 0.0, largest = 0.0;
@@ -276,7 +276,7 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
 
 TEST(DampedMotion, LosesMomentumAtItsRate) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
-    Surroundings s;
+    BoundaryConditions s;
     s.damping = 3.0;
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
     BodyState state = swinging_state(mesh, 0.05);

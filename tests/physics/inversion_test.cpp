@@ -76,9 +76,10 @@ struct Ending {
 
 /// Lets the damped body move until it is back, at rest elsewhere, or its time is over.
 Ending run(const Mesh& mesh, const Law& law, Start start, std::uint64_t seed, double safety = 0.1) {
-    Surroundings surroundings;
-    surroundings.damping = 5.0;  // 1/s; sound takes some tenths of a second across the bodies
-    Model model(mesh, table_of_one_law(law), surroundings);
+    BoundaryConditions boundary_conditions;
+    boundary_conditions.damping =
+        5.0;  // 1/s; sound takes some tenths of a second across the bodies
+    Model model(mesh, table_of_one_law(law), boundary_conditions);
     Ending ending;
     const double scale = model.stiffness_energy(), dt = safety * model.stable_step();
     double time = 0.0;

@@ -174,7 +174,7 @@ TEST(Model, ReportsTotalsOfARigidMotion) {
     const Mesh mesh =
         Mesh::build(topology::box_mesh(CellKind::tetrahedron, {1, 2, 3}, {2, 2, 2}, {2, 2, 2}))
             .mesh;
-    Surroundings s;
+    BoundaryConditions s;
     s.gravity = {0.0, 0.0, -10.0};
     Model model(mesh, table_of_one_law(NeoHookean{1e3, 1e3}, 500.0), s);
     BodyState state = rest_state(mesh);
@@ -235,7 +235,9 @@ TEST(Model, StopsAtANonFiniteStateAndNamesAnElement) {
     set_state(model, state);
     const std::string text = message_of([&] { model.integrate(0.0, 1e-3); });
     EXPECT_TRUE(has(text, "no longer at a finite place")) << text;
-    EXPECT_TRUE(has(text, "element " + std::to_string(mesh.label(mesh.anchor(NodeId(3)))))) << text;
+    EXPECT_TRUE(
+        has(text, "element " + std::to_string(mesh.label(mesh.incident_element(NodeId(3))))))
+        << text;
     EXPECT_TRUE(has(text, "node " + std::to_string(mesh.label(NodeId(3))))) << text;
 }
 

@@ -21,15 +21,15 @@ Mat3 stretch_and_shear() {
 }
 
 /// Each node of the boundary of the unit cube is led to where F takes it.
-Surroundings affine_boundary(const Mesh& mesh, const Mat3& F) {
-    Surroundings s;
+BoundaryConditions affine_boundary(const Mesh& mesh, const Mat3& F) {
+    BoundaryConditions s;
     for (const NodeId n : nodes_where(mesh, [](const Vec3& X) {
              return X.minCoeff() < 1e-9 || X.maxCoeff() > 1.0 - 1e-9;
          })) {
-        Support support = holding("node " + std::to_string(n.value), NodeSet({n}));
+        Constraint constraint = holding("node " + std::to_string(n.value), NodeSet({n}));
         const Vec3 u = F * mesh.rest_position(n) - mesh.rest_position(n);
-        support.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, u}});
-        s.supports.push_back(support);
+        constraint.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, u}});
+        s.constraints.push_back(constraint);
     }
     return s;
 }
@@ -37,13 +37,13 @@ Surroundings affine_boundary(const Mesh& mesh, const Mat3& F) {
 TEST(PatchTest, OfEveryLawIsPassed) {
     const Mesh mesh = Mesh::build(test::jittered_cube(4, 0.2, 5)).mesh;
     const Mat3 F = stretch_and_shear();
-    const Surroundings surroundings = affine_boundary(mesh, F);
-    ASSERT_LT(surroundings.supports.size(), mesh.num_nodes());
+    const BoundaryConditions boundary_conditions = affine_boundary(mesh, F);
+    ASSERT_LT(boundary_conditions.constraints.size(), mesh.num_nodes());
     for (const NamedLaw& named : test_laws()) {
         SCOPED_TRACE(named.name);
         MaterialTable table = table_of_one_law(named.law);
         for (Vec3& fibre : table.fibres) fibre = Vec3(2, -1, 2) / 3.0;  // the same everywhere
-        Model model(mesh, table, surroundings);
+        Model model(mesh, table, boundary_conditions);
         Statics statics;
         statics.step(model, 0.0, 0.5);
         statics.step(model, 0.5, 0.5);

@@ -43,13 +43,13 @@ class Tethers final : public ForceTerm {
     double stiffness_;
 };
 
-Surroundings held_moved_and_damped(const Mesh& mesh) {
-    Surroundings s;
+BoundaryConditions held_moved_and_damped(const Mesh& mesh) {
+    BoundaryConditions s;
     s.gravity = {0.5, 0.0, -9.81};
     s.damping = 3.0;
-    Support left = holding("left", left_end(mesh), {true, false, true});
+    Constraint left = holding("left", left_end(mesh), {true, false, true});
     left.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 0.0, 0.3)}});
-    s.supports.push_back(left);
+    s.constraints.push_back(left);
     return s;
 }
 
@@ -118,9 +118,9 @@ TEST(Stages, ImpulsesChangeMomentumAndWork) {
 TEST(Stages, SupportsBearTheImpulsesOnTheirNodes) {
     const Mesh mesh = bar();
     const Vec3 impulse(1e-3, -2e-3, 5e-4);
-    Surroundings held;
-    held.supports.push_back(holding("left", left_end(mesh)));
-    const NodeId node = held.supports[0].nodes.members()[0].node;
+    BoundaryConditions held;
+    held.constraints.push_back(holding("left", left_end(mesh)));
+    const NodeId node = held.constraints[0].nodes.members()[0].node;
     Model model(mesh, table_of_one_law(soft_law), held);
     SemiImplicitEuler integrator;
     integrator.add_projection(std::make_unique<Push>(node, impulse));
@@ -137,9 +137,9 @@ TEST(ForceTerms, BearTheWeightWithSupportsInStatics) {
     for (const NamedMaterial& material : materials_of_all_methods()) {
         SCOPED_TRACE(material.name);
         const Mesh mesh = bar(material.kind);
-        Surroundings weight;
+        BoundaryConditions weight;
         weight.gravity = {0.0, 0.0, -9.81};
-        weight.supports.push_back(holding("left", left_end(mesh)));
+        weight.constraints.push_back(holding("left", left_end(mesh)));
         Model model(mesh, material.table, weight);
         constexpr double stiffness = 50.0;
         model.add_force_term(std::make_unique<Tethers>(stiffness));

@@ -73,13 +73,13 @@ std::vector<std::array<std::int64_t, 4>> uncut_tets(const CutReference& referenc
     return tets;
 }
 
-Support support(const Mesh& mesh, const CutReference& reference, const std::string& name,
-                const std::vector<std::int64_t>& points, const Vec3& displacement) {
+Constraint constraint(const Mesh& mesh, const CutReference& reference, const std::string& name,
+                      const std::vector<std::int64_t>& points, const Vec3& displacement) {
     const std::set<std::int64_t> selected(points.begin(), points.end());
     std::vector<NodeId> nodes;
     for (const auto& [node, point] : points_of_nodes(mesh, uncut_tets(reference)))
         if (selected.contains(point)) nodes.push_back(node);
-    Support s;
+    Constraint s;
     s.name = name;
     s.nodes = NodeSet(nodes);
     s.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {ramp_time, displacement}});
@@ -90,7 +90,7 @@ Support support(const Mesh& mesh, const CutReference& reference, const std::stri
 class Relaxation {
   public:
     Relaxation(const Mesh& mesh, const CutReference& reference, const Law& law)
-        : model_(mesh, table_of_one_law(law), surroundings(mesh, reference)),
+        : model_(mesh, table_of_one_law(law), boundary_conditions(mesh, reference)),
           dt_(0.85 * model_.stable_step()) {}
 
     void run_until(double time) {
@@ -115,17 +115,18 @@ class Relaxation {
 
     const Model& model() const { return model_; }
 
-    static Surroundings surroundings(const Mesh& mesh, const CutReference& reference) {
-        Surroundings s;
+    static BoundaryConditions boundary_conditions(const Mesh& mesh, const CutReference& reference) {
+        BoundaryConditions s;
         s.damping = damping;
-        s.supports.push_back(support(mesh, reference, "fixed", reference.fixed, Vec3::Zero()));
-        s.supports.push_back(
-            support(mesh, reference, "moved", reference.moved, reference.displacement));
+        s.constraints.push_back(
+            constraint(mesh, reference, "fixed", reference.fixed, Vec3::Zero()));
+        s.constraints.push_back(
+            constraint(mesh, reference, "moved", reference.moved, reference.displacement));
         return s;
     }
 
   private:
-    // What accelerates a node and what damping takes from it; supported nodes stand still.
+    // What accelerates a node and what damping takes from it; constrained nodes stand still.
     double net_force_in_next_step() {
         const BodyState before = state_of(model_);
         step(model_, time_, dt_);
@@ -225,12 +226,12 @@ void check_cut_during_the_run(const CutReference& reference) {
 // Statics finds the same states in two load steps.
 void check_statics(const CutReference& reference, bool is_cut) {
     for_each_solution(reference, is_cut, [&](Mesh& mesh, const Law& law, const auto& solution) {
-        Model model(mesh, table_of_one_law(law), Relaxation::surroundings(mesh, reference));
+        Model model(mesh, table_of_one_law(law), Relaxation::boundary_conditions(mesh, reference));
         Statics statics;
         statics.step(model, 0.0, 0.5 * ramp_time);
         if (is_cut) {
             model.apply(model.mesh(), open_cut_faces(mesh, reference));
-            statics.settle(model, 0.5 * ramp_time);
+            statics.equilibrate(model, 0.5 * ramp_time);
         }
         statics.step(model, 0.5 * ramp_time, 0.5 * ramp_time);
         expect_solution(model, reference, solution);
@@ -259,9 +260,9 @@ TEST(StaticReference, StaticsOfABeamUnderItsOwnWeight) {
                                                          Vec3::Zero(), {0.4, 0.4, 2.4}, {4, 4, 24}))
                               .mesh;
         const auto at = [&](auto is_there) { return nodes_where(mesh, is_there); };
-        Surroundings s;
+        BoundaryConditions s;
         s.gravity = {0.0, -g, 0.0};
-        s.supports = {holding("root", NodeSet(at([](const Vec3& X) { return X.z() < 1e-9; })))};
+        s.constraints = {holding("root", NodeSet(at([](const Vec3& X) { return X.z() < 1e-9; })))};
         Model model(mesh, table_of_one_law(law, beam.at("rho")), s);
         Statics().step(model, 0.0, 1.0);
         const auto tips = at([](const Vec3& X) { return (X - Vec3(0.2, 0.2, 2.4)).norm() < 1e-9; });

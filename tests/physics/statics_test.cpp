@@ -36,15 +36,15 @@ topology::ChangeSet open_across(Mesh& mesh, double x, double up_to) {
 }
 
 /// Held at the left, led at the right, heavy, with pressure and traction on top.
-Surroundings loaded(const Mesh& mesh) {
-    Surroundings s;
+BoundaryConditions loaded(const Mesh& mesh) {
+    BoundaryConditions s;
     s.gravity = {0.0, 0.0, -2.0};
-    Support hand = holding("hand", nodes_at(mesh, 0.2));
+    Constraint hand = holding("hand", nodes_at(mesh, 0.2));
     hand.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.02, 0.0, 0.01)}});
     hand.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.4}});
     hand.point = {0.2, 0.05, 0.05};
     hand.axis = Vec3::UnitX();
-    s.supports = {holding("clamp", nodes_at(mesh, 0.0)), hand};
+    s.constraints = {holding("clamp", nodes_at(mesh, 0.0)), hand};
     std::vector<FaceId> top;
     for (const FaceId f : topology::boundary_faces(mesh)) {
         bool is_top = true;
@@ -74,7 +74,7 @@ TEST(Statics, EndWhereDampedMotionEnds) {
     for (const NamedMaterial& m : materials_of_all_methods()) {
         SCOPED_TRACE(m.name);
         const Mesh mesh = bar(m.kind);
-        Surroundings s = loaded(mesh);
+        BoundaryConditions s = loaded(mesh);
         Model still(mesh, m.table, s);
         Statics statics;
         for (int i = 0; i < 4; ++i) {
@@ -94,7 +94,7 @@ TEST(Statics, EndWhereDampedMotionEnds) {
                       1e-6 * force);
         }
         EXPECT_EQ(still.totals().kinetic_energy, 0.0);
-        // In equilibrium supports bear all loads.
+        // In equilibrium constraints bear all loads.
         Vec3 all = still.reactions()[0].force + still.reactions()[1].force;
         for (const Vec3& f : still.outer_forces()) all += f;
         EXPECT_LE(all.norm(), 1e-9 * still.reactions()[0].force.norm());
@@ -112,9 +112,9 @@ TEST(Statics, EndInTheSameStateWheneverTheBodyIsCut) {
             Statics statics;
             statics.step(model, 0.0, 0.5);
             if (!is_cut_before) {
-                EXPECT_FALSE(statics.settle(model, 0.5));  // nothing new
+                EXPECT_FALSE(statics.equilibrate(model, 0.5));  // nothing new
                 model.apply(model.mesh(), open_across(mesh, 0.1, 0.05));
-                EXPECT_TRUE(statics.settle(model, 0.5));
+                EXPECT_TRUE(statics.equilibrate(model, 0.5));
             }
             statics.step(model, 0.5, 0.5);
             ends.emplace_back(model.positions().begin(), model.positions().end());
@@ -127,7 +127,7 @@ TEST(Statics, BookTheWorkThatTheBodyKeeps) {
     const Mesh mesh = bar();
     std::vector<double> errors;
     for (const int num_steps : {4, 8}) {
-        Surroundings s = loaded(mesh);
+        BoundaryConditions s = loaded(mesh);
         s.gravity = Vec3::Zero();
         Model model(mesh, table_of_one_law(soft_law), s);
         Statics statics;
@@ -143,7 +143,7 @@ TEST(Statics, BookTheWorkThatTheBodyKeeps) {
 
 TEST(Statics, BookWhatACutLetsGoAsDissipated) {
     Mesh mesh = bar();
-    Surroundings s = loaded(mesh);
+    BoundaryConditions s = loaded(mesh);
     s.gravity = Vec3::Zero();
     s.loads.clear();
     Model model(mesh, table_of_one_law(soft_law), s);
@@ -152,18 +152,18 @@ TEST(Statics, BookWhatACutLetsGoAsDissipated) {
     const double before = model.elastic_energy(), work = model.external_work(),
                  dissipated = model.dissipated_energy();
     model.apply(model.mesh(), open_across(mesh, 0.1, 0.05));
-    statics.settle(model, 1.0);
+    statics.equilibrate(model, 1.0);
     const double lost = before - model.elastic_energy();
     EXPECT_GT(lost, 0.05 * before);
-    EXPECT_EQ(model.external_work(), work);  // supports stand still
+    EXPECT_EQ(model.external_work(), work);  // constraints stand still
     EXPECT_NEAR(model.dissipated_energy() - dissipated, lost, 0.02 * lost);
 }
 
 TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
     Mesh mesh = bar();
     open_across(mesh, 0.1, 0.0);  // all through
-    Surroundings s;
-    s.supports = {holding("clamp", nodes_at(mesh, 0.0))};
+    BoundaryConditions s;
+    s.constraints = {holding("clamp", nodes_at(mesh, 0.0))};
     {
         Model model(mesh, table_of_one_law(soft_law), s);
         BodyState state = rest_state(mesh);
@@ -194,12 +194,12 @@ TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
 // A piece held at one edge hangs there like a door that nothing turns; led away it comes along.
 TEST(Statics, LeadAPieceThatIsHeldInPart) {
     const Mesh mesh = bar();
-    Surroundings s;
-    Support tongs = holding(
+    BoundaryConditions s;
+    Constraint tongs = holding(
         "tongs",
         NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0 && X.y() == 0.0; })));
     tongs.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.5, -0.3, 0.4)}});
-    s.supports = {tongs};
+    s.constraints = {tongs};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 2; ++i) statics.step(model, 0.5 * i, 0.5);
@@ -210,11 +210,11 @@ TEST(Statics, LeadAPieceThatIsHeldInPart) {
 // Held in z only, on ice: it may slide and turn about z, and nothing makes it do so.
 TEST(Statics, FindTheEquilibriumOfABodyThatCouldSlide) {
     const Mesh mesh = bar();
-    Surroundings s;
+    BoundaryConditions s;
     s.gravity = {0.0, 0.0, -5.0};
-    s.supports = {holding("ice",
-                          NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 0.0; })),
-                          {false, false, true})};
+    s.constraints = {holding("ice",
+                             NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 0.0; })),
+                             {false, false, true})};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
@@ -230,10 +230,10 @@ TEST(Statics, FindAStableStateOfAColumnThatBuckles) {
     const Mesh mesh = Mesh::build(topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(),
                                                      {0.4, 0.04, 0.04}, {16, 2, 2}))
                           .mesh;
-    Surroundings s;
-    Support press = holding("press", nodes_at(mesh, 0.4));
+    BoundaryConditions s;
+    Constraint press = holding("press", nodes_at(mesh, 0.4));
     press.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(-0.12, 0, 0)}});
-    s.supports = {holding("base", nodes_at(mesh, 0.0)), press};
+    s.constraints = {holding("base", nodes_at(mesh, 0.0)), press};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 5; ++i) statics.step(model, 0.2 * i, 0.2);
@@ -246,10 +246,10 @@ TEST(Statics, FindAStableStateOfAColumnThatBuckles) {
 
 TEST(Statics, LeadABodyThatIsHeldAllOver) {
     const Mesh mesh = bar();
-    Surroundings s;
-    Support all = holding("all", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })));
+    BoundaryConditions s;
+    Constraint all = holding("all", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })));
     all.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0, 0)}});
-    s.supports = {all};
+    s.constraints = {all};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics().step(model, 0.0, 1.0);
     EXPECT_NEAR(model.max_displacement(), 0.1, 1e-15);
@@ -257,8 +257,8 @@ TEST(Statics, LeadABodyThatIsHeldAllOver) {
 
 TEST(Statics, SayWhereNoEquilibriumIs) {
     const Mesh mesh = bar();
-    Surroundings s;
-    s.supports = {holding("clamp", nodes_at(mesh, 0.0))};
+    BoundaryConditions s;
+    s.constraints = {holding("clamp", nodes_at(mesh, 0.0))};
     s.gravity = {std::numeric_limits<double>::infinity(), 0.0, 0.0};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
@@ -279,7 +279,7 @@ TEST(LoadTangents, AreTheSymmetricPartOfTheDerivativeOfPressure) {
         const auto table = kind == CellKind::tetrahedron
                                ? table_of_one_law(soft_law)
                                : table_of_one_material(HybridSprings{3e3, 1e4, 1.0});
-        Surroundings s;
+        BoundaryConditions s;
         s.loads = {{"", PressureLoad{FaceSet({topology::boundary_faces(mesh)[1]}), 100.0}, {}}};
         const Model model(mesh, table, s);
         const std::size_t size = 3 * mesh.node_capacity();

@@ -134,14 +134,14 @@ inline void step(Model& model, double& time, double dt) {
     time += dt;
 }
 
-/// A support that holds its nodes where they are at rest.
-inline Support holding(std::string name, NodeSet nodes,
-                       std::array<bool, 3> components = {true, true, true}) {
-    Support support;
-    support.name = std::move(name);
-    support.nodes = std::move(nodes);
-    support.components = components;
-    return support;
+/// A constraint that holds its nodes where they are at rest.
+inline Constraint holding(std::string name, NodeSet nodes,
+                          std::array<bool, 3> components = {true, true, true}) {
+    Constraint constraint;
+    constraint.name = std::move(name);
+    constraint.nodes = std::move(nodes);
+    constraint.components = components;
+    return constraint;
 }
 
 /// Living nodes whose rest position is where `is_inside` says.

@@ -230,10 +230,10 @@ TEST(Viscosity, CreepsUnderASuddenLoad) {
     EXPECT_NEAR(expected(0.0), stress / young, 1e-12);
     EXPECT_NEAR(expected(1e3), stress / young / g, 1e-12);
 
-    Surroundings s;
+    BoundaryConditions s;
     s.damping = 2e4;  // of vibrations, whose frequency is about as much; its drag on creep is small
     for (int c = 0; c < 3; ++c)
-        s.supports.push_back(
+        s.constraints.push_back(
             holding("plane", NodeSet(nodes_where(mesh, [c](const Vec3& x) { return x[c] == 0.0; })),
                     {c == 0, c == 1, c == 2}));
     std::vector<FaceId> loaded;

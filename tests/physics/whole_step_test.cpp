@@ -38,16 +38,16 @@ NodeSet nodes_at_height(const Mesh& mesh, double z) {
     return NodeSet(nodes_where(mesh, [&](const Vec3& X) { return X.z() == z; }));
 }
 
-Surroundings held_moved_and_loaded(const Mesh& mesh) {
-    Surroundings s;
+BoundaryConditions held_moved_and_loaded(const Mesh& mesh) {
+    BoundaryConditions s;
     s.gravity = {0.3, -0.2, -9.81};
     s.damping = 2.0;
-    s.supports.push_back(holding("floor", nodes_at_height(mesh, 0.0)));
-    Support lid = holding("lid", nodes_at_height(mesh, side), {true, false, true});
+    s.constraints.push_back(holding("floor", nodes_at_height(mesh, 0.0)));
+    Constraint lid = holding("lid", nodes_at_height(mesh, side), {true, false, true});
     lid.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0.2, -0.3)}});
     lid.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.5}});
     lid.point = {0.05, 0.05, side};
-    s.supports.push_back(lid);
+    s.constraints.push_back(lid);
     const TimeCurve<double> growing({{0.0, 0.5}, {1.0, 2.0}});
     s.loads.push_back(
         {"hooks", NodalLoad{nodes_at_height(mesh, side), {1e-3, 2e-3, -1e-3}, {}}, growing});
@@ -87,7 +87,7 @@ Outcome outcome_of_steps(Model& model) {
                     {},
                     model.external_work(),
                     model.dissipated_energy()};
-    for (std::size_t i = 0; i < model.num_supports(); ++i) {
+    for (std::size_t i = 0; i < model.num_constraints(); ++i) {
         outcome.reactions.push_back(model.reactions()[i].force);
         outcome.moments.push_back(model.reactions()[i].moment);
     }

@@ -77,7 +77,7 @@ const std::string mass_springs =
 const std::string prony =
     "prony = [{ alpha = 0.4, tau = 0.02 }, { alpha = 0.2, tau = 0.3 }]\nprony_rule = ";
 
-const std::string surroundings = three_loads + R"(
+const std::string boundary_conditions = three_loads + R"(
 [[constraint]]
 name = "floor"
 where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }
@@ -131,7 +131,7 @@ TEST(SteadyState, AllocatesNothing) {
         for (const char* precision : {"double", "single"}) {
             if (body.ends_with(mass_springs) && precision == std::string("single")) continue;
             SCOPED_TRACE(testing::Message() << name << " in " << precision);
-            EXPECT_EQ(allocations_of_steps(body + surroundings + motion(precision), 1), 0u);
+            EXPECT_EQ(allocations_of_steps(body + boundary_conditions + motion(precision), 1), 0u);
         }
 }
 
@@ -142,8 +142,9 @@ TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBuffersOfTheSecond) {
     for (const auto& [name, body] : bodies) {
         SCOPED_TRACE(name);
         const bool is_viscous = body.find("prony") != std::string::npos;
-        EXPECT_LE(allocations_of_steps(body + surroundings + motion("double"), 2, 50, num_news),
-                  is_viscous ? 2u : 1u);
+        EXPECT_LE(
+            allocations_of_steps(body + boundary_conditions + motion("double"), 2, 50, num_news),
+            is_viscous ? 2u : 1u);
     }
 }
 
@@ -162,7 +163,7 @@ TEST(SteadyState, OfSolvedStepsAllocatesForFactorsOnly) {
             if (body.starts_with(hexahedra)) body.replace(0, hexahedra.size(), cube(4, "hex"));
             if (body.starts_with(tetrahedra)) body.replace(0, tetrahedra.size(), cube(6, "tet"));
             SCOPED_TRACE(testing::Message() << name << " in " << mode);
-            EXPECT_LE(allocations_of_steps(body + surroundings + mode, 1, num_steps),
+            EXPECT_LE(allocations_of_steps(body + boundary_conditions + mode, 1, num_steps),
                       num_steps * most_per_step);
         }
 }
@@ -188,7 +189,7 @@ path = [{ time = 0, at = [0.05, 0.05, 0.2] }, { time = 1000, at = [0.06, 0.05, 0
 
 TEST(SteadyState, AllocatesNothingForToolsAway) {
     EXPECT_EQ(allocations_of_steps(
-                  tetrahedra + material() + tools_away + surroundings + motion("double"), 1),
+                  tetrahedra + material() + tools_away + boundary_conditions + motion("double"), 1),
               0u);
 }
 

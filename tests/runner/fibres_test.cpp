@@ -95,18 +95,18 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     io::write_vtu(folder / "body.vtu", build_frame(simulation.model(), 0.0, {}));
     Simulation again(
         folder.scenario(body_file + fibred_material + "fibre_array = \"fibre\"\n" + pulled));
-    std::map<std::vector<double>, Vec3> expected;  // by place
-    const auto place = [](const topology::Mesh& m, ElementId e) {
+    std::map<std::vector<double>, Vec3> expected;  // by location
+    const auto location = [](const topology::Mesh& m, ElementId e) {
         std::vector<double> corners;
         for (const auto n : m.corners(e))
             for (const double x : m.rest_position(n)) corners.push_back(x);
         return corners;
     };
     for (const ElementId e : mesh.elements())
-        expected[place(mesh, e)] = simulation.model().fibres()[e.index()];
+        expected[location(mesh, e)] = simulation.model().fibres()[e.index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     for (std::size_t i = 0; i < again.mesh().element_capacity(); ++i)
-        EXPECT_EQ(again.model().fibres()[i], expected.at(place(again.mesh(), ElementId(i))));
+        EXPECT_EQ(again.model().fibres()[i], expected.at(location(again.mesh(), ElementId(i))));
 }
 
 TEST(FibredBody, LeavesFramesOfOthersAlone) {
@@ -136,7 +136,7 @@ TEST(FibredBody, RefusesVectorsWithoutDirectionWhereItsMaterialHasFibres) {
               "body.vtu: element 7, of region 0, has [0, 0, 0] in the cell array 'fibre', which is "
               "no direction of fibres: its material needs one in each element; correct the array, "
               "or give the region a law without fibres");
-    // Vectors of other regions are of no account.
+    // Vectors of other regions are of no body_totals.
     frame.mesh.regions[7] = 3;
     const std::string two =
         one + "regions = 0\n[[material]]\ndensity = 1000\nyoung = 1000\npoisson = 0.4\n";

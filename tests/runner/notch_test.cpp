@@ -205,10 +205,10 @@ std::map<double, double> mouth(const Simulation& simulation) {
             heights[{X.y(), X.z()}].push_back(simulation.model().positions()[i].z());
     }
     std::map<double, double> openings;
-    for (const auto& [place, z] : heights) {
+    for (const auto& [location, z] : heights) {
         if (z.size() == 1) continue;
         const auto [low, high] = std::minmax_element(z.begin(), z.end());
-        double& opening = openings[place.first];
+        double& opening = openings[location.first];
         opening = std::max(opening, *high - *low);
     }
     return openings;

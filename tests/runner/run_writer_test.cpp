@@ -139,16 +139,16 @@ TEST_F(RunFiles, EditsAreLinesOfJson) {
         EXPECT_EQ(line.at("nodes_added"), edits[i].nodes_added);
         EXPECT_EQ(line.at("nodes_removed"), edits[i].nodes_removed);
         EXPECT_EQ(line.at("mass_removed"), edits[i].mass_removed);
-        for (const auto& [name, account] :
+        for (const auto& [name, body_totals] :
              {std::pair{"before", edits[i].before}, std::pair{"after", edits[i].after}}) {
             const json& side = line.at(name);
-            EXPECT_EQ(side.at("nodes"), account.nodes);
-            EXPECT_EQ(side.at("elements"), account.elements);
-            EXPECT_EQ(side.at("components"), account.components);
-            EXPECT_EQ(side.at("mass"), account.totals.mass);
-            EXPECT_EQ(side.at("kinetic_energy"), account.totals.kinetic_energy);
-            EXPECT_EQ(side.at("elastic_energy"), account.totals.elastic_energy);
-            EXPECT_EQ(side.at("momentum")[2], account.totals.momentum.z());
+            EXPECT_EQ(side.at("nodes"), body_totals.nodes);
+            EXPECT_EQ(side.at("elements"), body_totals.elements);
+            EXPECT_EQ(side.at("components"), body_totals.components);
+            EXPECT_EQ(side.at("mass"), body_totals.totals.mass);
+            EXPECT_EQ(side.at("kinetic_energy"), body_totals.totals.kinetic_energy);
+            EXPECT_EQ(side.at("elastic_energy"), body_totals.totals.elastic_energy);
+            EXPECT_EQ(side.at("momentum")[2], body_totals.totals.momentum.z());
             EXPECT_EQ(side.at("angular_momentum").size(), 3u);
         }
     }

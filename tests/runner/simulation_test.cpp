@@ -1,4 +1,4 @@
-// The loop: when it steps, when it tells, what it keeps account of.
+// The loop: when it steps, when it tells, what it keeps body_totals of.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/runner/simulation.h"
 
@@ -85,7 +85,7 @@ TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
     const auto refusal = [](const std::string& keys, double end_time) -> std::string {
         Scenario scenario = scenario_of(soft_cube + dynamics(1, keys));
         scenario.dynamics.end_time = end_time;
-        scenario.dynamics.time_step_place = "scene.toml:14:13";
+        scenario.dynamics.time_step_location = "scene.toml:14:13";
         try {
             Simulation{scenario};
         } catch (const InputError& error) {
@@ -351,7 +351,7 @@ TEST(Ledger, AccountsForEveryEdit) {
 
     std::size_t removed = 0, opened = 0;
     double mass_removed = 0.0;
-    const Account* last = &simulation.ledger().initial();
+    const BodyTotals* last = &simulation.ledger().initial();
     std::size_t num_in_same_step = 0;
     std::uint64_t step = 0;
     for (const EditRecord& edit : edits) {
@@ -383,7 +383,7 @@ TEST(Ledger, AccountsForEveryEdit) {
             EXPECT_GT(edit.elements_removed, 0u);
             EXPECT_EQ(edit.faces_opened, 0u);
         } else {
-            // Parting takes nothing away.
+            // Separation takes nothing away.
             EXPECT_EQ(edit.elements_removed, 0u);
             EXPECT_GT(edit.faces_opened, 0u);
             EXPECT_EQ(edit.after.totals.elastic_energy, edit.before.totals.elastic_energy);

@@ -45,7 +45,7 @@ TEST(StaticRun, EndsEachLoadStepInEquilibrium) {
         for (std::size_t n = 0; n < simulation.mesh().node_capacity(); ++n) {
             const Vec3 &inner = model.elastic_forces()[n], &outer = model.outer_forces()[n];
             largest = std::max(largest, inner.norm());
-            if (!model.supports().of_node(n) && simulation.mesh().is_alive(NodeId(n)))
+            if (!model.constraints().of_node(n) && simulation.mesh().is_alive(NodeId(n)))
                 net = std::max(net, (inner + outer).norm());
         }
         EXPECT_LE(net, 1e-9 * largest) << "at load time " << simulation.time();

@@ -38,7 +38,7 @@ TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
     EXPECT_LE(simulation.ledger().mass_error(), 1e-13);
 
     double area = 0.0;
-    const Account* last = &simulation.ledger().initial();
+    const BodyTotals* last = &simulation.ledger().initial();
     for (const EditRecord& edit : edits) {
         SCOPED_TRACE(testing::Message() << "at " << edit.time);
         const physics::Totals &before = edit.before.totals, &after = edit.after.totals;

@@ -160,9 +160,9 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
 TEST(WeldKey, IsTrueOrFalseAndOfFiles) {
     const RunFolder folder;
     io::write_vtu(folder / "body.vtu", soup());
-    const std::string place = (folder / "scene.toml").string() + ":3:8: ";
+    const std::string location = (folder / "scene.toml").string() + ":3:8: ";
     EXPECT_EQ(folder.report(file_mesh + "weld = 1\n" + rest).errors,
-              Lines{place + "key 'mesh.weld': must be true or false, but is the number 1"});
+              Lines{location + "key 'mesh.weld': must be true or false, but is the number 1"});
     EXPECT_EQ(folder.report(file_mesh + "wled = true\n" + rest).errors,
               Lines{(folder / "scene.toml").string() +
                     ":3:1: key 'mesh.wled': is not known; did you mean 'weld'? Known here: file, "
@@ -170,7 +170,7 @@ TEST(WeldKey, IsTrueOrFalseAndOfFiles) {
     EXPECT_EQ(
         folder.report("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nweld = true\n" + rest)
             .warnings,
-        Lines{place + "'mesh.weld' has no effect on a box, whose elements are joined"});
+        Lines{location + "'mesh.weld' has no effect on a box, whose elements are joined"});
 }
 
 }  // namespace

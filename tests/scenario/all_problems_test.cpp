@@ -1,4 +1,4 @@
-// The promise of `check`: all problems of a scenario at once, each with its place.
+// The promise of `check`: all problems of a scenario at once, each with its location.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST(AllProblems, OfMoreFramesThanADiskHolds) {
               Lines{"scene.toml:7:1: key 'dynamics': an output interval of 0.01 s makes 1e+11 "
                     "frames of a run of 1e+09 s, more than the 1e+07 allowed: use a longer one, or "
                     "0 for no frames"});
-    // Nothing is said of the usual interval in place of one that cannot be read.
+    // Nothing is said of the usual interval in location of one that cannot be read.
     const ScenarioFile unreadable(minimal + "[output]\ninterval = 'x'\n");
     EXPECT_EQ(
         unreadable.errors({"dynamics.end_time=200000"}),
@@ -101,7 +101,7 @@ TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
                                "fix = 'x'\n";
     const auto before = places(scaled, "scale", "scale");
     EXPECT_EQ(before.size(), 2u);  // the step of 5 s holds for a body so large
-    for (const auto& [known, given, place] :
+    for (const auto& [known, given, location] :
          {std::array<std::string, 3>{"scale", "scael", "3:1"},
           {"mesh", "msh", "1:2"},
           {"box", "bxo", "2:1"},
@@ -112,7 +112,7 @@ TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
           {"fix =", "fixed =", "14:1"},
           {"[[constraint]]\nname", "[[constraint]]\nnmae", "12:1"}}) {
         auto errors = places(scaled, known, given);
-        EXPECT_EQ(std::erase(errors, place), 1u) << given;
+        EXPECT_EQ(std::erase(errors, location), 1u) << given;
         EXPECT_EQ(errors, before) << given;
     }
     // Of others nothing is made.
@@ -315,7 +315,7 @@ TEST(AllProblems, OfAnItemHideNoneThatItHasBesides) {
         {loaded + "pressure = 1\nfactor = []\n", {"12:10", "10:9"}},
         {loaded, {"9:1"}},  // of what, is not known
         {"[[constraint]]\nwhere = { nodes = -1 }\nfix = 'w'\n", {"10:19", "11:7"}},
-        // Supports that hold the same, as far as is known what they hold.
+        // Constraints that hold the same, as far as is known what they hold.
         {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'x'\n[[constraint]]\nname = '?'\nwhere = { "
          "nodes = 1 }\nfix = 'x'\n",
          {"13:8", "14:9"}},

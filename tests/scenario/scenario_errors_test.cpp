@@ -1,4 +1,4 @@
-// Bad scenarios: every problem is found, at its place, in words that help.
+// Bad scenarios: every problem is found, at its location, in words that help.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 

@@ -150,7 +150,7 @@ TEST(Selection, ABodyForceOnARegionIsForceTimesTheVolumeOfThatRegion) {
     physics::MaterialTable table;
     table.materials = {{.density = 1.0, .method = physics::MassSprings{1.0}}};
     table.of_region = {{1, 0}, {2, 0}};
-    physics::Model model(mesh, table, build_surroundings(scenario, mesh));
+    physics::Model model(mesh, table, build_boundary_conditions(scenario, mesh));
     model.compute_forces(0.0);
     const double dt = 0.25 * model.stable_step();
     model.integrate(0.0, dt);
@@ -161,7 +161,7 @@ TEST(Selection, OfANodeThatIsNotThereNamesItsConstraintOrLoadOnce) {
     const Mesh& mesh = cube(topology::CellKind::tetrahedron);
     const auto error_of = [&](const Scenario& scenario) -> std::string {
         try {
-            build_surroundings(scenario, mesh);
+            build_boundary_conditions(scenario, mesh);
         } catch (const InputError& error) {
             return error.what();
         }
@@ -256,7 +256,7 @@ TEST(Selection, APinchedPointIsAllOfItsNodes) {
         where.regions = {region};
         const auto nodes = select_nodes(mesh, where);
         ASSERT_EQ(nodes.size(), 1u) << region;
-        EXPECT_EQ(mesh.region(mesh.anchor(nodes[0])), region);
+        EXPECT_EQ(mesh.region(mesh.incident_element(nodes[0])), region);
     }
     where.regions = {3};
     EXPECT_TRUE(select_nodes(mesh, where).empty());

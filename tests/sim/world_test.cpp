@@ -462,7 +462,7 @@ TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
     }
     const physics::NodeSet top(nodes_where(world, [](const Vec3& x) { return x.z() == size; }));
     using Curve = physics::TimeCurve<Vec3>;
-    const std::vector<std::pair<physics::Support, const char*>> constraints = {
+    const std::vector<std::pair<physics::Constraint, const char*>> constraints = {
         {{.name = "a", .nodes = top, .displacement = Curve({{0.0, Vec3(nan, 0, 0)}})},
          "not finite"},
         {{.name = "a",

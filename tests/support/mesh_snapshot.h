@@ -24,7 +24,7 @@ struct MeshSnapshot {
           element_capacity(mesh.element_capacity()),
           rest_positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-            anchors.push_back(mesh.anchor(NodeId(n)));
+            anchors.push_back(mesh.incident_element(NodeId(n)));
         for (std::size_t i = 0; i < element_capacity; ++i) {
             const ElementId e(i);
             corners.emplace_back();

@@ -65,6 +65,19 @@ TEST(ElementField, GivesPartsWhatTheWholeHas) {
     EXPECT_GT(num_parts, 10);
 }
 
+TEST(Fields, FollowSeveralEditsAfterTheLast) {
+    Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
+    NodeField<Vec3> at_once(mesh, mesh.rest_positions()), one_by_one = at_once;
+    test::Random random(5);
+    std::vector<ChangeSet> edits;
+    for (int i = 0; i < 10; ++i) {
+        edits.push_back(test::random_edit(mesh, random));
+        one_by_one.apply(mesh, edits.back());
+    }
+    for (const ChangeSet& changes : edits) at_once.apply(mesh, changes);
+    EXPECT_TRUE(std::ranges::equal(at_once.values(), one_by_one.values()));
+}
+
 TEST(Fields, RefuseEditsOutOfTurn) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     NodeField<double> nodes(mesh, 1.0);

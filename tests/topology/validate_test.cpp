@@ -36,7 +36,9 @@ NodeId node_at(const Mesh& mesh, const Vec3& X) {
 }
 
 /// The element with a corner at a place that only it has.
-ElementId element_at(const Mesh& mesh, const Vec3& X) { return mesh.anchor(node_at(mesh, X)); }
+ElementId element_at(const Mesh& mesh, const Vec3& X) {
+    return mesh.incident_element(node_at(mesh, X));
+}
 
 Rewiring rewiring(const Mesh& mesh, ElementId e, NodeId from, NodeId to) {
     return {e, mesh.corner_of(e, from), from, to};

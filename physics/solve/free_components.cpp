@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/solve/free_components.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "incise/physics/body/motion_failure.h"
+#include "incise/physics/elements/spectrum.h"
+
+namespace incise::physics {
+
+using topology::Mesh;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+namespace {
+
+/// Nodes of one piece have the same number.
+std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
+    std::vector<std::size_t> parent(mesh.node_capacity());
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto root = [&](std::size_t n) {
+        while (parent[n] != n) n = parent[n] = parent[parent[n]];
+        return n;
+    };
+    for (const ElementId e : mesh.elements()) {
+        const auto corners = mesh.corners(e);
+        for (const NodeId n : corners) {
+            const std::size_t a = root(n.index()), b = root(corners[0].index());
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    }
+    for (std::size_t n = 0; n < parent.size(); ++n) parent[n] = root(n);
+    return parent;
+}
+
+/// How a component of a node moves with the six ways of the piece, by the terms of
+/// FreeComponent::modes.
+Vector6 row_of(const FreeComponent& piece, const Vec3& x, int component) {
+    Vector6 row;
+    const Vec3 axis = Vec3::Unit(component);
+    row << axis, piece.turns.transpose() * (x - piece.centre).cross(axis);
+    return row;
+}
+
+/// Sets where the piece's nodes have their middle, and its turns.
+void find_frame(FreeComponent& piece, std::span<const Vec3> positions) {
+    const auto num_nodes = static_cast<double>(piece.nodes.size());
+    for (const NodeId n : piece.nodes) piece.centre += positions[n.index()];
+    piece.centre /= num_nodes;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const NodeId n : piece.nodes) {
+        const Vec3 arm = positions[n.index()] - piece.centre;
+        spread += arm * arm.transpose();
+    }
+    piece.turns = spectrum(spread).vectors;
+    Vec3 squared_ways = Vec3::Zero();
+    for (const NodeId n : piece.nodes)
+        for (int k = 0; k < 3; ++k)
+            squared_ways[k] +=
+                piece.turns.col(k).cross(positions[n.index()] - piece.centre).squaredNorm();
+    for (int k = 0; k < 3; ++k) piece.turns.col(k) /= std::sqrt(squared_ways[k] / num_nodes);
+}
+
+}  // namespace
+
+std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<const Vec3> positions,
+                                                const Constraints& constraints) {
+    // Ways that constraints hinder by less than this share of a full hold are free: what rounding
+    // of positions in single precision leaves of none, by its square.
+    constexpr double hold = 1e-13;
+    const std::vector<std::size_t> piece_of = pieces_of_nodes(mesh);
+    std::vector<std::size_t> num_elements(mesh.node_capacity(), 0);
+    for (const ElementId e : mesh.elements()) ++num_elements[piece_of[mesh.corners(e)[0].index()]];
+    std::vector<FreeComponent> pieces(mesh.node_capacity());
+    for (const NodeId n : mesh.nodes()) pieces[piece_of[n.index()]].nodes.push_back(n);
+
+    std::vector<FreeComponent> free;
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        FreeComponent& piece = pieces[p];
+        if (piece.nodes.empty()) continue;
+        piece.num_elements = num_elements[p];
+        find_frame(piece, positions);
+        Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
+        for (const NodeId n : piece.nodes)
+            if (const auto* constraint_of = constraints.of_node(n.index()))
+                for (int c = 0; c < 3; ++c)
+                    if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0) {
+                        const Vector6 row = row_of(piece, positions[n.index()], c);
+                        held += row * row.transpose();
+                    }
+        const Spectrum modes = spectrum(held);
+        const auto num_free = (modes.values.array() <= hold * std::max(1.0, held.trace())).count();
+        if (num_free == 0) continue;
+        piece.modes = modes.vectors.leftCols(num_free);
+
+        // The component that hinders most of what is left, again and again.
+        Eigen::Matrix<double, 6, Eigen::Dynamic> left = piece.modes;
+        for (Eigen::Index k = 0; k < num_free; ++k) {
+            double most = -1.0;
+            Eigen::VectorXd direction;
+            std::pair<NodeId, int> pin;
+            for (const NodeId n : piece.nodes)
+                for (int c = 0; c < 3; ++c) {
+                    const auto* constraint_of = constraints.of_node(n.index());
+                    if (constraint_of && (*constraint_of)[static_cast<std::size_t>(c)] >= 0)
+                        continue;
+                    const Eigen::VectorXd hindered =
+                        left.transpose() * row_of(piece, positions[n.index()], c);
+                    if (hindered.squaredNorm() <= most) continue;
+                    most = hindered.squaredNorm();
+                    direction = hindered;
+                    pin = {n, c};
+                }
+            piece.pins.push_back(pin);
+            direction.normalize();
+            left -= left * direction * direction.transpose();
+        }
+        free.push_back(std::move(piece));
+    }
+    return free;
+}
+
+void require_equilibrium(const Mesh& mesh, const FreeComponent& piece,
+                         std::span<const Vec3> positions, std::span<const Vec3> forces) {
+    constexpr double tolerance = 1e-7;  // of the sum of all forces on it
+    Vector6 total = Vector6::Zero();
+    double all = 0.0;
+    for (const NodeId n : piece.nodes) {
+        const Vec3& f = forces[n.index()];
+        total.head<3>() += f;
+        total.tail<3>() += piece.turns.transpose() * (positions[n.index()] - piece.centre).cross(f);
+        all += f.norm();
+    }
+    const Vector6 moving = piece.modes * (piece.modes.transpose() * total);
+    if (!(moving.norm() > tolerance * all)) return;
+    const ElementId e = mesh.incident_element(piece.nodes.front());
+    const bool is_turned = moving.tail<3>().norm() > moving.head<3>().norm();
+    std::ostringstream text;
+    text << "no equilibrium: a piece of " << piece.num_elements
+         << (piece.num_elements == 1 ? " element" : " elements") << " (one of them is element "
+         << mesh.label(e) << ", its middle is now at " << piece.centre.transpose()
+         << ") is not held, and loads ";
+    if (is_turned) {
+        const Vec3 moment = piece.turns.transpose().inverse() * moving.tail<3>();
+        text << "turn it with " << moment.norm() << " N m about the axis "
+             << moment.normalized().transpose();
+    } else
+        text << "push it with " << moving.head<3>().norm() << " N along "
+             << moving.head<3>().normalized().transpose();
+    MotionFailure failure(FailureCause::free_component_loaded, text.str());
+    failure.element = e;
+    throw failure;
+}
+
+}  // namespace incise::physics

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/component_count.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "incise/base/disjoint_set.h"
+
+namespace incise::topology {
+
+namespace {
+
+/// The elements that an edit touched, in ascending order: those at opened and closed faces, the
+/// removed and the added ones.
+std::vector<ElementId> touched_elements(const ChangeSet& changes) {
+    std::vector<ElementId> touched;
+    for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
+        for (const FacePair& pair : *pairs)
+            touched.insert(touched.end(), {pair.a.element, pair.b.element});
+    for (const auto* records : {&changes.elements_removed, &changes.elements_added})
+        for (const ElementRecord& record : *records) touched.push_back(record.id);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    return touched;
+}
+
+std::vector<FaceId> sides_of(const std::vector<FacePair>& pairs) {
+    std::vector<FaceId> sides;
+    for (const FacePair& pair : pairs) sides.insert(sides.end(), {pair.a, pair.b});
+    std::sort(sides.begin(), sides.end());
+    return sides;
+}
+
+bool has(const std::vector<ElementRecord>& records, ElementId e) {
+    const auto it =
+        std::lower_bound(records.begin(), records.end(), e,
+                         [](const ElementRecord& record, ElementId id) { return record.id < id; });
+    return it != records.end() && it->id == e;
+}
+
+}  // namespace
+
+// By the faces that were joined before and still are, the touched elements search for each other,
+// each from where it is, all at once, until no more than one group of them has anywhere left to go.
+DisjointSet ComponentCount::search(const Mesh& mesh, const ChangeSet& changes,
+                                   const std::vector<ElementId>& touched,
+                                   std::vector<ElementId>& found) {
+    const std::vector<FaceId> new_faces = sides_of(changes.faces_closed);
+    DisjointSet groups(touched.size());
+    std::vector<ElementId> queue;
+    std::vector<int> num_waiting(touched.size());  // in the queue, by group
+    const auto waiting = [&](std::int32_t g) -> int& {
+        return num_waiting[static_cast<std::size_t>(g)];
+    };
+    for (const ElementId e : touched) {
+        if (!mesh.is_alive(e) || has(changes.elements_added, e)) continue;
+        queue.push_back(e);
+        waiting(group_of(e)) = 1;
+    }
+    auto num_searching = static_cast<std::ptrdiff_t>(queue.size());
+    for (std::size_t next = 0; next < queue.size() && num_searching > 1; ++next) {
+        const ElementId e = queue[next];
+        std::int32_t own = groups.find(group_of(e));
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            const ElementId other = mesh.neighbor({e, f}).element;
+            if (!other.is_valid() ||
+                std::binary_search(new_faces.begin(), new_faces.end(), FaceId{e, f}))
+                continue;
+            if (group_of(other) < 0) {
+                group_of(other) = own;
+                ++waiting(own);
+                found.push_back(other);
+                queue.push_back(other);
+            } else if (const std::int32_t others = groups.find(group_of(other)); others != own) {
+                num_searching -= waiting(others) > 0;
+                const int sum = waiting(own) + waiting(others);
+                own = groups.join(own, others);
+                waiting(own) = sum;
+            }
+        }
+        num_searching -= --waiting(own) == 0;
+    }
+    return groups;
+}
+
+// Pieces without a touched element are what they were. The others are counted before and after:
+// what the search finds to hang together did and does; before, it did by the opened faces as well,
+// and now by the closed ones.
+void ComponentCount::apply(const Mesh& mesh, const ChangeSet& changes) {
+    const std::vector<ElementId> touched = touched_elements(changes);
+    group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);
+    for (std::size_t i = 0; i < touched.size(); ++i)
+        group_of(touched[i]) = static_cast<std::int32_t>(i);
+    std::vector<ElementId> found;
+    DisjointSet before = search(mesh, changes, touched, found), after = before;
+    for (const FacePair& pair : changes.faces_opened)
+        before.join(group_of(pair.a.element), group_of(pair.b.element));
+    for (const FacePair& pair : changes.faces_closed)
+        after.join(group_of(pair.a.element), group_of(pair.b.element));
+    std::vector<bool> had(touched.size()), has_now(touched.size());
+    for (const ElementId e : touched) {
+        if (!has(changes.elements_added, e))
+            had[static_cast<std::size_t>(before.find(group_of(e)))] = true;
+        if (mesh.is_alive(e)) has_now[static_cast<std::size_t>(after.find(group_of(e)))] = true;
+    }
+    value_ += static_cast<int>(std::count(has_now.begin(), has_now.end(), true) -
+                               std::count(had.begin(), had.end(), true));
+    found.insert(found.end(), touched.begin(), touched.end());
+    for (const ElementId e : found) group_of(e) = -1;
+}
+
+}  // namespace incise::topology
