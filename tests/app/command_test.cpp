@@ -38,7 +38,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 using Command = test::InFolder;
 
-TEST_F(Command, TellsItsVersionAndHelp) {
+TEST_F(Command, PrintsItsVersionAndHelp) {
     EXPECT_EQ(run("--version").out, "incise " INCISE_VERSION "\n");
     const auto help = run("--help");
     EXPECT_EQ(help.status, 0);
@@ -85,7 +85,7 @@ TEST_F(Command, RefusesEmptyWords) {
     }
 }
 
-TEST_F(Command, TellsBeforeTheWorkWhatCannotBeWritten) {
+TEST_F(Command, ReportsBeforeTheWorkWhatCannotBeWritten) {
     write("two.msh", mesh());
     std::filesystem::create_directory(folder_ / "folder.vtu");
     for (const auto* arguments :
@@ -184,7 +184,7 @@ TEST_F(Command, ConvertsThereAndBack) {
     EXPECT_EQ(run("info two.ele --json").out, info);
 }
 
-TEST_F(Command, TellsInputFromOutputFailures) {
+TEST_F(Command, DistinguishesInputFromOutputFailures) {
     write("two.msh", mesh());
     EXPECT_EQ(run("convert two.msh two.doc").status, 2);
     EXPECT_EQ(run("convert none.msh two.vtu").status, 2);
@@ -216,7 +216,7 @@ TEST_F(Command, ChecksEveryFileAndCountsProblems) {
               "two.msh: OK, mesh with 5 points, 2 cells, 2 regions\n");
 }
 
-TEST_F(Command, ChecksWhatComesAfterABoxTooLargeForTheMachine) {
+TEST_F(Command, GoesOnCheckingAfterABoxTooLarge) {
     const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
     if (pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) > 240e9) GTEST_SKIP() << "it is not";
     std::string large = scenario;
@@ -266,7 +266,7 @@ TEST_F(Command, ChecksScenariosByTheirEnding) {
         << outcome.err;
 }
 
-TEST_F(Command, TellsOfAFolderThatCannotBeWrittenWithAllElse) {
+TEST_F(Command, ReportsAnUnwritableFolderWithAllElse) {
     write("good.toml", scenario);
     write("bad.toml", scenario + "damping = -1\n");
     write("bad_body.toml", scenario + "[[load]]\nwhere = { region = 7 }\npressure = 1\n");
@@ -289,7 +289,7 @@ TEST_F(Command, TellsOfAFolderThatCannotBeWrittenWithAllElse) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
 }
 
-TEST_F(Command, NamesThePlaceOfARegionArrayThatTheMeshLacks) {
+TEST_F(Command, LocatesARegionArrayThatTheMeshLacks) {
     write("two.msh", mesh());
     ASSERT_EQ(run("convert two.msh two.vtu").status, 0);
     const auto check = [&](const std::string& file) {
@@ -311,7 +311,7 @@ TEST_F(Command, ChecksTheMeshOfAScenario) {
     EXPECT_EQ(outcome.err.find("incise: scene.toml:2:8: flat.msh: cell 1 "), 0u) << outcome.err;
 }
 
-TEST_F(Command, RefusesARunWithAllThatItFindsInACheck) {
+TEST_F(Command, RefusesRunsWithAllErrorsOfChecks) {
     const std::string of_body = scenario + R"(time_step = 5
 [[load]]
 where = { region = 7 }
@@ -339,7 +339,7 @@ surface = "scene.toml"
     }
 }
 
-TEST_F(Command, ChecksWithAllWarningsOfARunEachOnce) {
+TEST_F(Command, ChecksWithEachWarningOfARunOnce) {
     // Two tetrahedra that meet in point 0 alone; point 7 is of none.
     write("pinched.msh",
           "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"

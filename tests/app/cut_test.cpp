@@ -50,7 +50,7 @@ void expect_volumes(const json& report, const std::vector<double>& expected, dou
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], tolerance);
 }
 
-TEST_F(Cut, PartsABoxAlongAPlaneExactlyWithoutSnap) {
+TEST_F(Cut, PartsABoxExactlyWithoutSnap) {
     const auto report = cut("--plane 0.3,0,0,1,0,0 --snap 0");
     expect_volumes(report, {0.7, 0.3}, 1e-14);
     EXPECT_EQ(report["mode"], "split");
@@ -71,7 +71,7 @@ TEST_F(Cut, PartsABoxAlongAPlaneExactlyWithoutSnap) {
     EXPECT_GT(report["microseconds_per_crossed_element"].get<double>(), 0.0);
 }
 
-TEST_F(Cut, TellsAllInJson) {
+TEST_F(Cut, ReportsAllInJson) {
     const auto report = cut("--plane 0.3,0,0,1,0,0 --remove-sphere 0,0,0,0.2");
     for (const auto* key : {"mode",
                             "snap",
@@ -119,7 +119,7 @@ TEST_F(Cut, TellsAllInJson) {
     EXPECT_TRUE(report["tools"][1]["surface_distance"]["max"].is_null());
 }
 
-TEST_F(Cut, WritesAMeshThatReadsBackInItsPieces) {
+TEST_F(Cut, WritesAMeshThatReadsBackInComponents) {
     for (const auto* out : {"out.vtu", "out.vtk", "out.msh"}) {
         ASSERT_EQ(run("cut box.vtu --plane 0.3,0,0,1,0.2,0.1 --json report.json --out " +
                       std::string(out))
@@ -144,7 +144,7 @@ TEST_F(Cut, GivesTheSameBitsAgain) {
     EXPECT_EQ(support::read_text(folder_ / "a.vtu"), support::read_text(folder_ / "b.vtu"));
 }
 
-TEST_F(Cut, TellsPeopleInATable) {
+TEST_F(Cut, ReportsInATable) {
     const auto outcome = run("cut box.vtu --out out.vtu --plane 0.3,0,0,1,0,0 --snap 0");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
@@ -368,7 +368,7 @@ TEST_F(Cut, NamesTheElementThatCannotBeSplit) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtu"));
 }
 
-TEST_F(Cut, TellsOutputFailures) {
+TEST_F(Cut, ReportsOutputFailures) {
     for (const auto* arguments : {"--out no/such/out.vtu", "--out out.vtu --json no/such/a.json"}) {
         const auto outcome = run("cut box.vtu --plane 0.3,0,0,1,0,0 " + std::string(arguments));
         EXPECT_EQ(outcome.status, 4) << arguments;

@@ -88,7 +88,7 @@ TEST_F(FaultyMesh, IsWeldedOnConversion) {
               "joined\n");
 }
 
-TEST_F(FaultyMesh, IsToldOfWhereAGapIsTooWideToWeld) {
+TEST_F(FaultyMesh, IsReportedWhereAGapIsTooWide) {
     write("gap.msh", soup({first, "1.001 0 0  0.001 1 0  0.001 0 1  1 1 1"}));
     for (const auto* arguments : {"check gap.msh", "convert gap.msh gap.vtu",
                                   "convert --weld gap.msh gap.vtu", "check gap.vtu"}) {

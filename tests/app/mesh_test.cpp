@@ -48,7 +48,7 @@ TEST_F(Mesh, MakesAHexahedronOfEachLabelledVoxel) {
     EXPECT_EQ(info["warnings"], json::array());
 }
 
-TEST_F(Mesh, WritesTheRegionsInEveryFormatThatItReads) {
+TEST_F(Mesh, WritesRegionsInEveryFormatThatItReads) {
     for (const auto* out : {"b.vtu", "b.vtk", "b.msh"}) {
         ASSERT_EQ(run("mesh a.nrrd --hex " + std::string(out)).status, 0);
         const auto info = json::parse(run("info --json " + std::string(out)).out);
@@ -83,7 +83,7 @@ TEST_F(Mesh, WarnsOfALabelThatNoCubeMeets) {
               "smaller --size\n");
 }
 
-TEST_F(Mesh, TellsTheWarningsOfTheImage) {
+TEST_F(Mesh, ReportsTheWarningsOfTheImage) {
     auto bare = image;
     const std::string directions = "space directions: (1,0,0) (0,2,0) (0,0,3)\n";
     write("b.nrrd", bare.erase(bare.find(directions), directions.size()));
@@ -132,7 +132,7 @@ TEST_F(Mesh, RefusesImagesThatCannotBeRead) {
               std::string::npos);
 }
 
-TEST_F(Mesh, TellsOutputFailures) {
+TEST_F(Mesh, ReportsOutputFailures) {
     const auto outcome = run("mesh a.nrrd no/such/out.vtu --hex");
     EXPECT_EQ(outcome.status, 4);
     EXPECT_EQ(outcome.err.find("incise: no/such/out.vtu"), 0u) << outcome.err;

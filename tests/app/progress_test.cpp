@@ -28,7 +28,7 @@ TEST(Progress, LineFitsTheTerminal) {
     EXPECT_EQ(progress_line("run", 0.5, 1.0, std::string(200, 'x'), 60).size(), 59u);
 }
 
-TEST(Progress, WithoutTerminalTellsEveryTenthOnce) {
+TEST(Progress, WithoutTerminalReportsEveryTenthOnce) {
     testing::internal::CaptureStderr();
     {
         Progress progress(1.0, "run", false);

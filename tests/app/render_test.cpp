@@ -110,7 +110,7 @@ TEST(Render, DrawsTheLastFrameByDefault) {
     EXPECT_LT(picture.colored_part(), 0.8);
 }
 
-TEST(Render, DrawsAllFramesWithOneCameraAndOneRange) {
+TEST(Render, DrawsAllFramesWithOneCameraAndRange) {
     const TemporaryFolder folder;
     write_run(folder / "run", 3);
     const auto all = render(folder, "run --all --out film --size 320x240");
@@ -143,7 +143,7 @@ TEST(Render, ColorsByEveryKindOfField) {
     EXPECT_EQ(pictures.size(), 5U);
 }
 
-TEST(Render, DrawsASingleMeshFileAndABodyOfWhichNothingIsLeft) {
+TEST(Render, DrawsASingleMeshAndAnEmptyBody) {
     const TemporaryFolder folder;
     io::write_mesh(folder / "box.vtu", topology::box_mesh(topology::CellKind::hexahedron, {0, 0, 0},
                                                           {1, 1, 1}, {2, 2, 2}));
@@ -213,7 +213,7 @@ TEST(Render, SaysThatADiskIsFull) {
     EXPECT_EQ(render(folder, "run --out run/bar.pvd/pictures").status, 4);
 }
 
-TEST(Render, FindsADisplayOfItsOwnOrNamesThePackages) {
+TEST(Render, FindsADisplayOrNamesThePackages) {
     const TemporaryFolder folder;
     write_run(folder / "run", 1);
     const auto dead_display = render(folder, "run --size 320x240", "env DISPLAY=:9999");
@@ -223,7 +223,7 @@ TEST(Render, FindsADisplayOfItsOwnOrNamesThePackages) {
     EXPECT_THAT(no_xvfb.err, HasSubstr("apt-get install xvfb libgl1-mesa-dri"));
 }
 
-TEST(Render, StopsOnASignalAndLeavesOnlyWholePictures) {
+TEST(Render, LeavesOnlyWholePicturesOnASignal) {
     const TemporaryFolder folder;
     write_run(folder / "run", 30);
     const auto run = (folder / "run").string();

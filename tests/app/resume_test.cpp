@@ -135,7 +135,7 @@ TEST_F(ResumedProcess, EndsAsIfItHadNeverBeenKilled) {
     EXPECT_GE(num_kills, enough);
 }
 
-TEST_F(ResumedProcess, SurvivesAKillAtEachCallThatChangesFiles) {
+TEST_F(ResumedProcess, SurvivesAKillAtEachChangeOfFiles) {
     const auto files = whole(cut_scene);
     const std::size_t count = num_calls("kill");
     ASSERT_GT(count, 50u);
@@ -149,7 +149,7 @@ TEST_F(ResumedProcess, SurvivesAKillAtEachCallThatChangesFiles) {
     }
 }
 
-TEST_F(ResumedProcess, ReportsEachCallThatFailsAndGoesOnAfterwards) {
+TEST_F(ResumedProcess, ReportsEachFailedCallAndGoesOn) {
     const auto files = whole(cut_scene);
     for (const std::string& fault : {std::to_string(EIO), std::string("half")}) {
         SCOPED_TRACE(fault);
@@ -172,7 +172,7 @@ TEST_F(ResumedProcess, ReportsEachCallThatFailsAndGoesOnAfterwards) {
     }
 }
 
-TEST_F(ResumedProcess, ReportsEachFileThatCannotBeOpenedAndGoesOnAfterwards) {
+TEST_F(ResumedProcess, ReportsEachFailedOpeningAndGoesOn) {
     const auto files = whole(cut_scene);
     ASSERT_EQ(run({"scene.toml", "--quiet", "--out", "counted"},
                   with_fault_of_opening(EMFILE, 0, (folder_ / "count").string()))
@@ -223,7 +223,7 @@ TEST_F(ResumedProcess, TakesAnEarlierCheckpointWithAWarning) {
     expect_same(files_of(folder_ / "scene.out"), files);
 }
 
-TEST_F(ResumedProcess, TellsMissedExpectationsOfAFinishedRunAgain) {
+TEST_F(ResumedProcess, ReportsMissedExpectationsOfAFinishedRunAgain) {
     write("scene.toml", scene + "[expect]\ntime = { max = 0.01 }\n");
     const auto first = run({"scene.toml", "--quiet"});
     EXPECT_EQ(first.status, 1);

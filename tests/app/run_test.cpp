@@ -40,7 +40,7 @@ TEST_F(Run, DryRunWritesNothing) {
     EXPECT_EQ(support::count_entries(folder_.path()), 3u);
 }
 
-TEST_F(Run, StoppedBeforeItsFirstStepSaysSoAndLeavesNothing) {
+TEST_F(Run, StoppedBeforeItsFirstStepLeavesNothing) {
     // Far from its first step for a second or more.
     write("scene.toml", scene + "[output]\ninterval = 0.01\n");
     const std::vector<std::string> arguments{"scene.toml", "--quiet", "--set",
@@ -57,7 +57,7 @@ TEST_F(Run, StoppedBeforeItsFirstStepSaysSoAndLeavesNothing) {
     }
 }
 
-TEST_F(Run, StoppedWhileItReadsItsCheckpointsTellsHowToGoOn) {
+TEST_F(Run, StoppedWhileReadingCheckpointsTellsHowToResume) {
     write("scene.toml", scene);
     // Of holes, to be read one after another.
     const fs::path checkpoints = folder_ / "scene.out/checkpoints";
@@ -94,7 +94,7 @@ TEST_F(Run, TakesValuesFromTheCommandLine) {
     EXPECT_NE(summary().at("scenario_hash"), hash);
 }
 
-TEST_F(Run, TellsMissedExpectationsAndWritesAllTheSame) {
+TEST_F(Run, ReportsMissedExpectationsAndWritesAllTheSame) {
     write("scene.toml", scene +
                             "[expect]\ntime = { max = 0.01 }\nmass = { min = 5, max = 6 }\n"
                             "mass_error = { max = 1e-12 }\n");
@@ -139,7 +139,7 @@ TEST_F(Run, RefusesBadInputBeforeItWritesAnything) {
     EXPECT_NE(refused(elsewhere).find("constraint 'floor' selects no node"), std::string::npos);
 }
 
-TEST_F(Run, RefusesAFrameAsItsMeshThatItWouldReplace) {
+TEST_F(Run, RefusesAMeshThatItWouldReplace) {
     write("scene.toml", scene);
     ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
     write("scene.toml", "[mesh]\nfile = \"scene.out/frames/scene_000001.vtu\"\n" +
@@ -153,7 +153,7 @@ TEST_F(Run, RefusesAFrameAsItsMeshThatItWouldReplace) {
 }
 
 // The files of a run do not come to be what the program prints on.
-TEST_F(Run, KeepsToItsFilesWhereNothingIsOpenToPrintOn) {
+TEST_F(Run, KeepsToItsFilesWithoutStandardStreams) {
     write("scene.toml", scene);
     ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
     const std::string command = "cd '" + folder_.path().string() +
@@ -181,7 +181,7 @@ TEST_F(Run, RefusesAFixedStepAboveTheBound) {
     EXPECT_FALSE(fs::exists(folder_ / "scene.out"));
 }
 
-TEST_F(Run, StopsWithTheLastGoodFrameWhenTheMotionBlowsUp) {
+TEST_F(Run, KeepsTheLastGoodFrameOfUnstableMotion) {
     write("scene.toml", scene + R"([[constraint]]
 where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
 move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
@@ -200,7 +200,7 @@ move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
     EXPECT_EQ(summary().at("frames"), 4);
 }
 
-TEST_F(Run, WarnsOfACutThatMakesStepsMuchShorter) {
+TEST_F(Run, WarnsOfACutThatShortensSteps) {
     const auto cut = [&](const std::string& snap) {
         write("scene.toml", R"([mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
@@ -243,7 +243,7 @@ snap = 0)");
 }
 
 // A brick is led to where a blade passes that divides, which no look at the body at rest tells.
-TEST_F(Run, StopsWithASummaryWhenAToolCannotCut) {
+TEST_F(Run, StopsWithASummaryOnAFailedCut) {
     write("both.vtk", R"(# vtk DataFile Version 3.0
 a brick and a tetrahedron
 ASCII
@@ -400,7 +400,7 @@ TEST_F(Run, EndsWithASentenceWhereMemoryEnds) {
               std::string::npos);
 }
 
-TEST_F(Run, TakesAsManyThreadsAsAreAskedForWithoutAWord) {
+TEST_F(Run, TakesAllThreadsAskedForWithoutWarning) {
     write("scene.toml", scene);
     const auto outcome = run({"scene.toml", "--quiet", "--end-time", "0.05", "--set",
                               "mesh.box.cells=[10, 10, 10]", "--threads", "40"});

@@ -10,7 +10,7 @@
 namespace incise::app {
 namespace {
 
-TEST(Throughput, HasARowForEachBodyLawAndNumberOfThreads) {
+TEST(Throughput, HasRowsForAllBodiesLawsAndThreads) {
     bench::ThroughputPlan plan;
     const std::size_t num_tetrahedra = test::is_sanitized ? 1'500 : 3'000;
     plan.tetrahedra = {400, num_tetrahedra};

@@ -82,7 +82,7 @@ TEST(Heml, AsPrintedHasTheForcesOfTheProgram) {
     expect_forces_of_heml(stvk, PrintedHeml<double>{stvk.lambda, stvk.mu});
 }
 
-TEST(Heml, ThatIsCountedHasTheForcesOfTheProgram) {
+TEST(Heml, CountedHasTheForcesOfTheProgram) {
     expect_forces_of_heml(stvk, LinkHeml<double, physics::SaintVenantKirchhoff>{stvk});
     expect_forces_of_heml(nh, LinkHeml<double, physics::NeoHookean>{nh});
     expect_forces_of_heml(mr, LinkHeml<double, physics::MooneyRivlin>{mr});
@@ -101,7 +101,7 @@ TEST(Mjed, HasTheForcesOfHeml) {
     expect_forces_of_heml(mr_isochoric, Mjed<double, physics::IsochoricMooneyRivlin>{mr_isochoric});
 }
 
-TEST(MassTensor, HasTheForcesOfHemlWithSaintVenantKirchhoffTissue) {
+TEST(MassTensor, HasTheForcesOfSaintVenantKirchhoffHeml) {
     expect_forces_of_program(
         physics::table_of_one_law(stvk),
         [](const std::vector<Nodes>& tetrahedra, std::span<const Vec3> rest_positions) {
@@ -116,7 +116,7 @@ TEST(MassTensor, HasTheForcesOfHemlWithSaintVenantKirchhoffTissue) {
 // What HEML 2015, section 5.4, says of it: displacements are taken from where the body was at rest,
 // so the farther it has gone, the more digits its forces lose. HEML sees differences of positions
 // only.
-TEST(MassTensor, LosesDigitsFarFromWhereItWasAtRest) {
+TEST(MassTensor, LosesDigitsFarFromItsRestPosition) {
     const Mesh mesh = Mesh::build(test::jittered_cube(3, 0.2, 1)).mesh;
     const auto tetrahedra = tetrahedra_of(mesh);
     Model model(mesh, physics::table_of_one_law(stvk));
@@ -139,7 +139,7 @@ TEST(MassTensor, LosesDigitsFarFromWhereItWasAtRest) {
     EXPECT_GT(far, 1e4 * near);
 }
 
-TEST(MassSprings, OnePerEdgeHaveTheForcesOfTheProgram) {
+TEST(MassSprings, PerEdgeHaveTheForcesOfTheProgram) {
     expect_forces_of_program(
         physics::table_of_one_material(physics::MassSprings{young}),
         [](const std::vector<Nodes>& tetrahedra, std::span<const Vec3> rest_positions) {

@@ -28,7 +28,7 @@ struct Cube {
           tetrahedra(tetrahedra_of(mesh)) {}
 };
 
-TEST(Counted, BooksWhatIsDone) {
+TEST(Counted, CountsWhatIsDone) {
     Counted::take();
     Counted x = Counted(2.0) * 3.0 + 1.0;
     x -= log(x) / sqrt(-x * -x);
@@ -54,7 +54,7 @@ TEST(CubeOfFiveTetrahedra, IsThatOfThePapers) {
 }
 
 // HEML 2015, Table 5, and HEML 2006, Table 3, in thousands: 2999 and 36 198.
-TEST(OperationCounts, OfTheMassTensorAreThosePrintedIfTensorsOfZeroCount) {
+TEST(OperationCounts, MatchThePaperIfZeroMassTensorsCount) {
     EXPECT_EQ((printed_mass_tensor_operations(Cube(4).tetrahedra) + 500) / 1000, 2999);
     EXPECT_EQ((printed_mass_tensor_operations(Cube(9).tetrahedra) + 500) / 1000, 36198);
 }
@@ -69,7 +69,7 @@ std::map<std::string, Operations> counts_of(const Cube& cube) {
 
 // Additions, multiplications, divisions, functions of an element, with three additions a corner. On
 // the cube of 320.
-TEST(OperationCounts, OfElementsAreThoseOfTheDocs) {
+TEST(OperationCounts, OfElementsMatchTheDocs) {
     const std::map<std::string, Operations> expected{
         {"HEML as printed, StVK", {117, 99, 0, 0}},
         {"HEML, StVK", {131, 110, 0, 0}},
@@ -92,7 +92,7 @@ TEST(OperationCounts, OfElementsAreThoseOfTheDocs) {
     EXPECT_EQ(counts.size(), expected.size() + 2);
 }
 
-TEST(OperationCounts, OfNodesAndEdgesAreThoseOfTheDocs) {
+TEST(OperationCounts, OfNodesAndEdgesMatchTheDocs) {
     const auto small = counts_of(Cube(4)), large = counts_of(Cube(9));
     EXPECT_EQ(small.at("mass-tensor, StVK").total(), 695579);
     EXPECT_EQ(large.at("mass-tensor, StVK").total(), 7214104);

@@ -51,7 +51,7 @@ TEST(BladeEnd, TellsWhatIsAheadOfASharpEdge) {
     EXPECT_TRUE(*end);
 }
 
-TEST(BladeEnd, PointsThatRestGoOnAsTheirNeighboursDo) {
+TEST(BladeEnd, RestingPointsGoOnAsTheirNeighbours) {
     const Vec3 still = Vec3::Zero();
     const BladeEnd turning({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {still, {0, 1, 0}, {0, 2, 0}});
     EXPECT_DOUBLE_EQ(turning.distance_ahead({0, 0.3, 0}), 0.3);
@@ -155,7 +155,7 @@ TEST(FinishedCut, OpensToTheBladesEdgeExactly) {
     }
 }
 
-TEST(FinishedCut, EndsWithinSnapOfTheEdgeAndNowhereShortOnTheMean) {
+TEST(FinishedCut, EndsWithinSnapOfTheEdgeWithoutBias) {
     const auto num_seeds = test::num_cases(24);
     double missing = 0.0, least_step = 1.0;  // in bricks over the width of the cube
     for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {

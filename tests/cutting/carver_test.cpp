@@ -41,7 +41,7 @@ std::vector<CarverShape> random_shapes(Random& random) {
             Capsule{from, from, random.uniform(0.05, 0.5)}, Cuboid{size}};
 }
 
-TEST(Carver, MeetsASegmentWhereAPointOfItIsInside) {
+TEST(Carver, MeetsSegmentsThatHaveAPointInside) {
     constexpr int num_samples = 400;
     int num_met = 0, num_missed = 0;
     for (std::uint64_t seed = 0; seed < 1000; ++seed) {
@@ -181,7 +181,7 @@ TEST(Carver, CoversWhatACrawlInTinyStepsCovers) {
     EXPECT_GT(num_covered, std::size_t{test::num_cases(500)});
 }
 
-TEST(Carver, TurningToolInSmallStepsCoversWhatACrawlCovers) {
+TEST(Carver, TurningInSmallStepsCoversAsACrawl) {
     const Mesh mesh = Mesh::build(test::jittered_cube(5, 0.1, 3)).mesh;
     const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
     // A bar beside the body that turns through it by a quarter.
@@ -243,7 +243,7 @@ TEST(Carver, AFastToolMissesNothing) {
     }
 }
 
-TEST(Carver, ToolThatRidesAlongCoversNoMoreThanAtTheStart) {
+TEST(Carver, RidingAlongCoversNoMoreThanAtFirst) {
     const Mesh mesh = Mesh::build(test::jittered_cube(4, 0.1, 1)).mesh;
     const std::vector<Vec3> x0(mesh.rest_positions().begin(), mesh.rest_positions().end());
     const Vec3 wind(3, -2, 7);

@@ -201,7 +201,7 @@ struct CornersOnCut {
     }
 };
 
-TEST(CutFront, KnowsWhereElementsAreThatHaveNoCornerOffTheCut) {
+TEST(CutFront, KnowsTheSideOfElementsOnTheCut) {
     for (const bool is_crossed : {true, false}) {
         SCOPED_TRACE(is_crossed);
         CornersOnCut body;
@@ -234,7 +234,7 @@ CutRecord cut_record(const Vec3& normal, double distance) {
     return {normal, distance * normal, false, 1};
 }
 
-TEST(SnapHistory, TellACutAtTheSamePlaceAndCopiesHaveThem) {
+TEST(SnapHistory, RecognizesARepeatedCutAlsoAtCopies) {
     SnapHistory snap_history;
     const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
     const NodeId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
@@ -258,7 +258,7 @@ TEST(SnapHistory, TellACutAtTheSamePlaceAndCopiesHaveThem) {
     EXPECT_FALSE(snap_history.has(copy, cut_record(x, 0.1), 1.0));
 }
 
-TEST(SnapHistory, PartsOfACrumbAreCrumbs) {
+TEST(SnapHistory, CountsPartsOfSliversAsSlivers) {
     SnapHistory snap_history;
     const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});
     snap_history.add_sliver(whole, 1);

@@ -196,7 +196,7 @@ MeshData body(std::string_view name) {
 
 class CutPrograms : public testing::TestWithParam<Programs> {};
 
-TEST_P(CutPrograms, KeepTheMeshValidAndTheBodyInBalance) {
+TEST_P(CutPrograms, KeepMeshesValidAndBodiesInBalance) {
     const MeshData data = body(GetParam().body);
     for (std::uint64_t seed = 0; seed < GetParam().count; ++seed) {
         Patient patient(data, seed);

@@ -39,7 +39,7 @@ double angle(const Vec3& u, const Vec3& v) {
 
 // ---- the edge of a blade in space and time
 
-TEST(CrossingPlaces, AreWhereABladeMeetsTissueInRelativeMotion) {
+TEST(CrossingPositions, FollowTheRelativeMotionOfBladeAndTissue) {
     // Both move straight, each as a whole: seen from the tissue the blade sweeps a parallelogram.
     int num_crossed = 0;
     for (std::uint64_t seed = 0; seed < test::num_cases(4000); ++seed) {
@@ -65,7 +65,7 @@ TEST(CrossingPlaces, AreWhereABladeMeetsTissueInRelativeMotion) {
     EXPECT_GT(num_crossed, test::num_cases(200));
 }
 
-TEST(CrossingPlaces, TurnRoundWithTheTissueAndNotWithTheBlade) {
+TEST(CrossingPositions, ReverseWithTheTissueButNotTheBlade) {
     for (std::uint64_t seed = 0; seed < 1000; ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
@@ -101,7 +101,7 @@ TEST(CrossingPlaces, TurnRoundWithTheTissueAndNotWithTheBlade) {
     }
 }
 
-TEST(CrossingPlaces, OfABentBladeAreOneForEachOfItsSegmentsThatPass) {
+TEST(CrossingPositions, AreOnePerPassingSegmentOfTheBlade) {
     // A zigzag in the plane z = 0 that moves up along z, and a segment of tissue along x over it.
     const Polyline from = {{0, -1, -1}, {1, 1, -1}, {2, -1, -1}, {3, 1, -1}};
     Polyline to = from;
@@ -115,7 +115,7 @@ TEST(CrossingPlaces, OfABentBladeAreOneForEachOfItsSegmentsThatPass) {
     EXPECT_EQ(crossings(swept, {-0.5, 0, 1.25}, {3.5, 0, 1.25}).size(), 0u);  // not yet there
 }
 
-TEST(SweptEdge, IsFoundInEachHullThroughWhichItPasses) {
+TEST(SweptEdge, IsFoundInEachHullThatItPasses) {
     int num_crossed = 0, num_ruled_out = 0;
     for (std::uint64_t seed = 0; seed < test::num_cases(4000); ++seed) {
         SCOPED_TRACE(seed);
@@ -169,7 +169,7 @@ TEST(Pierces, AgreesWithPlainArithmeticInGeneralPosition) {
     EXPECT_GT(num_pierced, test::num_cases(200));
 }
 
-TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
+TEST(Pierces, AClosedSurfaceAnEvenNumberOfTimes) {
     // Tetrahedra of grid points, where everything touches everything; the ends are far away.
     int num_pierced = 0;
     for (std::uint64_t seed = 0; seed < test::num_cases(3000); ++seed) {
@@ -195,7 +195,7 @@ TEST(Pierces, AClosedSurfaceOfTissueAnEvenNumberOfTimes) {
 
 // ---- planes
 
-TEST(PlaneSide, IsThatOfWholeNumbersHoweverNearThePlane) {
+TEST(PlaneSide, IsExactHoweverNearThePlane) {
     // Coordinates are whole multiples of 2^-52 below 2 and normals small whole numbers, so that
     // the height over the plane is a whole number that fits in 64 bits.
     constexpr double unit = 0x1.0p-52;
@@ -284,7 +284,7 @@ std::vector<SurfaceData> closed_surfaces() {
             icosphere({2, 2, 2}, 1.5, 1)};
 }
 
-TEST(TriangleSurface, IsCrossedEvenlyByPathsThatComeBackOrStayOutside) {
+TEST(TriangleSurface, IsCrossedEvenlyByClosedOrOutsidePaths) {
     int num_crossed = 0;
     for (const SurfaceData& data : closed_surfaces()) {
         const TriangleSurface surface(data);

@@ -116,7 +116,7 @@ TEST(Separator, PartsTissueThatMovesHoweverItMoves) {
     }
 }
 
-TEST(Separator, PartsTissueThatRunsIntoAStillOrRetreatingBlade) {
+TEST(Separator, PartsTissueThatRunsIntoTheBlade) {
     for (const auto& family : test::mesh_families()) {
         if (!is_convex(family.name)) continue;
         SCOPED_TRACE(family.name);

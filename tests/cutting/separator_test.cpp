@@ -152,7 +152,7 @@ long num_apart(const Body& body) {
            std::count(pieces.of_element.begin(), pieces.of_element.end(), largest_piece(pieces));
 }
 
-TEST(Separator, APartialSweepOpensWhatItPassedAndPartsNothing) {
+TEST(Separator, APartialSweepOpensButPartsNothing) {
     for (const auto& family : test::mesh_families()) {
         if (!is_convex(family.name)) continue;
         SCOPED_TRACE(family.name);
@@ -195,7 +195,7 @@ std::vector<std::pair<NodeId, NodeId>> edges_of(const Mesh& mesh, FaceId f) {
     return edges;
 }
 
-TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
+TEST(Separator, OpensASheetThatEndsAtTheBlade) {
     int num_branches = 0;
     for (const auto& family : test::mesh_families()) {
         if (!is_convex(family.name)) continue;
@@ -256,7 +256,7 @@ TEST(Separator, OpenedFacesAreASheetThatEndsAtTheBladeOnly) {
     EXPECT_GE(num_branches, test::num_cases(21));
 }
 
-TEST(Separator, ManySmallStepsOpenWhatOneLargeStepOpens) {
+TEST(Separator, SmallStepsOpenWhatALargeOneOpens) {
     // But for which of its faces an element at the boundary is left hanging by, and for faces
     // beside the line between their elements' centres: the blade may pass their path twice, which a
     // large step cancels and small steps do not.
@@ -377,7 +377,7 @@ TEST(Separator, ABladeOutsideOpensNothing) {
         }
 }
 
-TEST(Separator, AHalfCutRingIsOpenedAndStaysOnePiece) {
+TEST(Separator, AHalfCutRingStaysOneComponent) {
     for (const auto& family : test::mesh_families())
         if (family.name == "ring") {
             Body body(family.data);

@@ -72,7 +72,7 @@ TEST(Crossing, DegenerateSegmentsCrossNothing) {
     EXPECT_FALSE(cross(tissue, shifted({-1, 0, 0.3}, {1, 0, 0.3}, {0.5, 0, 0})));  // along itself
 }
 
-TEST(Crossing, TouchingIsDecidedAsIfTheTissueWereShiftedByAHair) {
+TEST(Crossing, TouchingIsDecidedAsAfterATinyShift) {
     // First by a hair along x, then by a hair of that along y, then along z.
     const auto tissue = [](double x, double from_y, double to_y, double z) {
         return still({x, from_y, z}, {x, to_y, z});
@@ -211,7 +211,7 @@ History passing_blade(Random& random, std::size_t size, std::size_t num_steps) {
     return blade;
 }
 
-TEST(Crossing, AClosedPathOfTissueIsCrossedAnEvenNumberOfTimes) {
+TEST(Crossing, ClosedPathsAreCrossedEvenly) {
     int num_crossed = 0;
     for (const std::size_t size : {2u, 3u, 5u})
         for (std::uint64_t seed = 0; seed < test::num_cases(400); ++seed) {
@@ -228,7 +228,7 @@ TEST(Crossing, AClosedPathOfTissueIsCrossedAnEvenNumberOfTimes) {
     EXPECT_GT(num_crossed, test::num_cases(500));  // its segments for themselves are crossed often
 }
 
-TEST(Crossing, APathFromOneSideToTheOtherIsCrossedAnOddNumberOfTimes) {
+TEST(Crossing, PathsBetweenTheSidesAreCrossedOddly) {
     for (const std::size_t size : {2u, 3u, 5u})
         for (std::uint64_t seed = 0; seed < test::num_cases(400); ++seed) {
             Random random(1000 * size + seed);
@@ -242,7 +242,7 @@ TEST(Crossing, APathFromOneSideToTheOtherIsCrossedAnOddNumberOfTimes) {
         }
 }
 
-TEST(Crossing, AClosedBladeThatComesAndGoesCrossesAPathEvenly) {
+TEST(Crossing, ClosedBladesThatComeAndGoCrossEvenly) {
     for (const std::size_t size : {2u, 3u, 5u})
         for (std::uint64_t seed = 0; seed < test::num_cases(300); ++seed) {
             Random random(1000 * size + seed);
@@ -254,7 +254,7 @@ TEST(Crossing, AClosedBladeThatComesAndGoesCrossesAPathEvenly) {
         }
 }
 
-TEST(Crossing, DoesNotDependOnHowChainsAndStepsAreDivided) {
+TEST(Crossing, IgnoresHowChainsAndStepsAreDivided) {
     // Both ends of the path are held out of the blade's reach, and those of the blade are far out:
     // whatever is put in between, it is the same intersection.
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -276,7 +276,7 @@ TEST(Crossing, DoesNotDependOnHowChainsAndStepsAreDivided) {
     }
 }
 
-TEST(Crossing, OfStraightSweepsIsTheSameHoweverTheyAreDivided) {
+TEST(Crossing, OfStraightSweepsIsTheSameHoweverDivided) {
     // Segments that keep their direction sweep parallelograms, which stay the same sets when they
     // are divided; then each crossing for itself is kept, free ends and touching ones included.
     int num_crossed = 0;

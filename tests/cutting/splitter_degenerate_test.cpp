@@ -62,7 +62,7 @@ std::vector<NamedStroke> strokes_along(const Vec3& point, const Vec3& normal) {
     return strokes;
 }
 
-TEST(SplitOnTheGrid, InFacesOfTheMeshOpensThemAndDividesNothing) {
+TEST(SplitOnTheGrid, InFacesOfTheMeshDividesNothing) {
     struct Case {
         Vec3 point, normal;
         std::size_t num_nodes;  // on the plane
@@ -99,7 +99,7 @@ TEST(SplitOnTheGrid, InFacesOfTheMeshOpensThemAndDividesNothing) {
             }
 }
 
-TEST(SplitOnTheGrid, ThroughNodesAndAlongEdgesLeavesTheTwoHalves) {
+TEST(SplitOnTheGrid, ThroughNodesAndEdgesLeavesTheTwoHalves) {
     constexpr std::array offsets{0.125, 0.0, 0.25, 0.0625};
     const std::array normals{Vec3(2, 1, -1),  Vec3(1, 1, 0), Vec3(0, 1, 1), Vec3(1, 1, 1),
                              Vec3(-1, -1, 1), Vec3(1, 2, 0), Vec3(1, -2, 1)};
@@ -137,7 +137,7 @@ TEST(SplitOnTheGrid, ThroughNodesAndAlongEdgesLeavesTheTwoHalves) {
             }
 }
 
-TEST(SplitOnTheGrid, AHairBesideIsAsThroughTheNodes) {
+TEST(SplitOnTheGrid, SlightlyBesideIsAsThroughTheNodes) {
     static constexpr std::array places{0.25, 0.5, 0.75};
     for (int c = 0; c < 3; ++c)
         for (const double x : test::some_of(places))
@@ -165,7 +165,7 @@ TEST(SplitOnTheGrid, AHairBesideIsAsThroughTheNodes) {
                 }
 }
 
-TEST(SplitOnTheGrid, BesideTheBodyOrTangentToItChangesNothing) {
+TEST(SplitOnTheGrid, BesideOrTangentToTheBodyChangesNothing) {
     struct Case {
         Vec3 point, normal;
     };
@@ -233,7 +233,7 @@ TEST(SplitOnTheGrid, TrianglesWithoutAreaCutNothing) {
 
 // A blade in the plane x = 1/2 that stops on its way: rows of nodes that it has left behind by
 // more than one element are copied, the row at the front is not.
-TEST(SplitOnTheGrid, AHalfCutCopiesTheNodesBehindTheFront) {
+TEST(SplitOnTheGrid, AHalfCutCopiesNodesBehindTheFront) {
     struct Case {
         double depth;
         std::size_t num_rows;  // copied

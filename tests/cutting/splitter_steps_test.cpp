@@ -35,7 +35,7 @@ Outcome outcome(const SplitBody& body, const std::vector<Split>& parts) {
             cut_faces(body.mesh).size(), topology::components(body.mesh).count};
 }
 
-TEST(SplitByBlade, RightThroughInManyStepsIsAsInOneStep) {
+TEST(SplitByBlade, RightThroughIsAlikeInManySteps) {
     for (const auto* family : test::tetrahedral_families())
         for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
             std::vector<double> volumes;
@@ -112,7 +112,7 @@ void expect_same_in_many_steps(const topology::MeshData& data, Cut cut) {
 // Where it stops on its way, elements at the front are cut in part. Into which parts depends on the
 // order of their edges, and on which nodes count as on the cut by then: both are decided as the
 // blade comes to them, in whatever steps.
-TEST(SplitByBlade, PartOfTheWayInManyStepsIsAsInOneStep) {
+TEST(SplitByBlade, PartlyThroughIsAlikeInManySteps) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, 0.1, default_snap})
             for (const double share : {0.4, 0.5, 1.0})
@@ -150,7 +150,7 @@ struct WavedBlade {
 
 // It goes through edges more than once: each time when the blade is there, and through no edge that
 // was made after it had been there.
-TEST(SplitByBlade, WithAWavedEdgeInManyStepsIsAsInOneStep) {
+TEST(SplitByBlade, WithWavedEdgesIsAlikeInManySteps) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, default_snap})
             for (std::uint64_t seed = 0; seed < test::num_cases(12); ++seed) {
@@ -167,7 +167,7 @@ TEST(SplitByBlade, WithAWavedEdgeInManyStepsIsAsInOneStep) {
 // Small pieces between two cuts hang on the rest by the face to which the blade comes last, whether
 // others have opened in earlier steps or in the same; and whether they do is not decided before the
 // blade is past them.
-TEST(SplitByBlade, ThroughACutBodyInManyStepsIsAsInOneStep) {
+TEST(SplitByBlade, ThroughCutBodiesIsAlikeInManySteps) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, 0.1, default_snap})
             for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
@@ -183,7 +183,7 @@ TEST(SplitByBlade, ThroughACutBodyInManyStepsIsAsInOneStep) {
 }
 
 // Also what small pieces wait for is in a checkpoint.
-TEST(SplitByBlade, GoesOnFromItsArchiveToTheSameCut) {
+TEST(SplitByBlade, ResumesFromItsArchiveToTheSameCut) {
     for (const auto* family : test::tetrahedral_families())
         for (std::uint64_t seed = 0; seed < test::num_cases(20); ++seed) {
             SCOPED_TRACE(testing::Message() << family->name << ", seed " << seed);

@@ -141,7 +141,7 @@ SurfaceData middle_box(double half_width, const Vec3& offset = Vec3::Zero()) {
 
 // Nodes at edges of the box are near one of its sides while another passes through their edges, and
 // elements in its corners have all of their nodes on it.
-TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfTheMeshFreesAllThatIsInIt) {
+TEST(SplitAlongSurface, ABoxOnMeshFacesFreesAllInside) {
     for (const double snap : {0.0, 0.1, 0.6})
         for (int n = 3; n <= 8; ++n)
             for (int width = 1; width < n; ++width) {
@@ -167,7 +167,7 @@ TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfTheMeshFreesAllThatIsInIt) {
 }
 
 // Rounding then puts nodes of the box's sides on either side of them, each by itself.
-TEST(SplitAlongSurface, ABoxWithItsSidesInFacesOfATurnedOrStrainedMeshFreesAllThatIsInIt) {
+TEST(SplitAlongSurface, ABoxOnDeformedFacesFreesAllInside) {
     for (const bool is_strained : {false, true})
         for (const double snap : {0.0, 0.1, 0.6})
             for (int n = 3; n <= 7; ++n)
@@ -219,7 +219,7 @@ SurfaceData faces_of(const Mesh& mesh, ElementId e, std::size_t num_faces) {
 }
 
 // No edge need be crossed then, and all nodes of what is inside are on the surface.
-TEST(SplitAlongSurface, FacesOfATetrahedronFreeItIfTheyAreAllOfThem) {
+TEST(SplitAlongSurface, AllFacesOfATetrahedronFreeIt) {
     for (const double jitter : {0.0, 0.2}) {
         const auto data = test::jittered_cube(3, jitter, 1);
         const Mesh mesh = SplitBody(data).mesh;
@@ -244,7 +244,7 @@ TEST(SplitAlongSurface, FacesOfATetrahedronFreeItIfTheyAreAllOfThem) {
 
 // All of its sides but one are in faces of the mesh, and that one is nearer than an edge to the
 // opposite side: intersections of either in edges at nodes of the other are not to be forgotten.
-TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
+TEST(SplitAlongSurface, AThinBoxOnMeshFacesComesFree) {
     for (const double thickness : {0.4, 0.5, 0.6, 0.7, 0.8})
         for (const int across : {0, 1, 2})
             for (int n = 4; n <= 6; ++n)
@@ -265,7 +265,7 @@ TEST(SplitAlongSurface, AThinBoxOnFacesOfTheMeshComesFree) {
 
 // What snapping takes away at creases is little beside what chords of elements do: 0.90 of the
 // boxes would come free if a node near one side forgot where the others pass through its edges.
-TEST(SplitAlongSurface, WithSnappingTurnedBoxesFreeMostOfWhatIsInThem) {
+TEST(SplitAlongSurface, WithSnappingTurnedBoxesFreeMostInside) {
     double freed = 0.0, inside = 0.0;
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
         Random random(seed);
@@ -307,7 +307,7 @@ TEST(SplitAlongSurface, ABoxAlongTheMeshAgainChangesNothing) {
 
 // Beside the creases of the box there are nodes that both cuts pass in the same direction, and
 // faces that only the plane passes.
-TEST(SplitAlongSurface, APlaneAlongASideOfABoxThatWasCutGoesOnBeyondIt) {
+TEST(SplitAlongSurface, APlaneContinuesOneSideOfABox) {
     for (const double snap : {0.0, 0.1, 0.3, 0.6})
         for (const bool is_guarded : {false, true})
             for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
@@ -350,7 +350,7 @@ TEST(SplitAlongSurface, WhatASphereFreesConvergesToItsVolume) {
     EXPECT_LT(missing[12], 0.02);
 }
 
-TEST(SplitAlongSurface, AClosedOneThatReachesOutOfTheBodyFreesWhatItHolds) {
+TEST(SplitAlongSurface, AClosedOneReachingOutFreesItsInside) {
     for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
@@ -368,7 +368,7 @@ TEST(SplitAlongSurface, AClosedOneThatReachesOutOfTheBodyFreesWhatItHolds) {
     }
 }
 
-TEST(SplitAlongSurface, AWavySheetThroughTheBodyPartsItWhereverTheTissueIs) {
+TEST(SplitAlongSurface, AWavySheetPartsBodiesWhereverTheyAre) {
     for (const auto* family : test::tetrahedral_families()) {
         if (family->name != "cube" && family->name != "ball" && family->name != "organ") continue;
         for (const double snap : {0.0, 0.6})
@@ -425,7 +425,7 @@ std::set<std::array<double, 3>> rim_of_cut(const Mesh& mesh) {
     return boundary;
 }
 
-TEST(SplitAlongSurface, AnOpenOneEndsInsideAndItsRimStaysJoined) {
+TEST(SplitAlongSurface, AnOpenOneStaysJoinedAtItsBoundary) {
     for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);

@@ -52,7 +52,7 @@ TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
     }
 }
 
-TEST(SplitByBlade, TheWayBackAndTheSameStrokeAgainChangeNothing) {
+TEST(SplitByBlade, RetracingOrRepeatingAStrokeChangesNothing) {
     static constexpr std::array shares{0.5, 1.0};
     static constexpr std::array numbers_of_steps{6, 1};
     for (const auto* family : test::tetrahedral_families())
@@ -151,7 +151,7 @@ struct MovingCut {
     }
 };
 
-TEST(SplitByBlade, PartsTissueThatMovesAndConvergesWithTheSteps) {
+TEST(SplitByBlade, ConvergesWithTheStepsInMovingTissue) {
     static constexpr std::array strengths{1.0, 0.3};
     for (const double strength : test::some_of(strengths))
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
@@ -200,7 +200,7 @@ Stroke way_of_edge(const std::vector<std::array<double, 2>>& corners, double par
 
 // At round places the edge comes to rest just where it crosses edges of the mesh, and rounding
 // takes the new nodes to one or the other side of it.
-TEST(SplitByBlade, ThatStopsAtTheEdgesOfTheMeshPartsTheBodyAllTheSame) {
+TEST(SplitByBlade, ThatStopsAtMeshEdgesPartsTheBody) {
     static constexpr std::array numbers_of_bricks{4, 8};
     static constexpr std::array places{0.41, 0.35, 0.5};
     for (const int n : test::some_of(numbers_of_bricks))
@@ -259,7 +259,7 @@ TEST(SplitByBlade, RemembersElementsThatAreLongInItsDirection) {
 
 // Each ends beside others, and cuts again what they have cut; what they had to leave joined at
 // their borders is not taken for finished.
-TEST(SplitByBlade, StrokesThatOverlapByAnElementPartTheBody) {
+TEST(SplitByBlade, StrokesOverlappingByAnElementPartTheBody) {
     for (const double snap : {0.0, 0.1, 0.6})
         for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
@@ -293,7 +293,7 @@ TEST(SplitByBlade, StrokesThatOverlapByAnElementPartTheBody) {
 
 // It ends in the body and slides out along itself, so that it crosses nothing: the boundary where
 // it was is there no more.
-TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
+TEST(SplitByBlade, DrawnOutAlongItselfLeavesItsCut) {
     for (const double snap : {0.0, default_snap}) {
         SplitBody body(test::jittered_cube(4, 0.2, 1));
         CutFront front;
@@ -310,7 +310,7 @@ TEST(SplitByBlade, ThatIsDrawnOutAlongItselfLeavesItsCutBehind) {
     }
 }
 
-TEST(SplitByBlade, ThatCrossesItsOwnWayWithSnappingLeavesFourPieces) {
+TEST(SplitByBlade, CrossingItsPathWithSnapLeavesFourComponents) {
     static constexpr std::array<std::array<int, 3>, 3> numbers_of_bricks{
         {{10, 2, 10}, {6, 6, 6}, {20, 4, 20}}};
     for (const auto& bricks : test::some_of(numbers_of_bricks))
@@ -342,7 +342,7 @@ bool are_sides_joined(const topology::Mesh& mesh) {
 }
 
 // It meets again what it has cut a little earlier, some of which it has left behind by then.
-TEST(SplitByBlade, ThatComesBackBesideItsWayPartsTheBody) {
+TEST(SplitByBlade, ReturningBesideItsPathPartsTheBody) {
     for (const double snap : {0.0, 0.3})
         for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::num_cases(60));
              ++seed) {
@@ -373,7 +373,7 @@ TEST(SplitByBlade, ThatComesBackBesideItsWayPartsTheBody) {
 }
 
 // Where it has been before is another cut.
-TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
+TEST(SplitByBlade, CrossingItsPathLeavesFourComponents) {
     for (std::uint64_t seed = 0; seed < test::num_cases(24); ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Random random(seed);
@@ -391,7 +391,7 @@ TEST(SplitByBlade, ThatCrossesItsOwnWayLeavesFourPieces) {
 
 // From element to element it is far away from where it has crossed its earlier way, a hundredth of
 // an element beside a plane of nodes.
-TEST(SplitByBlade, ThatCrossesItsOwnWayBesideNodesLeavesFourPieces) {
+TEST(SplitByBlade, CrossingItsPathBesideNodesLeavesFourComponents) {
     static constexpr std::array<std::array<double, 3>, 3> ways{
         {{0.403704, 0.499921, 0.05},
          {0.416506985, 0.583315689, 0.056774151},

@@ -80,7 +80,7 @@ std::pair<double, double> volumes_of_halves(const SplitBody& body, const Halves&
 }
 
 // At rest, and stretched and sheared by a linear map, which leaves convex bodies convex.
-TEST(Split, AlongAPlaneWithoutSnappingLeavesTheTwoHalves) {
+TEST(Split, WithoutSnappingLeavesTheTwoHalves) {
     for (const auto* family : convex_families())
         for (std::uint64_t seed = 0; seed < 2 * num_seeds; ++seed) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
@@ -120,7 +120,7 @@ TEST(Split, AlongAPlaneWithoutSnappingLeavesTheTwoHalves) {
         }
 }
 
-TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
+TEST(Split, WithSnappingLeavesTheTwoHalvesWithinSnap) {
     for (const auto* family : convex_families())
         for (const double snap : {0.1, 0.2, 0.35, 0.6})
             for (const bool is_guarded : {false, true})
@@ -161,7 +161,7 @@ TEST(Split, WithSnappingLeavesTheTwoHalvesWithinWhatIsSnapped) {
                 }
 }
 
-TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
+TEST(Split, AlongAPlaneAgainChangesNothing) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, 0.1, 0.2, 0.35, 0.6})
             for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
@@ -180,7 +180,7 @@ TEST(Split, TwiceAlongAPlaneChangesNothingTheSecondTime) {
             }
 }
 
-TEST(Split, AlongAPlaneAgainAfterOtherCutsChangesNothing) {
+TEST(Split, AgainAfterOtherCutsChangesNothing) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, 0.1, 0.3, 0.6})
             for (const bool is_guarded : {false, true})
@@ -229,7 +229,7 @@ TEST(Split, SlicesAndDiceComeOffHoweverThin) {
         }
 }
 
-TEST(Split, AlongTwoCrossingPlanesLeavesFourPieces) {
+TEST(Split, AlongTwoCrossingPlanesLeavesFourComponents) {
     for (const double snap : {0.0, 0.25, 0.6})
         for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
             SCOPED_TRACE("snap " + std::to_string(snap) + ", seed " + std::to_string(seed));
@@ -276,7 +276,7 @@ TEST(Split, AlongTwoCrossingPlanesLeavesFourPieces) {
         }
 }
 
-TEST(Split, RefusesOtherCellsAndLeavesTheMeshAsItWas) {
+TEST(Split, RefusesOtherCellsAndChangesNothing) {
     for (const auto& family : test::mesh_families()) {
         if (family.name != "hexahedra" && family.name != "mixed") continue;
         for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
@@ -418,7 +418,7 @@ double least_altitude(const Mesh& mesh) {
 }
 
 // What docs/cutting.md promises of the default: planes one after the other through one body.
-TEST(Split, AtTheDefaultSnapKeepsTheShapeOfElementsAndGrowsLittle) {
+TEST(Split, AtDefaultSnapKeepsElementsSoundAndFew) {
     const auto regular =
         topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {8, 8, 8});
     const auto& families = test::mesh_families();

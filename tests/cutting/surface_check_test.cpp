@@ -134,7 +134,7 @@ bool passes(const Vec3& p, const Vec3& q, const Corners& t) {
     return s[0] > 0 && s[0] < 1 && s[1] > 0 && s[2] > 0 && s[1] + s[2] < 1;
 }
 
-TEST(SurfaceCheck, AgreesOnRandomTrianglesWithSolvingForTheMeetingPoint) {
+TEST(SurfaceCheck, AgreesWithSolvedIntersectionsOfRandomTriangles) {
     Random random(5);
     int num_meeting = 0;
     for (int i = 0; i < 20000; ++i) {

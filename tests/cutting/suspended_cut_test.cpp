@@ -102,7 +102,7 @@ void for_crossing_blades(Cut cut) {
         }
 }
 
-TEST(SuspendedCut, GoesOnThroughWhatAnotherHasCutInTurnsWithIt) {
+TEST(SuspendedCut, GoesOnThroughWhatAnotherCutsInTurns) {
     for_crossing_blades([](CrossingBlades& blades, int num_steps) {
         for (int i = 0; i < num_steps; ++i) {
             const double from = 1.0 * i / num_steps, to = (i + 1.0) / num_steps;
@@ -125,7 +125,7 @@ TEST(SuspendedCut, GoesOnThroughWhatAnotherHasCutMeanwhile) {
     });
 }
 
-TEST(SuspendedCut, GoesOnThroughWhatAPlaneHasCutMeanwhile) {
+TEST(SuspendedCut, GoesOnThroughWhatAPlaneHasCut) {
     for_crossing_blades([](CrossingBlades& blades, int num_steps) {
         const double part = 0.47;
         for (int i = 0; i < num_steps; ++i)

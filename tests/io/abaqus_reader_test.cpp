@@ -48,14 +48,14 @@ std::vector<int> regions_behind(std::string_view more) {
     return read_bytes("a.inp", abaqus_tetrahedra + std::string(more)).mesh.regions;
 }
 
-TEST(AbaqusReader, OrdersElementsByNumberAndNodesByTheFile) {
+TEST(AbaqusReader, OrdersElementsByNumberAndNodesByFile) {
     const auto file = read_bytes("a.inp", abaqus_tetrahedra);
     EXPECT_EQ(file.mesh.points[0], Vec3(0, 0, 0));
     EXPECT_EQ(file.mesh.points[4], Vec3(1, 1, 1));
     EXPECT_THAT(file.mesh.corners, ElementsAre(1, 2, 3, 4, 0, 1, 2, 3));
 }
 
-TEST(AbaqusReader, ReadsRowsAndKeywordsAsTheManualAllowsThem) {
+TEST(AbaqusReader, ReadsRowsAndKeywordsAsTheManualAllows) {
     const auto file = read_bytes("a.inp",
                                  "** no heading\n*ELEMENT,\n Elset = REGION_2 ,\n type=c3d8r\n"
                                  "1, 1,2,3,4,\n** a comment within\n5,6,7, 8\n"
@@ -217,7 +217,7 @@ TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
                                       "springs:")));
 }
 
-TEST(AbaqusReader, RefusesSolidsThatAreNotLinearOrNotKnown) {
+TEST(AbaqusReader, RefusesHigherOrderAndUnknownSolids) {
     EXPECT_THAT(abaqus_refusal_with("C3D4", "C3D10M"),
                 AllOf(StartsWith("liver.inp:11: element 7: a second-order tetrahedron (TYPE "
                                  "C3D10M) cannot be used"),

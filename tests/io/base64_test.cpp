@@ -15,7 +15,7 @@ std::string encoded(std::string_view bytes) {
     return text;
 }
 
-TEST(Base64, HasTheDigitsAndThePaddingOfTheStandard) {
+TEST(Base64, HasTheDigitsAndPaddingOfTheStandard) {
     // RFC 4648, section 10.
     for (const auto& [bytes, text] : {std::pair{"", ""},
                                       {"f", "Zg=="},

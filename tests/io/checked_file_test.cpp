@@ -61,7 +61,7 @@ TEST(OutputFolder, IsOnesOwnUntilItGoes) {
     EXPECT_EQ(count_entries(path), 0u);  // the lock leaves nothing behind
 }
 
-TEST(OutputFolder, RemovesWhatKilledProcessesLeftWhoeverHasTheirNumberNow) {
+TEST(OutputFolder, RemovesFilesOfKilledProcessesDespiteReusedIds) {
     const support::TemporaryFolder folder;
     for (const pid_t process : {::getpid(), ::getppid(), 1})
         write_file(folder / (".summary.json.tmp" + std::to_string(process) + "-0"), "x");

@@ -73,7 +73,7 @@ TEST(WriteFile, TakesTheLongestNamesThatThereAre) {
                 HasSubstr("choose a shorter name"));
 }
 
-TEST(WriteFile, KeepsTheFormerContentsAndLeavesNothingBehindOnFailure) {
+TEST(WriteFile, KeepsOnlyTheFormerContentsOnFailure) {
     const TemporaryFolder folder;
     write_file(folder / "file", "former contents");
     {
@@ -104,7 +104,7 @@ TEST(RemoveUnfinishedFiles, LeavesWhatIsBeingWritten) {
     EXPECT_EQ(count_entries(folder.path()), 0U);
 }
 
-TEST(WriteFile, LetsASignalWaitThatWouldLeaveAHiddenFileBehind) {
+TEST(WriteFile, DefersSignalsThatWouldLeaveHiddenFiles) {
     const TemporaryFolder folder;
     static const TemporaryFolder* watched;
     static std::size_t num_left;
@@ -140,7 +140,7 @@ TEST(RequireWritable, ThrowsWhatWritingWouldAndChangesNothing) {
     }
 }
 
-TEST(RequireWritable, DoesNotEndWhatAReaderOfAPipeReads) {
+TEST(RequireWritable, DoesNotEndAPipeForItsReader) {
     const TemporaryFolder folder;
     const auto pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -151,7 +151,7 @@ TEST(RequireWritable, DoesNotEndWhatAReaderOfAPipeReads) {
     EXPECT_EQ(::poll(&waiting, 1, 0), 0);
 }
 
-TEST(WriteFile, SaysThatADiskIsFullAndLeavesTheDevice) {
+TEST(WriteFile, ReportsAFullDiskAndLeavesTheDevice) {
     EXPECT_EQ(output_error([] { write_file("/dev/full", "x"); }),
               "/dev/full: cannot be written: no space left on device; make room there, or write "
               "to another disk");
@@ -160,7 +160,7 @@ TEST(WriteFile, SaysThatADiskIsFullAndLeavesTheDevice) {
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST(WriteFile, DoesNotWaitForAReaderOfAPipe) {
+TEST(WriteFile, DoesNotWaitForAPipesReader) {
     const TemporaryFolder folder;
     const auto pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -168,7 +168,7 @@ TEST(WriteFile, DoesNotWaitForAReaderOfAPipe) {
     EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-TEST(WriteFile, NamesTheReasonWhereThereCanBeNoFile) {
+TEST(WriteFile, SaysWhyThereCanBeNoFile) {
     const TemporaryFolder folder;
     write_file(folder / "file", "");
     const auto error_at = [&](const char* name) {
@@ -200,7 +200,7 @@ TEST(WriteFile, GivesThePermissionsOfAnyNewFile) {
     EXPECT_EQ(fs::status(folder / "file").permissions(), fs::perms(0640));
 }
 
-TEST(MakeOutputFolder, MakesParentsAndRefusesWhereNoFileCanBe) {
+TEST(MakeOutputFolder, MakesParentsAndRefusesImpossiblePaths) {
     const TemporaryFolder folder;
     make_output_folder(folder / "a/b");
     make_output_folder(folder / "a/b");
@@ -213,7 +213,7 @@ TEST(MakeOutputFolder, MakesParentsAndRefusesWhereNoFileCanBe) {
                 HasSubstr("/proc/incise: cannot be written: "));
 }
 
-TEST(LineFile, HoldsEveryLineAsSoonAsItIsAppended) {
+TEST(LineFile, HoldsEveryLineOnceItIsAppended) {
     const TemporaryFolder folder;
     LineFile file(folder / "history.csv");
     std::string expected;

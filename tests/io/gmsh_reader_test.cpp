@@ -192,7 +192,7 @@ TEST(GmshReader, RefusesWhatItCannotRead) {
                 HasSubstr("element 2: node tag 3 is not one of the 5 nodes"));
 }
 
-TEST(GmshReader, EndsSectionsThatItSkipsAtTheirMarkWhichNamesMayQuote) {
+TEST(GmshReader, SkipsSectionsWhoseNamesQuoteTheirEnd) {
     const std::string names =
         "$PhysicalNames\n1\n3 5 \"liver $EndPhysicalNames\"\n$EndPhysicalNames \r\n";
     for (const std::string& text :
@@ -222,7 +222,7 @@ TEST(GmshReader, QuotesAndShortensNamesOfSections) {
     EXPECT_THAT(message, HasSubstr("the file is cut short"));
 }
 
-TEST(GmshReader, RefusesEntitiesBehindTheElementsWhoseRegionsTheyTell) {
+TEST(GmshReader, RefusesEntitiesBehindTheirElements) {
     const auto begin = version_4.find("$Entities"), end = version_4.find("$Nodes");
     const auto entities = version_4.substr(begin, end - begin);
     EXPECT_THAT(refusal("liver.msh", replaced(version_4, entities, "") + entities),

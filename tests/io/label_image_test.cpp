@@ -125,7 +125,7 @@ TEST(LabelImage, LeavesNiftisLeftHandedAxesLeftHanded) {
     expect_image(read_image("a.nii", nifti.bytes()), Vec3(-1, 1, 1).asDiagonal(), {-10, 5, 7});
 }
 
-TEST(LabelImage, WarnsOfAPoseThatIsOddOrNotThere) {
+TEST(LabelImage, WarnsOfAnOddOrMissingPose) {
     Nifti nifti;
     auto image = read_image("a.nii", nifti.bytes());
     EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("neither sform nor qform")));

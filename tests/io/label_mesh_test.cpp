@@ -68,7 +68,7 @@ std::string meshing_refusal(const LabelImage& image, std::optional<double> size)
     return {};
 }
 
-TEST(HexMesh, MakesABoxOfEachLabelledVoxelInOrder) {
+TEST(HexMesh, MakesBoxesOfLabelledVoxelsInOrder) {
     auto labels = image({2, 3, 1}, {0, 7, -2, 7, 0, 7});
     labels.spacing = {1, 2, 4};
     labels.origin = {10, 20, 30};
@@ -167,7 +167,7 @@ TEST(HexMesh, SamplesAtTheCentresOfCubes) {
     EXPECT_EQ(cells_of_regions(hex_mesh(labels, 2.0)), (std::map<int, int>{{1, 9}, {2, 18}}));
 }
 
-TEST(HexMesh, OfTheSpacingOfAnImageIsThatOfItsVoxels) {
+TEST(HexMesh, AtImageSpacingEqualsThatOfVoxels) {
     std::mt19937 random(3);
     for (const double spacing : {1.0, 0.1, 0.7421875, 1.0 / 3.0}) {
         auto labels = filled({9, 8, 7}, 0);
@@ -226,7 +226,7 @@ TEST(HexMesh, MakesCubesAlsoOfSkewAxes) {
                 testing::IsEmpty());
 }
 
-TEST(HexMesh, GivesCubesTheLabelsOfTheirCentresInAnyPose) {
+TEST(HexMesh, LabelsCubesByTheirCentresInAnyPose) {
     std::mt19937 random(5);
     for (const double lean : {0.0, 0.4})
         for (int mirrored = -1; mirrored < 3; ++mirrored) {

@@ -59,14 +59,14 @@ TEST(MeshReader, KeepsWhatTheFileCallsCellsAndPoints) {
     }
 }
 
-TEST(MeshReader, TellsTheFormatByTheContentWhateverTheSuffix) {
+TEST(MeshReader, RecognizesFormatsByContentWhateverTheSuffix) {
     for (const auto& sample : all_samples()) {
         SCOPED_TRACE(sample.name);
         expect_same_mesh(read_bytes("mesh.dat", sample.bytes).mesh, sample_mesh());
     }
 }
 
-TEST(MeshReader, AcceptsByteOrderMarkLeadingBlankLinesAndWindowsLineEnds) {
+TEST(MeshReader, AcceptsByteOrderMarksAndWindowsLineEnds) {
     for (const auto& sample : all_samples()) {
         if (!sample.name.starts_with("ascii")) continue;
         SCOPED_TRACE(sample.name);
@@ -79,7 +79,7 @@ TEST(MeshReader, AcceptsByteOrderMarkLeadingBlankLinesAndWindowsLineEnds) {
     }
 }
 
-TEST(MeshReader, ReadsBackToTheBitWhatTheWriterWrites) {
+TEST(MeshReader, ReadsBackWrittenMeshesToTheBit) {
     const TemporaryFolder folder;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> shift(-0.01, 0.01);
@@ -172,7 +172,7 @@ TEST(MeshReader, LeavesSomeInvertedCellsAsTheyAre) {
     }
 }
 
-TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
+TEST(MeshReader, AlwaysTakesRegionsOfGmshFromPhysicalGroups) {
     for (const auto& sample : gmsh_samples()) {
         SCOPED_TRACE(sample.name);
         const auto file = read_bytes(sample.name, sample.bytes, {.region_array = "organ"});
@@ -180,7 +180,7 @@ TEST(MeshReader, TakesRegionsOfGmshFromPhysicalGroupsWhateverTheArray) {
     }
 }
 
-TEST(MeshReader, RefusesVectorsOfFormatsThatAreReadWithoutThem) {
+TEST(MeshReader, RefusesVectorsOfFormatsWithoutThem) {
     const auto samples = gmsh_samples();
     EXPECT_THAT(refusal(samples.front().name, samples.front().bytes, {.vector_arrays = {"fibre"}}),
                 HasSubstr("has no cell array 'fibre': none is read from meshes of the format Gmsh; "
@@ -273,7 +273,7 @@ TEST(MeshReader, SaysWhatAnUnreadableSeriesShouldBe) {
         EXPECT_THAT(refusal("liver.vtu.series", text), HasSubstr("names none")) << text;
 }
 
-TEST(MeshReader, NamesMeshesOfFreeFemThatEndLikeThoseOfGmsh) {
+TEST(MeshReader, NamesFreeFemMeshesWithTheGmshSuffix) {
     const std::string mesh = "0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 2 3 4 1\n";
     for (const std::string header : {"4 1 0\n", "  4\t1 0 \r\n"})
         EXPECT_THAT(refusal("liver.msh", header + mesh),

@@ -113,7 +113,7 @@ TEST(MeshWriter, MeditFileGroupsCellsByKind) {
                           "Prisms\n1\n2 11 4 6 12 8 4\nPyramids\n1\n5 6 8 7 9 2\nEnd\n"));
 }
 
-TEST(MeshWriter, AbaqusFileGroupsCellsByRegionAndKeepsTheirNumbers) {
+TEST(MeshWriter, AbaqusFileGroupsByRegionAndKeepsNumbers) {
     EXPECT_THAT(abaqus_text(make_mesh()),
                 HasSubstr("*ELEMENT, TYPE=C3D4, ELSET=REGION_1\n4,1,3,2,10\n"
                           "*ELEMENT, TYPE=C3D8, ELSET=REGION_1\n2,1,2,4,3,5,6,8,7\n"
@@ -149,7 +149,7 @@ TEST(MeshWriter, OurReaderGivesBackTheSameMesh) {
     }
 }
 
-TEST(MeshWriter, RefusesAnUnknownSuffixAndNamesTheKnownOnes) {
+TEST(MeshWriter, RefusesUnknownSuffixesAndNamesTheKnownOnes) {
     const TemporaryFolder folder;
     for (const auto* name : {"mesh.stl", "mesh", "mesh.vtu.bak"}) {
         try {
@@ -166,7 +166,7 @@ TEST(MeshWriter, RefusesAnUnknownSuffixAndNamesTheKnownOnes) {
     EXPECT_THROW(check_writable("mesh.xyz"), InputError);
 }
 
-TEST(MeshWriter, SaysThatADiskIsFullInEveryFormat) {
+TEST(MeshWriter, ReportsAFullDiskInEveryFormat) {
     const TemporaryFolder folder;
     for (const auto& suffix : writable_suffixes()) {
         const auto path = folder / ("mesh" + suffix);

@@ -1,4 +1,4 @@
-// One small mesh in every format and encoding that the readers know.
+// One small mesh in every format and encoding that the readers know: data, hence a long file.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "tests/io/reader_samples.h"
 

@@ -91,7 +91,7 @@ TEST(Series, IndexesAreValidAndCompleteAfterEachFrame) {
     }
 }
 
-TEST(Series, RemovesFramesOfAFormerRunButNothingElse) {
+TEST(Series, RemovesOnlyFramesOfAFormerRun) {
     const TemporaryFolder folder;
     write_series(folder.path(), "a", 5);
     write_series(folder.path(), "a_1", 2);

@@ -74,7 +74,7 @@ TEST(SurfaceReader, ReadsTheSameSurfaceFromEveryFormat) {
         }
 }
 
-TEST(SurfaceReader, TellsTheFormatByTheContentWhateverTheSuffix) {
+TEST(SurfaceReader, RecognizesFormatsByContentWhateverTheSuffix) {
     for (auto sample : surface_samples(cube())) {
         SCOPED_TRACE(sample.name);
         if (sample.name.ends_with(".obj")) continue;  // a text of any kind
@@ -84,7 +84,7 @@ TEST(SurfaceReader, TellsTheFormatByTheContentWhateverTheSuffix) {
     }
 }
 
-TEST(SurfaceReader, AcceptsByteOrderMarkLeadingBlankLinesAndWindowsLineEnds) {
+TEST(SurfaceReader, AcceptsByteOrderMarksAndWindowsLineEnds) {
     for (const auto& sample : surface_samples(cube())) {
         if (!sample.name.starts_with("ascii")) continue;
         SCOPED_TRACE(sample.name);
@@ -155,7 +155,7 @@ TEST(SurfaceReader, RefusesWhatIsNoSurfaceFile) {
 
 // --- STL
 
-TEST(StlReader, MergesPointsOfEqualCoordinatesWhateverTheSignOfZero) {
+TEST(StlReader, MergesEqualPointsWhateverTheSignOfZero) {
     const auto file = read("a.stl",
                            "solid\n"
                            "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0\n"
@@ -246,7 +246,7 @@ TEST(ObjReader, RefusesWrongStatements) {
 
 // --- OFF
 
-TEST(OffReader, AcceptsCountsBehindTheKeywordAndNoNumberOfEdges) {
+TEST(OffReader, AcceptsCountsBehindTheKeywordWithoutEdges) {
     const std::string body = "\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
     for (const std::string head : {"OFF 3 1 0", "OFF3 1 0", "OFF\n3 1", "off\n3 1 7 # edges"})
         EXPECT_EQ(read("a.off", head + body).surface.triangles.size(), 1u) << head;

@@ -137,7 +137,7 @@ TEST(VtuWriter, GivesTheSameBytesForTheSameFrame) {
         EXPECT_EQ(vtu_text(frame, compression), vtu_text(make_frame(), compression));
 }
 
-TEST(VtuWriter, GivesTheSameBytesWhateverTheLastFileHad) {
+TEST(VtuWriter, GivesTheSameBytesAfterAnyFile) {
     for (const auto compression : all_compressions) {
         PackedBlocks known;
         auto frame = make_frame();

@@ -138,7 +138,7 @@ TEST(Constraints, TakeInNodesBornBetweenTheirs) {
 }
 
 // A node that an edit merged away and its undoing brought back is held only if it was before.
-TEST(Constraints, DoNotSpreadToANodeThatComesBack) {
+TEST(Constraints, DoNotSpreadToRestoredNodes) {
     Mesh mesh = bar();
     const auto opened = open_across(mesh, 0.1, false);
     // Hold only one side of the open plane, the nodes that keep their ids.
@@ -258,7 +258,7 @@ TEST(Loads, OfTractionIsForcePerRestArea) {
     }
 }
 
-TEST(Loads, OfPressureOnAClosedSurfaceHasNoResultantAndNoMoment) {
+TEST(Loads, OfPressureBalanceOnAClosedSurface) {
     for (const auto* family : test::tetrahedral_families()) {
         SCOPED_TRACE(family->name);
         const Mesh mesh = Mesh::build(family->data).mesh;

@@ -84,7 +84,7 @@ Vec3 sum_of(const std::vector<Vec3>& vectors) {
 // With m_e the mass of an element round the edge, the body loses sum of m_e/4 t (1 - t)
 // (x_b - x_a) x (v_b - v_a) of angular and sum of m_e/4 t (1 - t) |v_b - v_a|^2 / 2 of kinetic
 // energy: what the ends' motion relative to each other has above that of the point between them.
-TEST(Bisection, ChangesTheMotionByTheFormulaForLumpedMasses) {
+TEST(Bisection, ChangesMotionByTheLumpedMassFormula) {
     for (const auto* family : test::tetrahedral_families()) {
         SCOPED_TRACE(family->name);
         const auto table = table_of_all_materials();
@@ -186,7 +186,7 @@ TEST(Bisection, GivesThePartsTheStateOfTheWhole) {
 }
 
 // All the pieces of a face bear what it bore, and what was inside never bears anything.
-TEST(Bisection, KeepsTheForceAndMomentOfTractionAndPressure) {
+TEST(Bisection, KeepsForceAndMomentOfTractionAndPressure) {
     const Vec3 traction(3.0, -2.0, 5.0);
     const double pressure = 7.0;
     for (const bool is_pressure : {false, true}) {
@@ -329,7 +329,7 @@ TEST(Bisection, CarriesLoadsThroughDivisionsOfParts) {
 
 // One edit that joins two faces again and divides an edge of them, before or after: who was merged
 // must not hide whose parts the pieces are.
-TEST(Bisection, AndJoiningInOneEditKeepsLoadsAndState) {
+TEST(Bisection, AndJoiningTogetherKeepLoadsAndState) {
     for (const bool is_divided_first : {false, true}) {
         Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;  // two by a face
         const FaceId shared = [&] {
@@ -419,7 +419,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     EXPECT_EQ(loads_at_rest(model), before);
 }
 
-TEST(Bisection, HoldsANodeBornBetweenHeldOnesAndNoOther) {
+TEST(Bisection, HoldsOnlyNodesAddedBetweenHeldOnes) {
     const auto left = [](const Vec3& X) { return X.x() == 0.0; };
     const auto right = [](const Vec3& X) { return X.x() == 1.0; };
     const auto middle = [&](const Vec3& X) { return !left(X) && !right(X); };

@@ -222,7 +222,7 @@ class EditedMesh {
     std::vector<MeshSnapshot> before_;  // each of those done
 };
 
-TEST(EditPrograms, LeaveValidMeshesAndAreUndoneToTheFirstBits) {
+TEST(EditPrograms, LeaveValidMeshesAndUndoExactly) {
     std::vector<const test::MeshFamily*> families;
     for (const auto& family : test::mesh_families()) families.push_back(&family);
     test::expect_for_all(test::num_cases(5000), programs(families), [](const Program& program) {
@@ -367,7 +367,7 @@ class FollowingBody {
     std::vector<ModelSnapshot> before_;  // each edit that is done
 };
 
-TEST(EditPrograms, KeepBodiesInBalanceAndEqualToFreshOnes) {
+TEST(EditPrograms, KeepBodiesBalancedAndEqualToFreshOnes) {
     auto families = test::tetrahedral_families();
     for (const auto* family : test::families_of(topology::CellKind::hexahedron))
         families.push_back(family);

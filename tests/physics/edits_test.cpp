@@ -30,7 +30,8 @@ using topology::Mesh;
 const std::vector<std::string> no_violations;
 
 /// Everything that acts in these tests but loads on nodes, whose division among copies a fresh
-/// model cannot know (constraints_loads_test.cpp has them; so has UndoneToTheStart below).
+/// model cannot know (constraints_loads_test.cpp has them; so has UndoneLeaveTheMotionAsItWas
+/// below).
 BoundaryConditions boundary_conditions(const Selections& selected) {
     BoundaryConditions s;
     s.gravity = {0.3, 0.2, -9.81};
@@ -206,7 +207,7 @@ static_assert(total_edits(edit_programs) + total_edits(hexahedral_edit_programs)
 
 class RandomEdits : public testing::TestWithParam<EditProgram> {};
 
-TEST_P(RandomEdits, KeepTheModelEqualToAFreshOneAndCanBeUndone) {
+TEST_P(RandomEdits, MatchFreshModelsAndCanBeUndone) {
     const std::string name(GetParam().family);
     const int num_edits = test::is_sanitized ? GetParam().num_edits / 50 : GetParam().num_edits;
     for (const auto& of_all : test::mesh_families()) {
@@ -247,7 +248,7 @@ TEST(RandomEdits, OnEveryFamilyAreTested) {
 
 // Many edits in a row, undone in reverse: constraints, loads on nodes and all else are back, so
 // that the body moves on as if nothing had been.
-TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
+TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
     auto families = test::tetrahedral_families();
     for (const auto* family : test::families_of(topology::CellKind::hexahedron))
         families.push_back(family);
@@ -288,7 +289,7 @@ TEST(RandomEdits, UndoneToTheStartLeaveTheMotionAsItWas) {
 }
 
 // Kinds of cells that have no forces can be edited all the same.
-TEST(RandomEdits, OfOtherCellsLeaveAValidMeshAndCanBeUndone) {
+TEST(RandomEdits, OfOtherCellsAreSoundAndReversible) {
     for (const char* name : {"mixed"}) {
         const auto& families = test::mesh_families();
         const auto family = std::find_if(families.begin(), families.end(),
@@ -359,7 +360,7 @@ ChangeSet open_plane(Mesh& mesh, double x) {
 }
 
 // Two halves of a bar that have moved apart, and move, are joined again.
-TEST(ModelApply, JoiningTwoPiecesKeepsMassMomentumAndCentreOfMass) {
+TEST(ModelApply, JoiningKeepsMassMomentumAndCentreOfMass) {
     Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                {2, 1, 1}, {4, 2, 2}))
                     .mesh;

@@ -54,7 +54,7 @@ void expect_near(const std::vector<ResultNumbers>& numbers,
             EXPECT_NEAR(numbers[i][k], expected[i][k], 1e-12 * largest[k]);
 }
 
-TEST(ElementSnapshot, StaysAsItIsWhileTheModelMovesAndIsEdited) {
+TEST(ElementSnapshot, IsUnchangedByMotionAndEdits) {
     for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
         SCOPED_TRACE(topology::traits(kind).name);
         const auto box = topology::box_mesh(kind, Vec3::Zero(), {0.4, 0.4, 0.4}, {4, 4, 4});

@@ -47,7 +47,7 @@ void check(const Kernel& kernel, const typename Kernel::Element& element,
 // nonlinear laws leave differences fewer digits.
 bool is_smooth(double J) { return std::abs(J - 0.4) > 0.02; }
 
-TEST(ElementTangent, IsTheDerivativeOfTheForcesOfStrainedTetrahedra) {
+TEST(ElementTangent, DifferentiatesForcesOfStrainedTetrahedra) {
     for_each_kernel([](const std::string& name, const auto& kernel) {
         SCOPED_TRACE(name);
         test::Random random(1);
@@ -63,7 +63,7 @@ TEST(ElementTangent, IsTheDerivativeOfTheForcesOfStrainedTetrahedra) {
     });
 }
 
-TEST(ElementTangent, IsTheDerivativeOfTheForcesOfFlatAndInvertedTetrahedra) {
+TEST(ElementTangent, DifferentiatesForcesOfFlatAndInvertedTetrahedra) {
     for_each_kernel([](const std::string& name, const auto& kernel) {
         SCOPED_TRACE(name);
         test::Random random(2);
@@ -78,7 +78,7 @@ TEST(ElementTangent, IsTheDerivativeOfTheForcesOfFlatAndInvertedTetrahedra) {
 }
 
 // Ogden's stretches found twice or three times, and nearly so; other laws have no such trouble.
-TEST(ElementTangent, IsTheDerivativeOfTheForcesWhereStretchesAreAlike) {
+TEST(ElementTangent, DifferentiatesForcesWhereStretchesAreAlike) {
     for_each_kernel([](const std::string& name, const auto& kernel) {
         SCOPED_TRACE(name);
         test::Random random(3);
@@ -92,7 +92,7 @@ TEST(ElementTangent, IsTheDerivativeOfTheForcesWhereStretchesAreAlike) {
     });
 }
 
-TEST(ElementTangent, IsTheDerivativeOfTheForcesOfHexahedra) {
+TEST(ElementTangent, DifferentiatesForcesOfHexahedra) {
     test::Random random(4);
     for (const double kappa : {0.0, 3e4, -1e3})
         for (const double ratio : {1.0, 0.4}) {
@@ -124,7 +124,7 @@ TEST(ElementTangent, OfAStressIsThatOfItsForces) {
     EXPECT_LE((K - expected).norm(), 1e-12 * K.norm());
 }
 
-TEST(ElementTangent, HasAPositivePartThatKeepsWhatIsPositive) {
+TEST(ElementTangent, PositivePartKeepsWhatIsPositive) {
     test::Random random(6);
     const MassSpringKernel kernel{1e4};
     const Tetrahedron X = random_tetrahedron(random);

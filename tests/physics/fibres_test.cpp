@@ -37,7 +37,7 @@ TEST(Fibres, AreMeasuredByTheirSquaredStretch) {
     }
 }
 
-TEST(Fibres, ForcesAreMinusTheGradientOfTheEnergyWhateverTheirDirection) {
+TEST(Fibres, DeriveForcesFromEnergyWhateverTheirDirection) {
     test::Random random(2);
     for (const auto& law : {parallel, dispersed})
         for (int i = 0; i < 100; ++i) {
@@ -185,7 +185,7 @@ struct PrincipalState {
     }
 };
 
-TEST(Fibres, BarsAlongAndAcrossThemHaveTheStressOfTheLaw) {
+TEST(Fibres, GiveBarsTheStressOfTheLaw) {
     const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                      {0.1, 0.1, 0.2}, {2, 2, 3}))
                           .mesh;

@@ -28,7 +28,7 @@ std::vector<FreeComponent> free_components_of(const Mesh& mesh, const Constraint
     return find_free_components(mesh, mesh.rest_positions(), Constraints(mesh, {constraint}));
 }
 
-TEST(FreePieces, AreNoneWhereAllNodesAreHeld) {
+TEST(FreeComponents, AreNoneWhereAllNodesAreHeld) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
         EXPECT_TRUE(free_components_of(mesh, hold({0, 1, 2, 3})).empty());
@@ -36,7 +36,7 @@ TEST(FreePieces, AreNoneWhereAllNodesAreHeld) {
     });
 }
 
-TEST(FreePieces, TurnAboutAnEdgeThatIsHeld) {
+TEST(FreeComponents, TurnAboutAnEdgeThatIsHeld) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
         const auto pieces = free_components_of(mesh, hold({0, 1}));
@@ -46,7 +46,7 @@ TEST(FreePieces, TurnAboutAnEdgeThatIsHeld) {
     });
 }
 
-TEST(FreePieces, MoveInAllWaysWhereNothingHoldsThem) {
+TEST(FreeComponents, MoveInAllWaysWhereNothingHoldsThem) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
         const auto pieces =
@@ -56,7 +56,7 @@ TEST(FreePieces, MoveInAllWaysWhereNothingHoldsThem) {
     });
 }
 
-TEST(FreePieces, ThatAreThinEndInEquilibrium) {
+TEST(FreeComponents, ThatAreThinEndInEquilibrium) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
         BoundaryConditions s;

@@ -144,7 +144,7 @@ class PlateRelaxation {
     double dt_, time_ = 0.0;
 };
 
-TEST(HybMssStatic, PlatesGluedToABlockFeelTheForceAndTorqueOfTheReference) {
+TEST(HybMssStatic, PlatesFeelForceAndTorqueOfTheReference) {
     const auto check = [](const Case& c, bool is_static) {
         SCOPED_TRACE(c.row.dump());
         const Mesh mesh = c.mesh();
@@ -197,7 +197,7 @@ double opening(const Mesh& mesh, const Model& model, const Vec3& X) {
 }
 
 // The same state, whether the notch is there from the start or comes while the body moves.
-TEST(HybMssStatic, ANotchedBlockOpensAsTheReferenceWheneverItIsCut) {
+TEST(HybMssStatic, ANotchOpensAsTheReferenceWheneverCut) {
     for (const Case& c : cases_of({"notch"}))
         for (const bool is_cut_before : {true, false}) {
             SCOPED_TRACE(c.row.dump());

@@ -54,7 +54,7 @@ TEST(HybMss, AtRestAndTurnedThereIsNoForce) {
     });
 }
 
-TEST(HybMss, ForcesTurnWithTheCellAndAddUpToNothing) {
+TEST(HybMss, ForcesTurnWithTheCellAndBalance) {
     test::Random random(13);
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         const Cell x = shaken(X, random, 0.2);
@@ -121,7 +121,7 @@ Matrix24 stiffness_at_rest(const HybmssKernel& kernel, const HybmssKernel::Eleme
 
 // What moves a cell without strain costs nothing, and only that does, unless it has no face
 // diagonals: then three more motions do.
-TEST(HybMss, HasSixMotionsWithoutForceAndThreeMoreWithoutFaceDiagonals) {
+TEST(HybMss, HasSixFreeMotionsNineWithoutDiagonals) {
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         if (kernel.material.volume_modulus < 0.0) return;  // lowers other frequencies too
         const Eigen::VectorXd modes = spectrum(stiffness_at_rest(kernel, e, X)).values;
@@ -133,7 +133,7 @@ TEST(HybMss, HasSixMotionsWithoutForceAndThreeMoreWithoutFaceDiagonals) {
     });
 }
 
-TEST(HybMss, StiffnessIsBelowItsBoundAndForCubesAtIt) {
+TEST(HybMss, BoundsItsStiffnessSharplyForCubes) {
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         const Eigen::VectorXd modes = spectrum(stiffness_at_rest(kernel, e, X)).values;
         const auto bounds = kernel.stiffness_bounds(e, X);
@@ -148,7 +148,7 @@ TEST(HybMss, StiffnessIsBelowItsBoundAndForCubesAtIt) {
     });
 }
 
-TEST(HybMss, SpringsOfACubeAreThoseOfThePaper) {
+TEST(HybMss, SpringsOfCubesAreThoseOfThePaper) {
     for (const double A : {0.5, 1.0, 3.0}) {
         const auto shares = spring_contributions(Vec3::Constant(0.2), shear_modulus, A);
         ASSERT_TRUE(shares);
@@ -170,7 +170,7 @@ TEST(HybMss, SpringsOfACubeAreThoseOfThePaper) {
     EXPECT_NEAR(outer->stiffnesses[3], shear_modulus * 0.2 / 2.0, 1e-10);
 }
 
-TEST(HybMss, NoSpringOfABoxIsMissingOrPushesWhenPulled) {
+TEST(HybMss, NoSpringIsMissingOrPushesWhenPulled) {
     test::Random random(15);
     int refused = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -189,7 +189,7 @@ TEST(HybMss, NoSpringOfABoxIsMissingOrPushesWhenPulled) {
 }
 
 // A lattice is strained as its cells are: one row of the table a stretch, for any grid.
-TEST(HybMss, UniaxialTensionAndCompressionAreThoseOfTheReference) {
+TEST(HybMss, UniaxialTensionAndCompressionMatchTheReference) {
     std::ifstream file(std::string(INCISE_DATA_DIR) + "/references/hybmss_uniaxial.json");
     const auto json = nlohmann::json::parse(file);
     int rows = 0;
@@ -261,7 +261,7 @@ TEST(HybMss, RefusesCellsThatAreNoBoxesByName) {
               "needs cubes");
 }
 
-TEST(HybMss, AndHemlRefuseEachOthersCellsAndThoseWithoutForces) {
+TEST(HybMss, AndHemlRefuseCellsNotTheirOwn) {
     const auto tetrahedra = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                Vec3::Constant(1.0), {1, 1, 1});
     EXPECT_NE(refusal(tetrahedra, hybrid_springs(0.3, 1.0))

@@ -168,7 +168,7 @@ TEST(ImplicitEuler, ConvergesWithFirstOrderToTheExplicitMotion) {
     }
 }
 
-TEST(ImplicitEuler, BooksAllEnergy) {
+TEST(ImplicitEuler, AccountsForAllEnergy) {
     for (const NamedMaterial& m : materials()) {
         SCOPED_TRACE(m.name);
         const Mesh mesh = bar(m.kind);

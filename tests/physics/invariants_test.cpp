@@ -86,7 +86,7 @@ struct MomentumScales {
     }
 };
 
-TEST(FreeMotion, KeepsMomentaToTheRandomWalkOfRoundOff) {
+TEST(FreeMotion, KeepsMomentaUpToRandomRoundOff) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     constexpr int num_steps = 5'000;
     constexpr unsigned num_starts = 12;
@@ -155,7 +155,7 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
 
 // For linear forces the staggered energy is constant: what is left of its swing is due to the
 // curvature of the law and so, relative to the energy, in proportion to the amplitude.
-TEST(FreeMotion, OfHybridSpringsKeepsMomentaAndDoesNotDriftInEnergy) {
+TEST(FreeMotion, OfHybridSpringsKeepsMomentaWithoutEnergyDrift) {
     const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
                                                      {1, 1, 1}, {3, 3, 3}))
                           .mesh;

@@ -158,7 +158,7 @@ TEST(Inversion, FlatBodiesRise) {
 }
 
 // What the tangent extension cannot do: there points are minima of the energy.
-TEST(Inversion, OfTheNeoHookeanLawComesBackFromMirrorsButNotFromPoints) {
+TEST(Inversion, NeoHookeanReturnsFromMirrorsNotFromPoints) {
     const Law law = NeoHookean{2500.0, 0.0};
     for (const Mesh& mesh : bodies()) {
         EXPECT_TRUE(run(mesh, law, Start::mirrored, 1).is_at_rest);
@@ -168,7 +168,7 @@ TEST(Inversion, OfTheNeoHookeanLawComesBackFromMirrorsButNotFromPoints) {
 
 // Where a body does not come back, all its elements have: it is wound up, with the ring of
 // elements round an edge going round it twice, which is told.
-TEST(Inversion, OfTheStableNeoHookeanLawLeavesNoElementInverted) {
+TEST(Inversion, StableNeoHookeanLeavesNoElementInverted) {
     for (const NamedLaw& named : test_laws()) {
         const auto* law = std::get_if<StableNeoHookean>(&named.law);
         if (law == nullptr) continue;
@@ -192,7 +192,7 @@ TEST(Inversion, OfTheStableNeoHookeanLawLeavesNoElementInverted) {
 
 // No run ends lost without a sign of it: a message, elements of no volume, or wound edges; and none
 // that comes back has such a sign.
-TEST(Inversion, IsNeverLeftUntold) {
+TEST(Inversion, IsNeverLeftUnreported) {
     for (const NamedLaw& named : test_laws()) {
         SCOPED_TRACE(named.name);
         for_each_start(2, [&](Start start, std::uint64_t seed, const Mesh& mesh) {
@@ -218,7 +218,7 @@ BodyState turned_round_the_diagonal(const Mesh& mesh, double factor) {
 }
 
 // Each element keeps its sign.
-TEST(Winding, IsFoundWhereElementsGoRoundAnEdgeTwice) {
+TEST(Winding, IsFoundWhereElementsCircleAnEdgeTwice) {
     const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                      Vec3::Ones(), {1, 1, 1}))
                           .mesh;
@@ -230,7 +230,7 @@ TEST(Winding, IsFoundWhereElementsGoRoundAnEdgeTwice) {
 }
 
 // Five of six, which close past each other as the lips of a cut do.
-TEST(Winding, IsNotWhereLipsOverlap) {
+TEST(Winding, IsNotFoundWhereBoundariesOverlap) {
     Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                Vec3::Ones(), {1, 1, 1}))
                     .mesh;

@@ -33,7 +33,7 @@ TEST(MassSprings, PullAlongEdgesInProportionToElongation) {
     EXPECT_NEAR(mass_springs.energy(element, x), energy, 1e-14 * springs_young);
 }
 
-TEST(MassSprings, DoNotTellAnElementFromItsMirrorImage) {
+TEST(MassSprings, DoNotDistinguishMirrorImages) {
     test::Random random(2);
     const Tetrahedron X = random_tetrahedron(random);
     const auto element = mass_springs.precompute(X);

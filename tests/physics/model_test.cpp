@@ -45,7 +45,7 @@ TEST(Model, StartsAtRestWithoutForces) {
     }
 }
 
-TEST(LumpedMass, GivesAQuarterOfEachElementToItsCorners) {
+TEST(LumpedMass, GivesEachCornerAQuarterOfAnElement) {
     const auto table = table_of_all_materials();
     for (const auto* family : test::tetrahedral_families()) {
         SCOPED_TRACE(family->name);
@@ -120,7 +120,7 @@ TEST(Model, HasTheEnergyOfDoublesInSinglePrecision) {
 
 // Blocks keep energies, ranges of nodes their sums while nothing moves, and forces may be computed
 // ahead; edits_test.cpp has those of edited bodies.
-TEST(Model, HasTheTotalsAndForcesOfItsPresentState) {
+TEST(Model, HasTotalsAndForcesOfItsPresentState) {
     const topology::MeshData cube = test::jittered_cube(3, 0.2, 2);
     const auto table = table_for(cube);
     const Mesh mesh = Mesh::build(with_regions(cube, table.materials.size())).mesh;
@@ -225,7 +225,7 @@ TEST(Model, RefusesMassSpringsInSinglePrecision) {
                     "mass springs have no forces in single precision"));
 }
 
-TEST(Model, StopsAtANonFiniteStateAndNamesAnElement) {
+TEST(Model, NamesAnElementOfANonFiniteState) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1e3, 1e3}));
     BodyState state = rest_state(mesh);

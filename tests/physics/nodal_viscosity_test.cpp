@@ -204,7 +204,7 @@ TEST(NodalViscosity, DoesNotTurnWithTheBody) {
 
 // What advance() returns is the work done on the element less the growth of its energy, also
 // through flat states.
-TEST(NodalViscosity, TakesTheWorkThatItsEnergyDoesNotShow) {
+TEST(NodalViscosity, DissipatesTheWorkMissingFromItsEnergy) {
     for_each_nodal_kernel([&](const std::string& name, auto kernel) {
         SCOPED_TRACE(name);
         const auto error = [&](int num_steps) {

@@ -67,7 +67,7 @@ TEST(NodeLanes, MoveAsNodesByThemselvesToTheBit) {
     }
 }
 
-TEST(NodeLanes, AddUpToTheSameBitsOnEachProcessor) {
+TEST(NodeLanes, SumToTheSameBitsOnEachProcessor) {
     const StepSums expected = Body(504).move(Processor::plain);
     for (const Processor processor : processors_at_hand()) {
         const StepSums sums = Body(504).move(processor);
@@ -75,7 +75,7 @@ TEST(NodeLanes, AddUpToTheSameBitsOnEachProcessor) {
     }
 }
 
-TEST(NodeLanes, TellOfAnyNodeThatIsNoLongerAtAFinitePlace) {
+TEST(NodeLanes, ReportAnyNodeAtANonFinitePosition) {
     for (const Processor processor : processors_at_hand())
         for (const double force :
              {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})

@@ -150,7 +150,7 @@ void for_each_case_of_ogden(Visit visit) {
             }
 }
 
-TYPED_TEST(SimdHemlElementsOf, HaveTheForcesOfTheReferenceWhereStretchesAreAlike) {
+TYPED_TEST(SimdHemlElementsOf, HaveReferenceForcesWhereStretchesAreAlike) {
     test::Random random(8);
     for_each_case_of_ogden([&](const Ogden& law, const Vec3& stretches) {
         HemlKernel kernel{law, 0.4};
@@ -313,7 +313,7 @@ TEST(SimdHemlElements, HaveNoStressAtRestButRounding) {
     });
 }
 
-TEST(SimdHemlElements, HaveTheSameBitsOfResultsOnEachProcessor) {
+TEST(SimdHemlElements, HaveTheSameResultBitsOnEachProcessor) {
     test::Random random(17);
     for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
         SCOPED_TRACE(name);
@@ -404,7 +404,7 @@ TEST(SimdHemlElements, HaveNoEnergyAtRest) {
     });
 }
 
-TEST(SimdHemlElements, HaveTheSameBitsOfEnergyOnEachProcessor) {
+TEST(SimdHemlElements, HaveTheSameEnergyBitsOnEachProcessor) {
     test::Random random(14);
     for_each_heml_kernel([&](const std::string& name, const HemlKernel& kernel) {
         SCOPED_TRACE(name);

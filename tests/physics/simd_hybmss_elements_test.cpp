@@ -80,7 +80,7 @@ void expect_forces_of_the_reference(const CellsInLanes<Number>& all, double roun
     }
 }
 
-TEST(SimdHybmssElements, HaveTheForcesOfTheReferenceAndTheSameBitsOnEachProcessor) {
+TEST(SimdHybmssElements, HaveReferenceForcesAlikeOnEachProcessor) {
     test::Random random(12);
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         expect_forces_of_the_reference(CellsInLanes<double>(kernel, X, e, random), 1e-12);
@@ -139,7 +139,7 @@ TEST(SimdHybmssElements, HaveNoEnergyAndStressAtRest) {
 }
 
 // Boxes that are cubes but for rounding may have a few, and stiff cells push hard.
-TEST(SimdHybmssElements, HaveTheEnergiesOfSpringsThatPushAndTheStressesOfStiffCells) {
+TEST(SimdHybmssElements, HaveResultsOfPushingSpringsAndStiffCells) {
     test::Random random(16);
     const Cell X = box({1.0, 1.0, 1.000005});
     const HybmssKernel soft{hybrid_springs(0.3, 1e-6)};
@@ -163,7 +163,7 @@ TEST(SimdHybmssElements, HaveTheEnergiesOfSpringsThatPushAndTheStressesOfStiffCe
     }
 }
 
-TEST(SimdHybmssElements, HaveTheSameBitsOfEnergiesAndStressesOnEachProcessor) {
+TEST(SimdHybmssElements, HaveTheSameResultBitsOnEachProcessor) {
     test::Random random(14);
     for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const auto& e) {
         const CellsInLanes<double> all(kernel, X, e, random);

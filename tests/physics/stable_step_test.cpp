@@ -70,7 +70,7 @@ std::vector<SmallBody> small_bodies() {
     return bodies;
 }
 
-TEST(StableStep, IsNeverAboveTheTrueOneAndNotFarBelow) {
+TEST(StableStep, IsBelowTheTrueOneButNotFar) {
     for (const SmallBody& body : small_bodies()) {
         SCOPED_TRACE(body.name);
         const Mesh mesh = Mesh::build(body.data).mesh;

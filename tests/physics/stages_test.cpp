@@ -115,7 +115,7 @@ TEST(Stages, ImpulsesChangeMomentumAndWork) {
                 1e-12 * model.external_work());
 }
 
-TEST(Stages, SupportsBearTheImpulsesOnTheirNodes) {
+TEST(Stages, ConstraintsBearTheImpulsesOnTheirNodes) {
     const Mesh mesh = bar();
     const Vec3 impulse(1e-3, -2e-3, 5e-4);
     BoundaryConditions held;
@@ -133,7 +133,7 @@ TEST(Stages, SupportsBearTheImpulsesOnTheirNodes) {
     EXPECT_NEAR(model.external_work(), 0.0, 1e-20);
 }
 
-TEST(ForceTerms, BearTheWeightWithSupportsInStatics) {
+TEST(ForceTerms, BearTheWeightWithConstraintsInStatics) {
     for (const NamedMaterial& material : materials_of_all_methods()) {
         SCOPED_TRACE(material.name);
         const Mesh mesh = bar(material.kind);

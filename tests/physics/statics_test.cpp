@@ -101,7 +101,7 @@ TEST(Statics, EndWhereDampedMotionEnds) {
     }
 }
 
-TEST(Statics, EndInTheSameStateWheneverTheBodyIsCut) {
+TEST(Statics, EndAlikeWheneverTheBodyIsCut) {
     for (const NamedMaterial& m : materials_of_all_methods()) {
         SCOPED_TRACE(m.name);
         std::vector<std::vector<Vec3>> ends;
@@ -123,7 +123,7 @@ TEST(Statics, EndInTheSameStateWheneverTheBodyIsCut) {
     }
 }
 
-TEST(Statics, BookTheWorkThatTheBodyKeeps) {
+TEST(Statics, RecordTheWorkThatTheBodyKeeps) {
     const Mesh mesh = bar();
     std::vector<double> errors;
     for (const int num_steps : {4, 8}) {
@@ -141,7 +141,7 @@ TEST(Statics, BookTheWorkThatTheBodyKeeps) {
     EXPECT_NEAR(errors[0] / errors[1], 4.0, 1.0);  // of second order
 }
 
-TEST(Statics, BookWhatACutLetsGoAsDissipated) {
+TEST(Statics, RecordWhatACutReleasesAsDissipated) {
     Mesh mesh = bar();
     BoundaryConditions s = loaded(mesh);
     s.gravity = Vec3::Zero();
@@ -159,7 +159,7 @@ TEST(Statics, BookWhatACutLetsGoAsDissipated) {
     EXPECT_NEAR(model.dissipated_energy() - dissipated, lost, 0.02 * lost);
 }
 
-TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
+TEST(Statics, LeaveFreeComponentsAndRefusePushedOnes) {
     Mesh mesh = bar();
     open_across(mesh, 0.1, 0.0);  // all through
     BoundaryConditions s;
@@ -192,7 +192,7 @@ TEST(Statics, LeaveAFreePieceWhereItIsAndRefuseOneThatIsPushed) {
 }
 
 // A piece held at one edge hangs there like a door that nothing turns; led away it comes along.
-TEST(Statics, LeadAPieceThatIsHeldInPart) {
+TEST(Statics, LeadAComponentThatIsHeldInPart) {
     const Mesh mesh = bar();
     BoundaryConditions s;
     Constraint tongs = holding(
@@ -208,7 +208,7 @@ TEST(Statics, LeadAPieceThatIsHeldInPart) {
 }
 
 // Held in z only, on ice: it may slide and turn about z, and nothing makes it do so.
-TEST(Statics, FindTheEquilibriumOfABodyThatCouldSlide) {
+TEST(Statics, FindTheEquilibriumOfBodiesFreeToSlide) {
     const Mesh mesh = bar();
     BoundaryConditions s;
     s.gravity = {0.0, 0.0, -5.0};
@@ -226,7 +226,7 @@ TEST(Statics, FindTheEquilibriumOfABodyThatCouldSlide) {
 }
 
 // Far beyond its buckling load a column is pressed together; tangents are indefinite on the way.
-TEST(Statics, FindAStableStateOfAColumnThatBuckles) {
+TEST(Statics, FindAStableStateOfABucklingColumn) {
     const Mesh mesh = Mesh::build(topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(),
                                                      {0.4, 0.04, 0.04}, {16, 2, 2}))
                           .mesh;
@@ -272,7 +272,7 @@ TEST(Statics, SayWhereNoEquilibriumIs) {
     }
 }
 
-TEST(LoadTangents, AreTheSymmetricPartOfTheDerivativeOfPressure) {
+TEST(LoadTangents, AreTheSymmetricPartOfThePressureDerivative) {
     for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
         const Mesh mesh =
             Mesh::build(topology::box_mesh(kind, Vec3::Zero(), {1, 1, 1}, {1, 1, 1})).mesh;

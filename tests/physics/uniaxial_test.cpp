@@ -135,7 +135,7 @@ Vec3 principal_stress(const L& law, const Vec3& stretches) {
 // bisection of the lateral stress.
 TEST(UniaxialBars, HaveTheStressOfTheTextbookEnergy) {
     for (const NamedLaw& named : test_laws()) {
-        if (has_fibres(named.law)) continue;  // Fibres.BarsAlongAndAcrossThem...
+        if (has_fibres(named.law)) continue;  // Fibres.GiveBarsTheStressOfTheLaw
         SCOPED_TRACE(named.name);
         std::visit(
             [&](const auto& law) {
@@ -164,7 +164,7 @@ TEST(UniaxialBars, HaveTheStressOfTheTextbookEnergy) {
 
 // With a stretch e along the axis and t across, the side is free where
 // mu (1 - 1/(e^2 + 2 t^2 + 1)) + lambda (e t^2 - alpha) e = 0: a quadratic equation for t^2.
-TEST(UniaxialStretch, OfTheStableNeoHookeanLawIsItsClosedForm) {
+TEST(UniaxialStretch, OfStableNeoHookeanIsItsClosedForm) {
     for (const auto& [rest_lambda, rest_mu] :
          {std::pair(5769.0, 3846.0), std::pair(0.0, 5000.0), std::pair(1.6e5, 3356.0)}) {
         const double mu = 4.0 / 3.0 * rest_mu, lambda = rest_lambda + 5.0 / 6.0 * rest_mu;

@@ -291,7 +291,7 @@ TEST(Viscosity, TurnsWithTheBody) {
 
 // What advance() returns is the work done on the element less the growth of its energy, also on
 // the way through a flat state and back.
-TEST(Viscosity, TakesTheWorkThatItsEnergyDoesNotShow) {
+TEST(Viscosity, DissipatesTheWorkMissingFromItsEnergy) {
     for_each_viscous_kernel([&](const std::string& name, auto kernel) {
         SCOPED_TRACE(name);
         const auto error = [&](int num_steps) {

@@ -122,7 +122,7 @@ TEST(ViscousEdits, ShareTheMemoryAmongCopiesOfANode) {
         EXPECT_LE((after[n] - before[n]).norm(), 1e-13 * largest(before));
 }
 
-TEST(ViscousEdits, KeepTheHistoryOfAFreshBodyAndCanBeUndone) {
+TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         BodyWithPast body(seed);
         test::Random random(seed);

@@ -103,7 +103,7 @@ void expect_equal(const Outcome& a, const Outcome& b) {
     EXPECT_EQ(a.dissipated, b.dissipated);
 }
 
-TEST(WholeStep, HasTheSameBitsOnAnyNumberOfThreads) {
+TEST(WholeStep, HasTheSameBitsForAnyThreadCount) {
     for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
         SCOPED_TRACE(topology::traits(kind).name);
         const Mesh mesh = cube(kind);
@@ -122,7 +122,7 @@ TEST(WholeStep, HasTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST(WholeStep, OfAnEditedBodyIsThatOfOneBuiltAnew) {
+TEST(WholeStep, OfAnEditedBodyEqualsAFreshOne) {
     for (const CellKind kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
         SCOPED_TRACE(topology::traits(kind).name);
         Mesh mesh = cube(kind);
@@ -139,7 +139,7 @@ TEST(WholeStep, OfAnEditedBodyIsThatOfOneBuiltAnew) {
 }
 
 // Implicit steps and statics ask for them at positions of their own.
-TEST(WholeStep, HasTheLoadsOfTheEditedBodyBeforeItsForcesAreComputed) {
+TEST(WholeStep, HasLoadsOfEditedBodiesBeforeTheirForces) {
     Mesh mesh = bar();
     Model edited(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));
     topology::MeshEdit edit(mesh);

@@ -138,7 +138,7 @@ TEST(SteadyState, AllocatesNothing) {
 // A thread has a buffer for positions, and one more for those before if the body is viscous, which
 // it takes when it first gets work: it may come to that in any step. TBB takes memory of its own,
 // not by operator new, for tasks that go to the other thread.
-TEST(SteadyState, AllocatesNothingInTwoThreadsButTheBuffersOfTheSecond) {
+TEST(SteadyState, AllocatesOnlyTheSecondThreadsBuffers) {
     for (const auto& [name, body] : bodies) {
         SCOPED_TRACE(name);
         const bool is_viscous = body.find("prony") != std::string::npos;

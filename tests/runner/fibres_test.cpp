@@ -69,7 +69,7 @@ TEST(FibredBody, IsStifferAlongItsFibresThanAcross) {
     EXPECT_GT(along, 2.0 * across);
 }
 
-TEST(FibredBody, TakesDirectionsFromTheMeshFileAndWritesThemToFrames) {
+TEST(FibredBody, CarriesDirectionsFromTheMeshToFrames) {
     const RunFolder folder;
     io::Frame frame = frame_with_vectors("collagen");
     io::write_vtu(folder / "body.vtu", frame);
@@ -116,7 +116,7 @@ TEST(FibredBody, LeavesFramesOfOthersAlone) {
         EXPECT_NE(field.name, "fibre");
 }
 
-TEST(FibredBody, RefusesVectorsWithoutDirectionWhereItsMaterialHasFibres) {
+TEST(FibredBody, RefusesVectorsWithoutDirectionForFibres) {
     const RunFolder folder;
     const auto refusal = [&](const io::Frame& frame, const std::string& materials) {
         io::write_vtu(folder / "body.vtu", frame);

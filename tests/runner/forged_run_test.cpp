@@ -103,7 +103,7 @@ TEST_F(ForgedRun, IsNotWhatItSeemsToBe) {
     EXPECT_TRUE(good_ == again);
 }
 
-TEST_F(ForgedRun, IsRefusedOrGoesOnWhateverBytesOfItsCheckpointAreChanged) {
+TEST_F(ForgedRun, IsRefusedOrGoesOnWhateverBytesChange) {
     Random random(4);
     int num_refused = 0;
     for (int i = 0; i < test::num_cases(400); ++i) {
@@ -146,7 +146,7 @@ TEST_F(ForgedRun, IsRefusedOrGoesOnWhateverBytesOfItsCheckpointAreChanged) {
     EXPECT_GT(num_resumed_, test::num_cases(25));  // other positions and velocities, say
 }
 
-TEST_F(ForgedRun, IsRefusedWhereItsRecordsAreOtherThanTheCheckpointSays) {
+TEST_F(ForgedRun, IsRefusedWhereRecordsContradictItsCheckpoint) {
     io::write_file(out_ / "summary.json", "{}");
     for (const char* name : {"history.csv", "edits.jsonl", "frames/scene_000001.vtu"}) {
         SCOPED_TRACE(name);
@@ -192,7 +192,7 @@ TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
     EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
 }
 
-TEST_F(ForgedRun, IsRefusedIfAnotherBuildOfThisVersionHasWrittenIt) {
+TEST_F(ForgedRun, IsRefusedIfAnotherBuildHasWrittenIt) {
     std::string bytes = good_;
     const auto version = ArchiveReader(good_).read<std::string>();
     ++bytes[sizeof(std::uint64_t) + version.size()];  // the format is behind it
@@ -201,7 +201,7 @@ TEST_F(ForgedRun, IsRefusedIfAnotherBuildOfThisVersionHasWrittenIt) {
     EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
 }
 
-TEST_F(ForgedRun, IsRefusedWhereItsBooksAreNotThoseOfItsEdits) {
+TEST_F(ForgedRun, IsRefusedWhereItsLedgerContradictsItsEdits) {
     using Forge = std::function<void(EditRecord&)>;
     const auto refusal = [&](const Forge& forge) {
         const auto bytes_of = [](const EditRecord& edit) {

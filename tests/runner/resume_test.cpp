@@ -111,7 +111,7 @@ path = [{ time = 0.01, at = [-0.02, 0, 0] }, { time = 0.06, at = [0.06, 0, 0.01]
 
 const std::string output = "[output]\ninterval = 0.04\ncompression = \"none\"\n";
 
-TEST(ResumedRun, EqualsOneNeverStoppedAmongCutsOfABladeThatSplits) {
+TEST(ResumedRun, EqualsOneNeverStoppedWithASplittingBlade) {
     const RunFolder folder;
     expect_resumable(folder,
                      soft_cube + pulled_lid + splitting_blade + three_loads + output +
@@ -159,7 +159,7 @@ TEST(ResumedRun, EqualsOneNeverStoppedWithViscosity) {
     }
 }
 
-TEST(ResumedRun, EqualsOneNeverStoppedWithFibresFromTheMeshFile) {
+TEST(ResumedRun, EqualsOneNeverStoppedWithMeshFibres) {
     const RunFolder folder;
     io::Frame frame;
     frame.mesh = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
@@ -276,7 +276,7 @@ class Resume : public testing::Test {
     Scenario scenario_ = folder_.scenario(text_);
 };
 
-TEST_F(Resume, KeepsTheLastTwoCheckpointsWhichAreTheSameForTheSameRun) {
+TEST_F(Resume, KeepsTheLastTwoCheckpointsReproducibly) {
     stop();
     const auto kept = checkpoints();
     ASSERT_EQ(kept.size(), 2u);
@@ -320,7 +320,7 @@ TEST_F(Resume, TakesTheCheckpointBeforeADamagedOne) {
               std::string::npos);
 }
 
-TEST_F(Resume, RemovesDamagedCheckpointsThatItSkipsAndNeverAWholeOneForThem) {
+TEST_F(Resume, RemovesOnlyDamagedCheckpointsThatItSkips) {
     stop();
     const auto kept = checkpoints();
     ASSERT_EQ(kept.size(), 2u);
@@ -352,7 +352,7 @@ TEST_F(Resume, RemovesDamagedCheckpointsThatItSkipsAndNeverAWholeOneForThem) {
     EXPECT_TRUE(read_text(kept[0]) == good);
 }
 
-TEST_F(Resume, LeavesTheCheckpointsOfARunThatNoSignalStopped) {
+TEST_F(Resume, LeavesTheCheckpointsOfAnUnstoppedRun) {
     run(scenario_, folder_ / "whole");
     const auto whole = files_of(folder_ / "whole");
     Simulation counted(scenario_);
@@ -410,7 +410,7 @@ TEST_F(Resume, RefusesAnotherScenarioAndNamesWhatDiffers) {
     EXPECT_EQ(refusal("# a comment\n" + text_), "no error");
 }
 
-TEST_F(Resume, RefusesWithNothingTouchedWhereFilesOfTheRunAreMissing) {
+TEST_F(Resume, RefusesMissingFilesAndTouchesNothing) {
     const auto refusal = [&](const std::function<void()>& harm) {
         stop();
         harm();
@@ -431,7 +431,7 @@ TEST_F(Resume, RefusesWithNothingTouchedWhereFilesOfTheRunAreMissing) {
               std::string::npos);
 }
 
-TEST_F(Resume, IsNoneOfANewRunInTheFolder) {
+TEST_F(Resume, FindsNoCheckpointOfANewRun) {
     stop();
     {
         Simulation simulation(scenario_);
@@ -442,7 +442,7 @@ TEST_F(Resume, IsNoneOfANewRunInTheFolder) {
               std::string::npos);
 }
 
-TEST_F(Resume, ContinuesRowsOfARunThatFailsLaterOn) {
+TEST_F(Resume, ContinuesRowsOfARunThatFailsLater) {
     // The lid is torn away after the stop: the summary of the failure tells the last row.
     const std::string text = text_ + R"([[constraint]]
 where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }

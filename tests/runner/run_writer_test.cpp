@@ -68,7 +68,7 @@ class RunFiles : public testing::Test {
     Simulation simulation_;
 };
 
-TEST_F(RunFiles, HistoryHasItsColumnsAndARowForEachFrameAndEdit) {
+TEST_F(RunFiles, HistoryHasARowPerFrameAndEdit) {
     const auto lines = lines_of(folder_ / "out/history.csv");
     EXPECT_EQ(lines.at(0),
               "time,step,nodes,elements,components,mass,volume,kinetic_energy,elastic_energy,"
@@ -304,7 +304,7 @@ TEST_F(RunFiles, FramesHoldTheState) {
     EXPECT_NEAR(energy, model.totals().elastic_energy, 1e-5 * model.totals().elastic_energy);
 }
 
-TEST_F(RunFiles, AFrameReadAsAMeshIsTheCutBodyAtRest) {
+TEST_F(RunFiles, FramesReadAsTheCutBodyAtRest) {
     const std::string frame = "out/frames/scene_000010.vtu";
     const auto file = io::read_mesh(folder_ / frame);
     const auto data = topology::to_mesh_data(mesh(), mesh().rest_positions());
@@ -329,7 +329,7 @@ TEST_F(RunFiles, AFrameReadAsAMeshIsTheCutBodyAtRest) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "next/scene.pvd"));
 }
 
-TEST(FrameBuilder, FinishesTheFrameOfTheMomentItBeganAt) {
+TEST(FrameBuilder, FinishesTheFrameOfItsStartingTime) {
     Simulation simulation(scenario_of(scene));
     while (simulation.time() < 0.02) simulation.step();
     const auto& fields = simulation.scenario().output.fields;
@@ -374,7 +374,7 @@ TEST(RunWriter, AShorterRunReplacesALongerOne) {
     EXPECT_EQ(lines_of(folder / "out/history.csv").size(), 4u);
 }
 
-TEST(RunWriter, ARunWithoutFramesHasItsBeginningAndItsEnd) {
+TEST(RunWriter, ARunWithoutFramesHasBeginningAndEnd) {
     const RunFolder folder;
     run(folder.scenario(soft_cube + dynamics(0.05) + "[output]\ninterval = 0\n"), folder / "out");
     const auto lines = lines_of(folder / "out/history.csv");

@@ -36,7 +36,7 @@ std::string message_of(const std::function<void()>& action) {
     return "no PhysicsError";
 }
 
-TEST(Simulation, TellsAllThatIsAtFaultWithTheBodyAtOnce) {
+TEST(Simulation, ReportsAllErrorsOfTheBodyAtOnce) {
     const RunFolder folder;
     const Scenario scenario = folder.scenario(R"([mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
@@ -101,7 +101,7 @@ TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
     EXPECT_EQ(refusal("", 0.3), "no InputError");
 }
 
-TEST(Simulation, FramesFallOnMultiplesAndTheRunEndsAtItsEnd) {
+TEST(Simulation, FramesFallOnMultiplesUpToTheEnd) {
     struct Case {
         double interval, end_time;
         std::size_t num_frames;
@@ -136,7 +136,7 @@ TEST(Simulation, FramesFallOnMultiplesAndTheRunEndsAtItsEnd) {
         }
 }
 
-TEST(Simulation, AutomaticStepsStayBelowTheBoundAndFollowTheEdits) {
+TEST(Simulation, AutomaticStepsFollowEditsBelowTheBound) {
     Scenario scenario = scenario_of(soft_cube + two_tools + dynamics(0.2));
     for (const double safety : {0.8, 0.3}) {
         scenario.dynamics.safety = safety;
@@ -211,7 +211,7 @@ path = [{ time = 0.05, at = [0, 0, 0.2] }, { time = 0.1, at = [0, 0, 0.13] }]
 )";
 }
 
-TEST(Simulation, RefusesAFixedStepThatAnEditMakesTooLarge) {
+TEST(Simulation, RefusesFixedStepsThatEditsMakeTooLarge) {
     const RunFolder folder;
     Scenario scenario = folder.scenario(layered_body(folder) + dynamics(0.2, "time_step = 1e-6"));
     double before = 0.0, after = 0.0;
@@ -267,7 +267,7 @@ fix = "xyz"
     return simulation.warnings();
 }
 
-TEST(Simulation, WarnsOfShortStepsWithKeysThatTheToolHas) {
+TEST(Simulation, WarnsOfShortStepsWithTheToolsKeys) {
     for (const auto& [tool, remedy] : {std::pair(R"([[tool]]
 name = "saw"
 kind = "carver"
@@ -296,7 +296,7 @@ path = [{ time = 0, at = [-0.1, 0, 0] }, { time = 0.005, at = [0.2, 0, 0] }]
     }
 }
 
-TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
+TEST(Simulation, RepeatedEndsInTheSameBits) {
     const RunFolder folder;
     const Scenario scenario =
         folder.scenario(soft_cube + two_tools + dynamics(0.2, "gravity = [0, 0, -9.81]"));
@@ -314,7 +314,7 @@ TEST(Simulation, OfTheSameScenarioEndsInTheSameBits) {
     EXPECT_EQ(num_files, 21u + 4u + 2u);  // frames; two indexes, history, edits; checkpoints
 }
 
-TEST(Simulation, InSinglePrecisionEndsNearTheOneInDoubles) {
+TEST(Simulation, InSinglePrecisionEndsNearDoublePrecision) {
     for (const std::string method :
          {"law = \"saint-venant-kirchhoff\"", "prony = [{ alpha = 0.3, tau = 0.05 }]"}) {
         SCOPED_TRACE(method);
@@ -408,7 +408,7 @@ TEST(Ledger, AccountsForEveryEdit) {
     EXPECT_GE(edits.back().after.components, 2);
 }
 
-TEST(Ledger, EnergyIsMissingToTheOrderOfTheStepOnly) {
+TEST(Ledger, EnergyErrorIsOfTheOrderOfSteps) {
     // The grip sets off and stops with a jump of its velocity.
     const std::string moved = R"(
 [[constraint]]

@@ -96,7 +96,7 @@ steps = )" << num_steps
     }
 }
 
-TEST(StaticRun, TellsOfElementsThatEndInverted) {
+TEST(StaticRun, ReportsElementsThatEndInverted) {
     const auto pressed = [](const std::string& depth) {
         return R"(
 [mesh]
@@ -132,7 +132,7 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 0.1, by = [0, 0, -)" +
 }
 
 // All corners of a cube are led to where their angles about its diagonal are twice what they were.
-TEST(Simulation, TellsOfABodyThatEndsWoundUp) {
+TEST(Simulation, ReportsABodyThatEndsWoundUp) {
     std::ostringstream text;
     text << R"(
 [mesh]
@@ -170,13 +170,13 @@ end_time = 1
         << simulation.warnings().back();
 }
 
-TEST(StaticRun, TakesOneLoadStepForEachFrameUnlessToldOtherwise) {
+TEST(StaticRun, TakesOneLoadStepPerFrameByDefault) {
     Simulation simulation(scenario_of(pulled_and_cut + dynamics(0.2, "mode = \"static\"")));
     run(simulation);
     EXPECT_EQ(simulation.num_steps(), 5u);
 }
 
-TEST(StaticRun, RefusesAPieceThatFalls) {
+TEST(StaticRun, RefusesAComponentThatFalls) {
     const std::string text = soft_cube + R"(
 [[tool]]
 kind = "blade"
@@ -226,7 +226,7 @@ path = [{ time = 0.02, at = [0, 0, 0] }, { time = 0.03, at = [0, 0, 0] }]
     }
 }
 
-TEST(SolverKeys, ThatDoNotGoTogetherAreToldOf) {
+TEST(SolverKeys, ThatDoNotGoTogetherAreReported) {
     const auto report = [](const std::string& more) {
         return RunFolder().report(soft_cube + dynamics(0.2, more));
     };

@@ -66,7 +66,7 @@ TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
     EXPECT_LT(area, 0.014);
 }
 
-TEST(SplittingBlade, OfTheSameScenarioEndsInTheSameBits) {
+TEST(SplittingBlade, RepeatedEndsInTheSameBits) {
     const Scenario scenario = scenario_of(soft_cube + slanting_blade + dynamics(0.15, gravity));
     Simulation one(scenario), other(scenario);
     run(one);
@@ -130,15 +130,15 @@ poisson = 0.4
     }
 }
 
-TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreads) {
+TEST(SplittingBlade, EndsAlikeForAnyNumberOfThreads) {
     expect_the_same_bits_for_any_number_of_threads("");
 }
 
-TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreadsInViscousTissue) {
+TEST(SplittingBlade, EndsAlikeForAnyThreadsInViscousTissue) {
     expect_the_same_bits_for_any_number_of_threads("prony = [{ alpha = 0.3, tau = 0.05 }]\n");
 }
 
-TEST(SplittingBlade, EndsInTheSameBitsForAnyNumberOfThreadsInSinglePrecision) {
+TEST(SplittingBlade, EndsAlikeForAnyThreadsInSinglePrecision) {
     expect_the_same_bits_for_any_number_of_threads("", "single");
 }
 
@@ -157,7 +157,7 @@ path = [{ time = 0.02, at = [0, -0.04, 0] }, { time = 0.13, at = [0, 0.14, 0] }]
     EXPECT_EQ(simulation.edits().back().after.components, 4);
 }
 
-TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
+TEST(SplittingBlade, MayCrossAnotherInTheBodyMeanwhile) {
     // The second one meets the front of the first one all the way, before and after its turn.
     for (const char* order : {"knife", "other"})
         for (const char* snap : {"0", "0.6"}) {
@@ -179,7 +179,7 @@ TEST(SplittingBlade, MayCrossAnotherThatIsInTheBodyAtTheSameTime) {
         }
 }
 
-TEST(SplittingBlade, GoesOnAfterAPlaneHasCutWhatItIsIn) {
+TEST(SplittingBlade, GoesOnAfterAPlaneCutsItsTissue) {
     for (const char* snap : {"0", "0.6"}) {
         SCOPED_TRACE(testing::Message() << "snap " << snap);
         Simulation simulation(scenario_of(soft_cube + dynamics(0.12) + R"(
@@ -204,7 +204,7 @@ snap = )" + snap + "\n"));
     }
 }
 
-TEST(SplittingBlade, GoesOnWhereItLeftOffWhenItDrawsBack) {
+TEST(SplittingBlade, GoesOnWhereItLeftOffAfterRetreat) {
     // Half way in, out again, and then right through.
     Simulation simulation(scenario_of(soft_cube + dynamics(0.3) + R"(
 [[tool]]
@@ -236,7 +236,7 @@ double opened_area(const std::string& edge, const std::string& path, const std::
 const std::string along_y = "[[0, -0.1, 0.0473], [0, 0.2, 0.0473]]";
 
 // The last key may only repeat the one before: the way into the body tells where ahead is.
-TEST(SplittingBlade, CutsUpToWhereItsWayEnds) {
+TEST(SplittingBlade, CutsUpToWhereItsPathEnds) {
     const std::string way =
         "{ time = 0.02, at = [-0.05, 0, 0] }, { time = 0.06, at = [0.0631, 0, 0] }";
     EXPECT_NEAR(opened_area(along_y, way), 0.00631, 1e-8);
@@ -245,7 +245,7 @@ TEST(SplittingBlade, CutsUpToWhereItsWayEnds) {
 }
 
 // Rounding turns what is interpolated between two equal poses.
-TEST(SplittingBlade, CutsUpToWhereItRestsIfItIsTurned) {
+TEST(SplittingBlade, CutsUpToWhereItRestsIfTurned) {
     const std::string edge = "[[0, -0.1, -0.2], [0, 0.1, 0.2]]";
     const std::string turn = ", rotate = { axis = [1, 1, 0], angle = 1.70 } }";
     const std::string way = "{ time = 0.02, at = [-0.15, 0.05, 0.0473]" + turn +
@@ -256,7 +256,7 @@ TEST(SplittingBlade, CutsUpToWhereItRestsIfItIsTurned) {
 
 // A blade that stands, into which the tissue moves, and one that the tissue overtakes: the cut
 // tells where ahead is.
-TEST(SplittingBlade, CutsUpToWhereTheTissueHasComeToIt) {
+TEST(SplittingBlade, CutsUpToWhereTissueMeetsIt) {
     const auto moved_by = [](const std::string& way) {
         return R"([[constraint]]
 name = "all"

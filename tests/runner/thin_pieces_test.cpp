@@ -127,7 +127,7 @@ void expect_parted(const std::string& materials) {
         }
 }
 
-TEST(ExactCut, NextToAPlaneOfTheMeshLeavesSoundSteps) {
+TEST(ExactCut, NextToAMeshPlaneLeavesSoundSteps) {
     expect_parted("[[material]]\ndensity = 1000\nyoung = 2e4\npoisson = 0.4\n");
 }
 

@@ -22,7 +22,7 @@ double angle_between(const Pose& pose, double angle, const Vec3& axis) {
         Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
 }
 
-TEST(Tool, IsAtItsKeysAndOnStraightLinesBetweenThem) {
+TEST(Tool, IsAtItsKeysAndStraightBetweenThem) {
     const ToolPath tool({{1.0, pose_at({0, 0, 0})},
                          {2.0, pose_at({1, 2, -4}, Vec3::UnitZ(), 0.5 * pi)},
                          {4.0, pose_at({1, 0, 0}, Vec3::UnitX(), pi / 3)}});
@@ -54,7 +54,7 @@ TEST(Tool, StaysAtItsEndsBeforeAndAfter) {
     EXPECT_NEAR(angle_between(tool.pose(9.0), 1.0, Vec3::UnitZ()), 0.0, 1e-7);
 }
 
-TEST(Tool, IsThereFromItsFirstToItsLastKey) {
+TEST(Tool, IsPresentFromFirstToLastKey) {
     const ToolPath tool({{1.0, {}}, {2.0, {}}});
     EXPECT_FALSE(tool.is_present(0.0, 0.5));
     EXPECT_FALSE(tool.is_present(0.5, 1.0));
@@ -79,7 +79,7 @@ bool may_meet_unit_box(const ToolSpec& spec) {
     return may_meet(build_tool(spec, warnings), {Vec3::Zero(), Vec3::Ones()});
 }
 
-TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
+TEST(Tool, MayMeetABoxByPathAndReach) {
     const auto at = [](double x) { return TimeKey<Pose>{0.0, pose_at({x, 0.5, 0.5})}; };
     const auto there = [](double x) { return TimeKey<Pose>{1.0, pose_at({x, 0.5, 0.5})}; };
     const Carver ball{cutting::Sphere{0.25}};
@@ -103,7 +103,7 @@ TEST(Tool, MayMeetABoxByItsWayAndItsReach) {
     EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
 }
 
-TEST(Tool, MayMeetWhateverItComesToWhileItTurns) {
+TEST(Tool, MayMeetWhateverItReachesWhileTurning) {
     // Between its keys the tip is farther out in x than at either of them.
     for (const double angle : {0.1, 0.5, 1.0, 0.99 * pi}) {
         const Pose down = pose_at({0, 0, 0}, Vec3::UnitZ(), -angle / 2),
@@ -161,7 +161,7 @@ path = [{ time = )" + time + ", at = [0.05, 0.05, 0.1] }]\n"));
     }
 }
 
-TEST(Tool, PathThatEndsBetweenTwoStepsIsFollowedToItsEnd) {
+TEST(Tool, FollowsItsPathToAnEndBetweenSteps) {
     // The last bit of the blade's way lies within a step; without it the cube holds together.
     Simulation simulation(scenario_of(soft_cube + dynamics(0.1) + R"(
 [[tool]]

@@ -46,7 +46,7 @@ Lines warnings_of(const RunFolder& folder, const Scenario& scenario) {
     return warnings;
 }
 
-TEST(UnweldedBody, IsToldOfAndFallsApart) {
+TEST(UnweldedBody, IsReportedAndFallsApart) {
     const RunFolder folder;
     io::write_vtu(folder / "body.vtu", soup());
     const Scenario scenario = folder.scenario(file_mesh + rest);
@@ -58,7 +58,7 @@ TEST(UnweldedBody, IsToldOfAndFallsApart) {
     EXPECT_EQ(topology::components(build_body(scenario).mesh).count, 48);
 }
 
-TEST(UnweldedBody, IsNotToldOfWhereItIsMeant) {
+TEST(UnweldedBody, IsNotReportedWhereItIsMeant) {
     const RunFolder folder;
     io::write_vtu(folder / "body.vtu", soup());
     const Scenario scenario = folder.scenario(file_mesh + "weld = false\n" + rest);
@@ -129,7 +129,7 @@ fibre_array = "fibre"
     }
 }
 
-TEST(WeldedBody, IsToldOfWhereNothingIsToJoin) {
+TEST(WeldedBody, IsReportedWhereNothingIsToJoin) {
     const RunFolder folder;
     io::Frame frame;
     frame.mesh =

@@ -46,7 +46,7 @@ std::vector<Example> examples_of(const std::string& page) {
     return examples;
 }
 
-TEST(AddingALaw, ShowsCodeThatIsInTheFilesItNames) {
+TEST(AddingALaw, ShowsCodeOfTheFilesItNames) {
     const auto examples = examples_of(support::read_text(root / "docs/adding-a-law.md"));
     std::set<std::string> files;
     for (const Example& example : examples) {

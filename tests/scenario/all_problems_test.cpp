@@ -58,7 +58,7 @@ Lines places_of(const Lines& errors) {
     return places;
 }
 
-TEST(AllProblems, OfTheTextDoNotHideThoseOfTheBody) {
+TEST(AllProblems, OfTheTextHideNoneOfTheBody) {
     EXPECT_EQ(places_of(ScenarioFile(minimal + two_faults).all_errors()), (Lines{"14:9", "12:11"}));
     // Whatever else is at fault, with mesh and selections that are sound.
     for (const std::string other :
@@ -73,7 +73,7 @@ TEST(AllProblems, OfTheTextDoNotHideThoseOfTheBody) {
     }
 }
 
-TEST(AllProblems, OfTheMeshDoNotHideThoseOfSurfaces) {
+TEST(AllProblems, OfTheMeshHideNoneOfSurfaces) {
     const auto errors =
         ScenarioFile("[mesh]\nfile = 'liver.vtu'\n" + minimal_rest + two_faults).all_errors();
     EXPECT_EQ(places_of(errors), (Lines{"2:8", "12:11"}));
@@ -89,7 +89,7 @@ preset = "livr"
               Lines{"10:8"});
 }
 
-TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
+TEST(AllProblems, DoNotHideBehindUnknownKeys) {
     const auto places = [](std::string text, const std::string& known, const std::string& given) {
         text.replace(text.find(known), known.size(), given);
         return places_of(ScenarioFile(text + two_faults).all_errors());
@@ -123,7 +123,7 @@ TEST(AllProblems, DoNotHideBehindKeysThatAreNotKnown) {
     }
 }
 
-TEST(AllProblems, OfSupportsAreThoseWithTheFirstHolderAndHideNoStep) {
+TEST(AllProblems, OfConstraintsNameTheFirstHolder) {
     const std::string text = minimal + "time_step = 5\n" + R"([[constraint]]
 where = { nodes = [3] }
 fix = "x"
@@ -151,7 +151,7 @@ fix = "z"
     EXPECT_EQ(errors[3].find("scene.toml:9:13: dynamics.time_step of 5 s is above the stable"), 0u);
 }
 
-TEST(AllProblems, OfManySupportsAreTheFirstFew) {
+TEST(AllProblems, OfManyConstraintsAreTheFirstFew) {
     const auto errors = [](std::size_t num_constraints) {
         std::string text = minimal;
         for (std::size_t i = 0; i < num_constraints; ++i)
@@ -171,7 +171,7 @@ TEST(AllProblems, OfManySupportsAreTheFirstFew) {
     EXPECT_EQ(many[10].find("scene.toml:43:9: and 989 more pairs of constraints "), 0u) << many[10];
 }
 
-TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {
+TEST(AllProblems, OfBoxesOutOfRangeNameTheirKey) {
     const auto error = [](const std::string& mesh) {
         const auto errors = ScenarioFile("[mesh]\n" + mesh + "\n" + minimal_rest).all_errors();
         return errors.size() == 1 ? errors[0] : std::to_string(errors.size()) + " errors";
@@ -192,7 +192,7 @@ TEST(AllProblems, OfABoxTooFarOrOfAnotherSizeThanNumbersHaveNameItsKey) {
               "small to compute with: use smaller units of length");
 }
 
-TEST(AllProblems, OfKeysThatExcludeEachOtherHideNoneOfTheirValues) {
+TEST(AllProblems, OfExclusiveKeysHideNoneOfTheirValues) {
     EXPECT_EQ(places_of(ScenarioFile("[mesh]\nfile = 'none.vtu'\nbox = { size = [1, 0, 1], cells = "
                                      "[1, 1, 1.5] }\n" +
                                      minimal_rest)
@@ -216,7 +216,7 @@ traction = [1, 2]
         (Lines{"11:9", "11:31", "11:52", "13:1", "16:39", "17:11", "18:1", "19:12", "20:12"}));
 }
 
-TEST(AllProblems, OfAPointOfAnEdgeSayNothingOfTheirNumber) {
+TEST(AllProblems, OfEdgePointsSayNothingOfTheirNumber) {
     EXPECT_EQ(ScenarioFile(minimal + R"([[tool]]
 kind = "blade"
 edge = [[0, "a", 0], [0, 1, 0]]
@@ -227,7 +227,7 @@ path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]
                      "text \"a\""}));
 }
 
-TEST(AllProblems, OfBothKeysForFibresAreThoseOfEach) {
+TEST(AllProblems, OfBothFibreKeysAreThoseOfEach) {
     const auto errors = ScenarioFile(minimal_mesh + R"([[material]]
 law = "holzapfel-gasser-ogden"
 density = 1
@@ -262,7 +262,7 @@ TEST(AllProblems, OfRegionsAreThoseNamedTwice) {
     EXPECT_EQ(places_of(errors("[1, 1, 'a']")), (Lines{"4:15", "4:18", "9:24", "9:27"}));
 }
 
-TEST(AllProblems, OfAMaterialsValuesHideNoneOfItsKeys) {
+TEST(AllProblems, OfMaterialValuesHideNoneOfTheKeys) {
     const auto errors = [](const std::string& young, const std::string& terms) {
         return ScenarioFile(minimal_mesh + "[[material]]\nlaw = 'ogden'\ndensity = 1\nyoung = " +
                             young + "\nshear_modulus = 1\nterms = " + terms +
@@ -281,7 +281,7 @@ TEST(AllProblems, OfAMaterialsValuesHideNoneOfItsKeys) {
               Lines{"5:11"});
 }
 
-TEST(AllProblems, OfAMaterialThatDoesNotSuitItsElementsHaveItsPlace) {
+TEST(AllProblems, OfMaterialsUnfitForElementsHaveTheirLine) {
     EXPECT_EQ(places_of(ScenarioFile(minimal + "time_step = 5\n[[material]]\nregions = 0\n"
                                                "method = 'hybmss'\ndensity = 1\nyoung = 1\n"
                                                "poisson = 0.3\n")
@@ -300,7 +300,7 @@ void expect_places(const std::vector<Case>& cases) {
         EXPECT_EQ(places_of(ScenarioFile(minimal + lines).all_errors()), places) << lines;
 }
 
-TEST(AllProblems, OfAnItemHideNoneThatItHasBesides) {
+TEST(AllProblems, OfAnItemHideNoneOfItsOthers) {
     const std::string no_nodes = "where = { box = { min = [9, 9, 9], max = [9, 9, 9] } }\n";
     const std::string held = "[[constraint]]\n" + no_nodes;
     const std::string loaded = "[[load]]\n" + no_nodes;
@@ -342,7 +342,7 @@ TEST(AllProblems, OfAnItemHideNoneThatItHasBesides) {
     EXPECT_EQ(places("end_time = 1e12\nsafety = 2\n[output]\ninterval = 0"), Lines{"9:10"});
 }
 
-TEST(AllProblems, OfAToolOfNoKnownKindAreThoseOfItsKeys) {
+TEST(AllProblems, OfToolsOfUnknownKindIncludeTheirKeys) {
     const std::string keys = R"(name = "?"
 path = [{ time = -1, at = 0 }]
 shape = { sphere = { radius = 0 } }
@@ -367,7 +367,7 @@ scale = 0
                    {"[[tool]]\npath = [{ time = 0, at = [0, 0, 0] }]\n", {"9:1"}}});
 }
 
-TEST(AllProblems, OfAToolLeaveTheWarningThatItTouchesNothing) {
+TEST(AllProblems, OfToolsLeaveTheWarningOfAMiss) {
     const auto num_warnings = [](const std::string& lines) {
         const ScenarioFile file(minimal + "[[tool]]\n" + lines);
         EXPECT_EQ(file.errors().size(), 1u) << lines;
@@ -387,7 +387,7 @@ TEST(AllProblems, OfAToolLeaveTheWarningThatItTouchesNothing) {
     EXPECT_EQ(num_warnings("kind = 'craver'\n" + ball + far), 0u);
 }
 
-TEST(AllProblems, OfOneHeadingInPlaceOfAnArrayAndOfAnArrayInPlaceOfOne) {
+TEST(AllProblems, OfHeadingsAndArraysTakenForEachOther) {
     expect_places({
         {"[constraint]\nwhere = { nodes = 99 }\nfix = 'w'\n", {"9:1", "11:7", "10:9"}},
         {"[load]\npresure = 1\n", {"9:1", "10:1"}},
@@ -429,7 +429,7 @@ reaction_b_x = { min = 0 }
           {"12:1"}}});
 }
 
-TEST(AllProblems, AreNotToldOfKeysThatWereGuessedWrong) {
+TEST(AllProblems, AreNotReportedForWronglyGuessedKeys) {
     expect_places({
         {"step = 0.01\n", {"9:1"}},
         {"step = 10\n", {"9:1"}},  // a load step, of what is no statics
@@ -443,7 +443,7 @@ TEST(AllProblems, AreNotToldOfKeysThatWereGuessedWrong) {
     });
 }
 
-TEST(AllProblems, AreNotToldOfWhatDependsOnAKeyAtFault) {
+TEST(AllProblems, AreNotReportedThatFollowFromOthers) {
     expect_places({
         {"mode = 'statc'\nsteps = 10\n", {"9:8"}},
         {"mode = 'statc'\nsteps = 0\n", {"9:8", "10:9"}},
@@ -478,7 +478,7 @@ TEST(AllProblems, OfFibresShowWhateverTheLaw) {
     EXPECT_EQ(places("law = 'holzapfl'"), (Lines{"4:7", "6:9", "7:15", "8:14"}));
 }
 
-TEST(AllProblems, OfExpectedRangesShowUnderNamesThatAreNotKnown) {
+TEST(AllProblems, OfExpectedRangesShowUnderUnknownNames) {
     expect_places({{"[expect]\nmas = { min = 2, max = 1 }\nx = 3\ny = {}\n",
                     {"10:1", "10:7", "11:1", "11:5", "12:1", "12:5"}}});
     // What is there already was hardly meant.

@@ -71,7 +71,7 @@ TEST(ElasticConstants, OfTheLawsFollowFromThoseAtRest) {
 }
 
 // Whatever a law adds to lambda and mu on its own account, at rest it has those that were given.
-TEST(ElasticConstants, GivenForAnyLawAreItsModuliAtRest) {
+TEST(ElasticConstants, OfAnyLawAreItsModuliAtRest) {
     for (std::size_t i = 0; i < laws().size(); ++i)
         for (const ParameterSet& set : laws()[i].parameter_sets) {
             SCOPED_TRACE(std::string(laws()[i].key) + ": " + list_of_sets(std::span(&set, 1)));

@@ -51,7 +51,7 @@ TEST(Overrides, AreQuotedByTheirErrors) {
         EXPECT_NE(error(text).find("is no TOML value"), std::string::npos) << text;
 }
 
-TEST(Overrides, AreAllToldOfAtOnce) {
+TEST(Overrides, AreAllReportedAtOnce) {
     const ScenarioFile file(minimal);
     const std::string array = "materials[0].young=-1", key = "dynamics.dampin=1",
                       element = "tool[3].x=1", value = "material[0].density=-2";

@@ -28,7 +28,7 @@ std::string material_error(const std::string& lines) {
     return all;
 }
 
-TEST(ScenarioErrors, AreAllFoundAtOnceInTheOrderOfTheFile) {
+TEST(ScenarioErrors, AreAllFoundAtOnceInFileOrder) {
     const ScenarioFile file(R"(titel = "x"
 [mesh]
 file = "kidney.vtu"
@@ -447,7 +447,7 @@ TEST(ScenarioErrors, OfOutputAndExpect) {
               "| scene.toml:13:9: key 'expect.min_J': must be a table, but is the number 3");
 }
 
-TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
+TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
     const std::string floor =
         "[[constraint]]\nname = \"floor\"\nfix = \"xyz\"\nwhere = { surface = true }\n";
     const std::string known =
@@ -481,7 +481,7 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearestAmongTheOtherErrors) {
                   more);
 }
 
-TEST(ScenarioErrors, OfAToolsKindDoNotHideItsSurface) {
+TEST(ScenarioErrors, OfAToolsKindHideNoSurface) {
     for (const std::string kind : {"", "kind = 'cat'\n"}) {
         const auto errors =
             ScenarioFile(minimal + "[[tool]]\n" + kind + "time = 0.1\nsurface = 'liver.vtu'\n")

@@ -299,7 +299,7 @@ TEST(ScenarioReader, WarnsWhereHybridSpringsAreOnShakyGround) {
               std::string::npos);
 }
 
-TEST(ScenarioReader, RefusesAFileNameThatCannotNameFilesOfARun) {
+TEST(ScenarioReader, RefusesNamesThatCannotNameRunFiles) {
     EXPECT_EQ(ScenarioFile(minimal + "unknown = 1\n",
                            "sc\xff"
                            "en.toml")
@@ -311,7 +311,7 @@ TEST(ScenarioReader, RefusesAFileNameThatCannotNameFilesOfARun) {
     EXPECT_EQ(ScenarioFile(minimal, "Münze & Co.toml").errors(), Lines{});
 }
 
-TEST(ScenarioReader, KeepsTheEndOfStaticsWithKeysOfNoEffect) {
+TEST(ScenarioReader, KeepsTheEndOfStaticsDespiteIneffectiveKeys) {
     const ScenarioFile file(minimal + "mode = 'static'\nintegrator = 'implicit-euler'\n");
     EXPECT_EQ(file.errors(), std::vector<std::string>{});
     EXPECT_EQ(file.read().scenario.dynamics.end_time, 1.0);

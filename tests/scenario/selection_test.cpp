@@ -96,7 +96,7 @@ TEST(Selection, BoxesSpheresAndHalfSpacesAreClosed) {
     expect_selects(half_space, [](const Vec3& x) { return x.z() >= 3.0; });
 }
 
-TEST(Selection, RegionsHaveTheNodesOfTheirElementsThoseBetweenThemTwice) {
+TEST(Selection, RegionsShareTheNodesBetweenThem) {
     Selection where;
     where.regions = {1};
     expect_selects(where, [](const Vec3& x) { return x.x() <= 2.0; });
@@ -119,7 +119,7 @@ Mesh enclosed() {
     return Mesh::build(data).mesh;
 }
 
-TEST(Selection, ElementsAndFacesAreOfTheirOwnRegionOnly) {
+TEST(Selection, ElementsAndFacesAreOfOneRegionOnly) {
     const Mesh mesh = enclosed();
     ASSERT_EQ(mesh.num_elements(), 3u);
     Selection where;
@@ -135,7 +135,7 @@ TEST(Selection, ElementsAndFacesAreOfTheirOwnRegionOnly) {
     for (const FaceId f : faces) EXPECT_EQ(f.element, ElementId(1));
 }
 
-TEST(Selection, ABodyForceOnARegionIsForceTimesTheVolumeOfThatRegion) {
+TEST(Selection, RegionalBodyForceIsForceTimesVolume) {
     // Every third tetrahedron, so that those of the other region have all corners in this one too.
     auto data =
         topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {4, 4, 4}, {4, 4, 4});
@@ -157,7 +157,7 @@ TEST(Selection, ABodyForceOnARegionIsForceTimesTheVolumeOfThatRegion) {
     EXPECT_LE((model.totals().momentum / dt - volume * density).norm(), 1e-10);
 }
 
-TEST(Selection, OfANodeThatIsNotThereNamesItsConstraintOrLoadOnce) {
+TEST(Selection, NamesConstraintOrLoadOfMissingNodesOnce) {
     const Mesh& mesh = cube(topology::CellKind::tetrahedron);
     const auto error_of = [&](const Scenario& scenario) -> std::string {
         try {

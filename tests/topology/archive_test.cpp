@@ -60,7 +60,7 @@ TEST(Archive, IsLittleEndianWithoutPadding) {
     EXPECT_EQ(bytes_of(std::string("ab")), std::string("\2\0\0\0\0\0\0\0ab", 10));
 }
 
-TEST(Archive, IsTheSameForSetsFilledInAnotherOrder) {
+TEST(Archive, IsTheSameForSetsInAnyOrder) {
     Thing other = thing();
     other.set.clear();
     other.set.reserve(1000);

@@ -29,7 +29,7 @@ std::vector<Triangle> triangles_of(const BoundarySurface& surface) {
     return triangles;
 }
 
-TEST(BoundarySurface, EqualsOneBuiltAfreshAfterEditsAndTheirInverses) {
+TEST(BoundarySurface, EqualsAFreshOneAfterEditsAndInverses) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         for (std::uint64_t seed = 0; seed < 5; ++seed) {

@@ -45,7 +45,7 @@ TEST(ComponentCount, FollowsAnyEditsAndTheirUndoing) {
 }
 
 /// Opens the faces between layers of bricks, one after the other, from one side to the other.
-TEST(ComponentCount, OfABodyThatIsPartedStepByStepRisesWithTheLast) {
+TEST(ComponentCount, RisesWithTheLastStepOfACut) {
     constexpr int n = 6;
     Mesh mesh = Mesh::build(test::jittered_cube(n, 0.0, 0)).mesh;
     ComponentCount pieces(mesh);

@@ -113,7 +113,7 @@ TEST(MeshCheck, RefusesFacesSharedByThree) {
                    "remove the others");
 }
 
-TEST(MeshCheck, NamesTheFirstOfManyCellsAtOneFace) {
+TEST(MeshCheck, NamesFirstOfManyCellsAtOneFace) {
     MeshData data = two_by_a_face();
     for (std::int64_t point = 5; point < 1000; ++point) {
         data.points.emplace_back(2, 2, 2);
@@ -139,7 +139,7 @@ TEST(MeshCheck, RefusesCoordinatesThatAreNotFinite) {
     expect_refused(data, "point 2 is not finite: (0, nan, 0)");
 }
 
-TEST(MeshCheck, ListsAFewOfManyAndCountsTheRest) {
+TEST(MeshCheck, ListsAFewAndCountsTheRest) {
     MeshData data = box_mesh(CellKind::tetrahedron, {0, 0, 0}, {1, 1, 1}, {2, 2, 2});
     for (std::size_t c = 0; c < data.num_cells(); ++c)
         std::swap(data.corners[4 * c], data.corners[4 * c + 1]);

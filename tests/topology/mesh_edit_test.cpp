@@ -19,7 +19,7 @@ using test::MeshSnapshot;
 const std::vector<std::string> no_violations;
 
 // Tetrahedra too are covered here; their masses and forces in physics/edits_test.cpp.
-TEST(MeshEdit, LeavesAValidMeshAndUndoesToTheSameBits) {
+TEST(MeshEdit, LeavesAValidMeshAndUndoesExactly) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         test::Random random(11);
@@ -56,7 +56,7 @@ TEST(MeshEdit, WithoutCommitLeavesNoTrace) {
     }
 }
 
-TEST(MeshEdit, WithoutCommitGivesNodesBackThatWereMergedInPassing) {
+TEST(MeshEdit, WithoutCommitGivesMergedNodesBack) {
     Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;
     {
         MeshEdit edit(mesh);

@@ -24,7 +24,7 @@ MeshData one_cell(CellKind kind, std::vector<Vec3> points) {
     return data;
 }
 
-TEST(MeshMetrics, OfABoxAreTheSameForBothKinds) {
+TEST(MeshMetrics, OfABoxAreAlikeForBothKinds) {
     const Vec3 origin(-1.0, 2.0, 0.5), size(1.0, 2.0, 3.0);
     for (const auto kind : {CellKind::tetrahedron, CellKind::hexahedron}) {
         SCOPED_TRACE(traits(kind).name);
@@ -62,7 +62,7 @@ TEST(MeshMetrics, SeeASliver) {
     EXPECT_NEAR(metrics.min_dihedral_angle, std::atan(height / (0.5 / std::sqrt(2.0))), round_off);
 }
 
-TEST(MeshMetrics, OfABrickAreItsThicknessAndRightAngles) {
+TEST(MeshMetrics, OfABrickAreThicknessAndRightAngles) {
     const auto metrics =
         measure(box_mesh(CellKind::hexahedron, Vec3::Zero(), Vec3(1.0, 2.0, 3.0), {1, 1, 1}));
     EXPECT_NEAR(metrics.min_altitude, 1.0, round_off);

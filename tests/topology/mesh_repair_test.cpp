@@ -99,7 +99,7 @@ TEST(Coincidence, OffersNoWeldingOfUnlikeFaces) {
     EXPECT_TRUE(text.ends_with(" (tetrahedron): use one kind of element" + or_apart)) << text;
 }
 
-TEST(Coincidence, OffersNoWeldingOfGridsThatDoNotMatch) {
+TEST(Coincidence, OffersNoWeldingOfUnmatchedGrids) {
     for (const auto kind : {CellKind::hexahedron, CellKind::tetrahedron})
         EXPECT_EQ(
             tail_of_warning(beside(brick_box(kind, {0, 0, 0}, 2), brick_box(kind, {1, 0, 0}, 1))),
@@ -108,7 +108,7 @@ TEST(Coincidence, OffersNoWeldingOfGridsThatDoNotMatch) {
                 or_apart);
 }
 
-TEST(Coincidence, TellsHowManyPointsWeldingLeavesLoose) {
+TEST(Coincidence, ReportsHowManyPointsWeldingLeavesLoose) {
     // Of two boxes at one face, and of a third at another whose grid is finer.
     const auto three = beside(beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 1),
                                      brick_box(CellKind::hexahedron, {1, 0, 0}, 1)),
@@ -132,7 +132,7 @@ TEST(Coincidence, OffersNoWeldingThatLeavesNoSoundMesh) {
             or_apart);
 }
 
-TEST(Coincidence, IsToldOfGapsThatAreHardlyMeant) {
+TEST(Coincidence, IsReportedForGapsThatAreHardlyMeant) {
     for (const double gap : {1e-3, 5e-3}) {
         SCOPED_TRACE(gap);
         for (const auto kind : {CellKind::hexahedron, CellKind::tetrahedron}) {
@@ -158,7 +158,7 @@ TEST(Coincidence, IsToldOfGapsThatAreHardlyMeant) {
     EXPECT_TRUE(check(wide).warnings.empty());
 }
 
-TEST(Coincidence, IsNoMatterOfThinCellsThatHangTogether) {
+TEST(Coincidence, IsNoMatterOfConnectedThinCells) {
     // Two flat tetrahedra on both sides of a face, whose tips are near each other.
     MeshData data;
     data.points = {{0, 0, 0},         {1, 0, 0},     {0, 1, 0},     {0.3, 0.3, 1e-3},
@@ -283,7 +283,7 @@ TEST(Weld, TakesBothZerosForOnePosition) {
     EXPECT_EQ(weld(soup), 3u);
 }
 
-TEST(Weld, KeepsToEqualPositionsBeyondTheRangeOfSquares) {
+TEST(Weld, KeepsToEqualPositionsWhereSquaresFail) {
     for (const double scale : {1e-200, 1e200}) {
         SCOPED_TRACE(scale);
         MeshData soup = two_apart();

@@ -25,7 +25,7 @@ double volume_of(const MeshData& data) {
     return sum;
 }
 
-TEST(CellKind, FacesRunAnticlockwiseFromOutsideAndCloseEveryCell) {
+TEST(CellKind, FacesRunAnticlockwiseAndCloseEveryCell) {
     for (const CellTraits& t : cell_traits) {
         SCOPED_TRACE(t.name);
         std::multiset<std::pair<int, int>> sides;

@@ -73,7 +73,7 @@ TEST(Validate, FindsNeighboursWithOtherCornersOnTheirFace) {
     expect_fault(mesh, "disagree on their face");
 }
 
-TEST(Validate, FindsANodeWhoseElementsDoNotHangTogether) {
+TEST(Validate, FindsANodeOfDisconnectedElements) {
     Mesh mesh = three_tetrahedra();
     const ElementId e = element_at(mesh, {6, 0, 0});
     const NodeId shared = node_at(mesh, {1, 0, 0});
@@ -96,7 +96,7 @@ TEST(Validate, FindsADeadNodeThatAnElementHas) {
     expect_fault(mesh, "the map has 9 vertices, the mesh 8 nodes");
 }
 
-TEST(Validate, FindsPlacesThatTheMapDoesNotKnow) {
+TEST(Validate, FindsPositionsThatTheMapDoesNotKnow) {
     Mesh mesh = three_tetrahedra();
     const NodeId n = node_at(mesh, {6, 0, 0});
     ChangeSet changes = edit_of(mesh);

@@ -1,0 +1,111 @@
+// A soft cube, held at its bottom, that tests step, cut, hold and load from outside.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "incise/sim/world.h"
+#include "incise/topology/box_mesh.h"
+
+namespace incise::sim {
+
+using cutting::Blade;
+
+inline constexpr double size = 0.1;  // of the cube, m
+
+inline topology::MeshData cube(int cells = 4) {
+    return topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Constant(size),
+                              {cells, cells, cells});
+}
+
+inline WorldDef soft_body(Solver solver = Solver::semi_implicit_euler) {
+    WorldDef def;
+    def.mesh = cube();
+    def.materials = {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{200.0, 600.0}}}};
+    def.gravity = {0, 0, -9.81};
+    def.damping = 2.0;
+    def.solver = solver;
+    return def;
+}
+
+inline std::vector<NodeId> nodes_where(const World& world,
+                                       const std::function<bool(const Vec3&)>& is_in) {
+    std::vector<NodeId> nodes;
+    for (const NodeId n : world.mesh().nodes())
+        if (is_in(world.mesh().rest_position(n))) nodes.push_back(n);
+    return nodes;
+}
+
+/// Held at its bottom.
+inline World held_world(Solver solver = Solver::semi_implicit_euler) {
+    World world(soft_body(solver));
+    world.add_constraint({.name = "floor",
+                          .nodes = physics::NodeSet(
+                              nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))});
+    return world;
+}
+
+inline ToolDef scalpel() { return {"scalpel", Blade{{{0, -0.02, 0.051}, {0, 0.12, 0.053}}}}; }
+
+inline Pose at(const Vec3& position) { return {Eigen::Quaterniond::Identity(), position}; }
+
+/// Where the scalpel is after so much of its way through the cube.
+inline Pose scalpel_pose(double part) { return at({-0.01 + 0.12 * part, 0, 0}); }
+
+inline std::string input_error_of(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Steps with a cut across the body, a grasp and a load that come and go.
+class Session {
+  public:
+    explicit Session(World world) : world_(std::move(world)) {
+        knife_ = world_.add_tool(scalpel());
+    }
+
+    void run(int from, int to) {
+        for (int i = from; i < to; ++i) step(i);
+    }
+    World& world() { return world_; }
+
+    static constexpr int num_steps = 60;
+
+  private:
+    void step(int i) {
+        if (i == 5) world_.place_tool(knife_, scalpel_pose(0.0));
+        if (i >= 5 && i < 35) world_.set_tool_pose(knife_, scalpel_pose((i - 4) / 30.0));
+        if (i == 34) world_.withdraw_tool(knife_);
+        if (i == 10)
+            grasp_ = world_.grasp("hand",
+                                  nodes_where(world_,
+                                              [](const Vec3& x) {
+                                                  return x.z() > 0.99 * size && x.x() < 0.3 * size;
+                                              }),
+                                  at({0, 0, size}));
+        if (i >= 10 && i < 45) world_.set_grasp_pose(grasp_, at({0, 0, size + 2e-4 * (i - 9)}));
+        if (i == 45) world_.release(grasp_);
+        if (i == 20)
+            load_ = world_.add_load({.name = "push",
+                                     .kind = physics::NodalLoad{
+                                         physics::NodeSet(nodes_where(
+                                             world_, [](const Vec3& x) { return x.x() > 0.09; })),
+                                         {1e-3, 0, 0}}});
+        if (i == 30) world_.set_load_factor(load_, 0.5);
+        if (i == 50) world_.remove_load(load_);
+        world_.step(0.5 * world_.stable_step());
+    }
+
+    World world_;
+    ToolId knife_{};
+    ConstraintId grasp_{1};  // as numbers are given out: a restored session knows them too
+    LoadId load_{0};
+};
+
+}  // namespace incise::sim

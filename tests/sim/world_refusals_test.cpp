@@ -1,0 +1,220 @@
+// What a world refuses: wrong calls, wrong definitions and bytes of other worlds.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sim/soft_world.h"
+
+namespace incise::sim {
+namespace {
+
+using cutting::Blade;
+
+TEST(World, MisuseIsRefusedAndChangesNothing) {
+    Session session(held_world());
+    session.run(0, 20);
+    World& world = session.world();
+    const std::string before = world.save();
+    const double nan = std::nan(""), bound = world.stable_step();
+    const physics::NodeSet floor(nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }));
+    const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
+        {[&] { world.step(0.0); }, "it must be above 0"},
+        {[&] { world.step(-1e-3); }, "it must be above 0"},
+        {[&] { world.step(nan); }, "it must be above 0"},
+        {[&] { world.step(1.01 * bound); }, "is above the stable step of"},
+        {[&] { world.step_to(world.time()); }, "it must go forward"},
+        {[&] { world.set_tool_pose({7}, {}); }, "there is no tool 7"},
+        {[&] { world.withdraw_tool({3}); }, "there is no tool 3"},
+        {[&] { world.place_tool({0}, {}); }, "withdraw it before it is put elsewhere"},
+        {[&] {
+             world.set_tool_pose({0}, at({nan, 0, 0}));
+         },
+         "its pose must have"},
+        {[&] {
+             world.set_tool_pose({0}, {Eigen::Quaterniond(2, 0, 0, 0), Vec3::Zero()});
+         },
+         "its pose must have"},
+        {[&] {
+             world.add_tool({"stick", Blade{{{0, 0, 0}}}});
+         },
+         "needs at least 2 points"},
+        {[&] {
+             world.add_tool({"burr", cutting::Carver{cutting::Sphere{0.0}}});
+         },
+         "it must be above 0"},
+        {[&] {
+             world.add_tool({"plane", cutting::PlaneCut{{}, Vec3::Zero()}});
+         },
+         "the normal of its plane is zero"},
+        {[&] { world.add_constraint({.name = "more", .nodes = floor}); },
+         "is held in x by both 'floor' and 'more'"},
+        {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
+        {[&] { world.grasp("hand", {NodeId(99999)}, {}); }, "there is no node 99999"},
+        {[&] { world.set_grasp_pose({0}, {}); }, "is no grasp"},
+        {[&] { world.set_grasp_pose({9}, {}); }, "there is no constraint 9"},
+        {[&] { world.release({9}); }, "there is no constraint 9"},
+        {[&] { world.remove_load({4}); }, "there is no load 4"},
+        {[&] {
+             world.add_load(
+                 {.name = "wind", .kind = physics::TractionLoad{{{{ElementId(3), 9}}}, {}}});
+         },
+         "is not on the surface"},
+        {[&] { world.restore(""); }, "end too early"}};
+    for (const auto& [misuse, why] : misuses) {
+        const std::string message = input_error_of(misuse);
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+        EXPECT_TRUE(world.save() == before) << why;
+    }
+    session.run(20, Session::num_steps);
+    Session undisturbed(held_world());
+    undisturbed.run(0, Session::num_steps);
+    EXPECT_TRUE(world.save() == undisturbed.world().save());
+}
+
+TEST(World, RefusesDefinitionsThatCannotBe) {
+    const double nan = std::nan("");
+    const auto links = [](WorldDef& def) -> physics::HyperElasticLinks& {
+        return std::get<physics::HyperElasticLinks>(def.materials[0].method);
+    };
+    const auto data = [](WorldDef& def) -> topology::MeshData& {
+        return std::get<topology::MeshData>(def.mesh);
+    };
+    const physics::NodeSet nowhere(std::vector{NodeId(100000)});
+    using Spoil = std::function<void(WorldDef&)>;
+    const std::vector<std::pair<Spoil, const char*>> faults = {
+        {[](WorldDef& d) { d.materials.clear(); }, "has no material"},
+        {[](WorldDef& d) { d.materials[0].density = -1060; }, "its density is -1060"},
+        {[&](WorldDef& d) { d.materials[0].density = nan; }, "its density is"},
+        {[&](WorldDef& d) {
+             links(d).law = physics::NeoHookean{nan, 1.0};
+         },
+         "its shear modulus"},
+        {[&](WorldDef& d) {
+             links(d).law = physics::NeoHookean{200, -600};
+         },
+         "its bulk modulus"},
+        {[&](WorldDef& d) { links(d).inversion_threshold = nan; }, "its inversion threshold"},
+        {[&](WorldDef& d) {
+             links(d).prony = {{1.2, 1.0}};
+         },
+         "add up to 1.2"},
+        {[&](WorldDef& d) {
+             links(d).prony = {{0.2, 0.0}};
+         },
+         "both must be above 0"},
+        {[](WorldDef& d) { d.materials[0].method = physics::MassSprings{-1}; }, "Young's modulus"},
+        {[](WorldDef& d) {
+             d.material_of_region = {{0, 1}};
+         },
+         "region 0 has material 1"},
+        {[](WorldDef& d) {
+             d.material_of_region = {{7, 0}};
+         },
+         "region 0"},
+        {[&](WorldDef& d) { d.gravity.x() = nan; }, "gravity is not finite"},
+        {[](WorldDef& d) { d.damping = -5; }, "damping is -5"},
+        {[](WorldDef& d) { d.solver = Solver(17); }, "no such solver"},
+        {[](WorldDef& d) { d.num_threads = 0; }, "must be at least 1"},
+        {[&](WorldDef& d) { d.constraints = {{.name = "a", .nodes = nowhere}}; },
+         "there is no node 100000"},
+        {[](WorldDef& d) { d.constraints = {{}}; }, "it has no node"},
+        {[&](WorldDef& d) { d.loads = {{.name = "a", .kind = physics::NodalLoad{nowhere}}}; },
+         "there is no node 100000"},
+        {[](WorldDef& d) { d.loads = {{}}; }, "it has no node"},
+        {[&](WorldDef& d) { data(d).regions.clear(); }, "regions has 0 entries"},
+        {[&](WorldDef& d) { data(d).offsets.pop_back(); }, "needs one more than cells"},
+        {[&](WorldDef& d) { data(d).offsets.clear(); }, "needs one more than cells"},
+        {[&](WorldDef& d) { data(d).offsets[2] = 1000000; }, "needs 4 corners"},
+        {[&](WorldDef& d) { data(d).corners.pop_back(); }, "end with the number of corners"},
+        {[&](WorldDef& d) { data(d).kinds[3] = topology::CellKind(77); }, "is of no kind"},
+        {[&](WorldDef& d) { data(d).kinds[3] = topology::CellKind::hexahedron; },
+         "needs 8 corners"},
+        {[&](WorldDef& d) { data(d).welded_to = {0}; }, "welded_to has 1 entries"},
+        {[&](WorldDef& d) { data(d).points[3].y() = nan; }, "is not finite"},
+        {[](WorldDef& d) { d.mesh = topology::MeshData(); }, "a volume mesh is needed"}};
+    for (const auto& [spoil, why] : faults) {
+        WorldDef def = soft_body();
+        spoil(def);
+        const std::string message = input_error_of([&] { World{std::move(def)}; });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+}
+
+TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
+    World world = held_world();
+    const std::string before = world.save();
+    const double nan = std::nan("");
+    const auto surface = [](std::vector<Vec3> points, std::array<std::int64_t, 3> triangle) {
+        return cutting::SurfaceCut{{std::move(points), {triangle}}};
+    };
+    const std::vector<std::pair<cutting::ToolShape, const char*>> shapes = {
+        {surface({{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}), "is not finite"},
+        {surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 77}), "names point 77"},
+        {surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, -1, 2}), "names point -1"},
+        {cutting::SurfaceCut{}, "has no triangle"},
+        {cutting::PlaneCut{{nan, 0, 0}}, "its plane is not finite"},
+        {cutting::PlaneCut{{0, 0, 0}, {nan, 0, 0}}, "its plane is not finite"},
+        {cutting::PlaneCut{{0, 0, 0}, {1, 0, 0}, 7.0}, "a snap of 7"},
+        {Blade{{{0, 0, 0}, {0, 0, 0}}}, "are the same"},
+        {Blade{{{0, 0, 0}, {1, 0, 0}}, cutting::CutMode::split, nan}, "from 0 to 1"},
+        {cutting::Carver{cutting::Capsule{{nan, 0, 0}, {0, 0, 0}, 1.0}}, "its axis"},
+        {cutting::Carver{cutting::Cuboid{{1, 1, -1}}}, "it must be above 0"}};
+    for (const auto& [shape, why] : shapes) {
+        const std::string message = input_error_of([&, &held = shape] {
+            world.add_tool({"odd", held});
+        });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+    const physics::NodeSet top(nodes_where(world, [](const Vec3& x) { return x.z() == size; }));
+    using Curve = physics::TimeCurve<Vec3>;
+    const std::vector<std::pair<physics::Constraint, const char*>> constraints = {
+        {{.name = "a", .nodes = top, .displacement = Curve({{0.0, Vec3(nan, 0, 0)}})},
+         "not finite"},
+        {{.name = "a",
+          .nodes = top,
+          .displacement = Curve({{1.0, Vec3::Zero()}, {0.5, Vec3::Zero()}})},
+         "do not ascend"},
+        {{.name = "a", .nodes = top, .components = {false, false, false}}, "no component"},
+        {{.name = "a", .nodes = top, .axis = {0, 0, 2}}, "a length of 2"}};
+    for (const auto& [constraint, why] : constraints) {
+        const std::string message =
+            input_error_of([&, &held = constraint] { world.add_constraint(held); });
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+    EXPECT_NE(input_error_of([&] {
+                  world.add_load({.name = "a",
+                                  .kind = physics::NodalLoad{top, {1, 0, 0}},
+                                  .factor = physics::TimeCurve<double>({{0.0, nan}})});
+              }).find("not finite"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] { world.set_num_threads(0); }).find("at least 1"),
+              std::string::npos);
+    EXPECT_TRUE(world.save() == before);
+}
+
+TEST(World, RestoresOnlyWorldsOfItsSolverAndMaterials) {
+    const std::string bytes = held_world().save();
+    World implicit = held_world(Solver::implicit_euler), equilibria = held_world(Solver::statics);
+    for (World* world : {&implicit, &equilibria})
+        EXPECT_NE(input_error_of([&] { world->restore(bytes); }).find("another solver"),
+                  std::string::npos);
+    const auto refusal = [&](const std::function<void(WorldDef&)>& change) {
+        WorldDef def = soft_body();
+        change(def);
+        World world(std::move(def));
+        return input_error_of([&] { world.restore(bytes); });
+    };
+    EXPECT_EQ(refusal([](WorldDef&) {}), "");
+    for (const auto& message :
+         {refusal([](WorldDef& d) { d.materials[0].density = 1001; }),
+          refusal([](WorldDef& d) { d.materials.push_back(d.materials[0]); }),
+          refusal([](WorldDef& d) { d.precision = physics::Precision::single_precision; }),
+          refusal([](WorldDef& d) {
+              d.materials[0].method = physics::HyperElasticLinks{physics::NeoHookean{201, 600}};
+          })})
+        EXPECT_NE(message.find("other materials"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace incise::sim
