@@ -57,6 +57,26 @@ class Mesh {
 
     CellKind kind(ElementId e) const { return kinds_[e.index()]; }
     int region(ElementId e) const { return regions_[e.index()]; }
+
+    /// All elements at once, by element id, for renderers and other programs that copy them. Dead
+    /// elements keep their last values.
+    struct Connectivity {
+        std::uint64_t epoch;  ///< of the mesh: another one means that the spans are gone
+        std::span<const CellKind> kinds;
+        std::span<const int> regions;
+        std::span<const std::uint8_t> is_alive;
+        /// Element e has the corners from corner_begin[e] to before corner_begin[e + 1].
+        std::span<const std::size_t> corner_begin;
+        std::span<const NodeId> corners;
+        /// Likewise for its faces, in the order of cell_kind.h.
+        std::span<const std::size_t> face_begin;
+        std::span<const FaceId> neighbors;  ///< as neighbor()
+    };
+    /// @lifetime until the next edit. Cost: O(1).
+    Connectivity connectivity() const {
+        return {epoch_, kinds_, regions_, alive_, corner_begin_, corners_, face_begin_, neighbors_};
+    }
+
     /// Corners in the order of cell_kind.h; for a dead element those it had last.
     std::span<const NodeId> corners(ElementId e) const {
         return {corners_.data() + corner_begin_[e.index()],

@@ -308,8 +308,8 @@ NodeId MeshEdit::survivor_of(NodeId n) const {
     return n;
 }
 
-void MeshEdit::settle_node(NodeId n, const std::vector<ElementId>& candidates,
-                           std::vector<NodeRecord>& removed) {
+void MeshEdit::split_star(NodeId n, const std::vector<ElementId>& candidates,
+                          std::vector<NodeRecord>& removed) {
     std::vector<std::vector<ElementId>> parts;
     for (const ElementId e : candidates) {
         if (!e.is_valid() || !mesh_.is_alive(e) || mesh_.corner_of(e, n) < 0) continue;
@@ -361,7 +361,7 @@ void MeshEdit::divide_nodes(std::vector<NodeRecord>& removed) {
         candidates.clear();
         for (; i < touched_.size() && touched_[i].node == n; ++i)
             candidates.push_back(touched_[i].element);
-        settle_node(n, candidates, removed);
+        split_star(n, candidates, removed);
     }
 }
 

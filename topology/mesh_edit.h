@@ -87,8 +87,8 @@ class MeshEdit {
     void require_older(ElementId e, const char* what) const;
     void merge(NodeId survivor, NodeId absorbed, ElementId at);
     void divide_nodes(std::vector<NodeRecord>& removed);
-    void settle_node(NodeId n, const std::vector<ElementId>& candidates,
-                     std::vector<NodeRecord>& removed);
+    void split_star(NodeId n, const std::vector<ElementId>& candidates,
+                    std::vector<NodeRecord>& removed);
     NodeId survivor_of(NodeId n) const;
     ChangeSet differences() const;
 

@@ -29,8 +29,8 @@ bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPo
 /// A node that lies on a surface with creases, but for rounding, and not at its boundary.
 struct NodeOnSurface {
     NodeId node;
-    Vec3 normal;   ///< of the surface there, of unit length
-    double reach;  ///< of its edges that were looked at the longest, m, at rest
+    Vec3 normal;               ///< of the surface there, of unit length
+    double local_edge_length;  ///< of its edges that were looked at the longest, m, at rest
 };
 
 /// Those of the nodes of some edges. Crossed edges do not tell of them all: where the inside of a

@@ -48,15 +48,15 @@ void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
 /// The same for a blade that this cut comes across. A middle between two nodes on its cut is on it,
 /// too; any other keeps to an end that is off it, as edges without a node on it are not to stay
 /// crossed.
-/// @param reach  see CutFront::put_on
+/// @param local_edge_length  see CutFront::put_on
 /// @param point  (node): where it is, a MovingPoint
 template <class PointOf>
 void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
-                           const std::vector<NodeId>& ring, double reach, SnapHistory& snap_history,
-                           PointOf point) {
+                           const std::vector<NodeId>& ring, double local_edge_length,
+                           SnapHistory& snap_history, PointOf point) {
     CutFront& front = blade.front;
     if (front.is_on(edge.a) && front.is_on(edge.b))
-        front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), reach,
+        front.put_on(middle, !front.is_near(edge.a) && !front.is_near(edge.b), local_edge_length,
                      snap_history.take_rank());
     else if (front.is_on(edge.b))
         std::swap(edge.a, edge.b);
@@ -71,7 +71,7 @@ void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
         return !front.is_on(n) && front.is_crossed(middle, n);
     });
     if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))
-        front.put_on(middle, false, reach, snap_history.take_rank());
+        front.put_on(middle, false, local_edge_length, snap_history.take_rank());
 }
 
 }  // namespace incise::cutting

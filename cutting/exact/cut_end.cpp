@@ -14,7 +14,7 @@ constexpr int max_bisections = 50;
 
 /// How many edge lengths from the blade's edge its cut tells whether it is behind it, and how much
 /// so it is on the mean, as a cosine, if the blade's motion has made it and not that of the tissue.
-constexpr double size_of_boundary_conditions = 3.0, least_share_behind = 0.3;
+constexpr double size_of_neighbourhood = 3.0, least_share_behind = 0.3;
 
 /// So much farther than out of an element, in units of its size, a blade is taken to go on: not
 /// just to its end, where rounding or the shift of exact signs would decide.
@@ -88,7 +88,8 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
     for (const NodeId n : nodes) {
         const Vec3 away = blade.away_from_edge(position(n));
         const double distance = away.norm();
-        if (!(distance > 0.0 && distance < size_of_boundary_conditions * front.reach(n))) continue;
+        if (!(distance > 0.0 && distance < size_of_neighbourhood * front.local_edge_length(n)))
+            continue;
         from_cut -= away / distance;
         share_behind -= blade.distance_ahead(position(n)) / distance;
         ++count;
@@ -97,7 +98,7 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
     return {blade.edge(), std::vector<Vec3>(blade.edge().size(), from_cut / count)};
 }
 
-double way_out(const TissueMotion& tissue, const BladeEnd& blade) {
+double exit_distance(const TissueMotion& tissue, const BladeEnd& blade) {
     const SweptEdge edge(blade.edge(), blade.edge());
     double farthest = 0.0;
     tissue.for_each_near(

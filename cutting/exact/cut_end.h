@@ -60,6 +60,6 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
 
 /// How far the edge has to go on to be past all of the elements that it is in, m; 0 if it is in
 /// none. An edge in a face between two is in one of them (space_time.h).
-double way_out(const TissueMotion& tissue, const BladeEnd& blade);
+double exit_distance(const TissueMotion& tissue, const BladeEnd& blade);
 
 }  // namespace incise::cutting

@@ -9,9 +9,9 @@ namespace incise::cutting {
 
 using topology::Mesh;
 
-void CutFront::put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank) {
-    const auto [place, is_new] = nodes_.try_emplace(n, Node{is_exact, reach, rank, n});
-    place->second.reach = std::max(place->second.reach, reach);
+void CutFront::put_on(NodeId n, bool is_exact, double local_edge_length, std::uint64_t rank) {
+    const auto [place, is_new] = nodes_.try_emplace(n, Node{is_exact, local_edge_length, rank, n});
+    place->second.local_edge_length = std::max(place->second.local_edge_length, local_edge_length);
     num_new_ += is_new;
     has_changed_ = true;
 }

@@ -34,10 +34,10 @@ class CutFront {
     void set_number(std::uint64_t number) { number_ = number; }
 
     /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
-    /// it, on one side. `reach` is the size of the elements there, m; `rank`, see
-    /// SnapHistory::take_rank. Of a node that is on the cut already only the reach can change, to
-    /// more.
-    void put_on(NodeId n, bool is_exact, double reach, std::uint64_t rank);
+    /// it, on one side. `local_edge_length` is the size of the elements there, m; `rank`, see
+    /// SnapHistory::take_rank. Of a node that is on the cut already only the local_edge_length can
+    /// change, to more.
+    void put_on(NodeId n, bool is_exact, double local_edge_length, std::uint64_t rank);
     bool is_on(NodeId n) const { return nodes_.contains(n); }
     bool is_near(NodeId n) const {
         const auto place = nodes_.find(n);
@@ -45,10 +45,10 @@ class CutFront {
     }
 
     /// The same surface has cut here before: what it left joined between such nodes stays so.
-    void settle(NodeId n) { nodes_.at(n).is_settled = true; }
-    bool is_settled(NodeId n) const {
+    void freeze(NodeId n) { nodes_.at(n).is_frozen = true; }
+    bool is_frozen(NodeId n) const {
         const auto place = nodes_.find(n);
-        return place != nodes_.end() && place->second.is_settled;
+        return place != nodes_.end() && place->second.is_frozen;
     }
 
     /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
@@ -66,9 +66,9 @@ class CutFront {
     }
 
     /// Size of the elements at a node on the cut, m; 0 for others.
-    double reach(NodeId n) const {
+    double local_edge_length(NodeId n) const {
         const auto place = nodes_.find(n);
-        return place != nodes_.end() ? place->second.reach : 0.0;
+        return place != nodes_.end() ? place->second.local_edge_length : 0.0;
     }
 
     bool is_crossed(NodeId a, NodeId b) const;
@@ -142,12 +142,12 @@ class CutFront {
   private:
     struct Node {
         bool is_exact = false;
-        double reach = 0.0;
+        double local_edge_length = 0.0;
         std::uint64_t rank = 0;
         NodeId next_twin;
-        bool is_settled = false;
+        bool is_frozen = false;
         static void archive(auto& ar, auto& self) {
-            ar(self.is_exact, self.reach, self.rank, self.next_twin, self.is_settled);
+            ar(self.is_exact, self.local_edge_length, self.rank, self.next_twin, self.is_frozen);
         }
     };
     struct LocalPlace {

@@ -40,8 +40,10 @@ double fitting_place(const Mesh& mesh, const EdgeRing& ring, const EdgeIntersect
     const double place = intersection.place, share = limits.least_step_share;
     if (is_fit_at(place, share)) return place;
     const double length = (mesh.rest_position(ring.a) - mesh.rest_position(ring.b)).norm();
-    const double reach = limits.farthest / length / (intersection.from_a + intersection.from_b);
-    const double moved = place < 0.5 ? std::min(place + reach, 0.5) : std::max(place - reach, 0.5);
+    const double local_edge_length =
+        limits.farthest / length / (intersection.from_a + intersection.from_b);
+    const double moved = place < 0.5 ? std::min(place + local_edge_length, 0.5)
+                                     : std::max(place - local_edge_length, 0.5);
     if (is_fit_at(moved, share)) return moved;
     const bool is_end_near =
         std::min(intersection.from_a, intersection.from_b) * length <= limits.farthest;

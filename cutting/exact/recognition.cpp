@@ -23,18 +23,18 @@ class Recognizer {
     /// Looks for the node's snap_history; `length` is that of an edge there, m.
     void look_at(NodeId n, double length, CutFront& front, std::vector<Arrival>& arrivals) const {
         for (const CutRecord& record : snap_history_.of(n)) {
-            const bool may_settle = is_where_it_was(n, record, length);
-            if (front.is_on(n) && !may_settle) continue;
+            const bool may_freeze = is_where_it_was(n, record, length);
+            if (front.is_on(n) && !may_freeze) continue;
             const std::optional<Crossing> intersection =
-                may_settle ? intersection_near(n, record, length)
+                may_freeze ? intersection_near(n, record, length)
                            : intersection_by(n, record.to_surface, record.normal, length);
             if (!intersection) continue;
             if (!front.is_on(n)) {
                 arrivals.push_back({n, intersection->time});
                 front.put_on(n, record.is_exact, length, record.rank);
             }
-            if (!may_settle || !is_along(record, intersection->normal)) continue;
-            front.settle(n);
+            if (!may_freeze || !is_along(record, intersection->normal)) continue;
+            front.freeze(n);
             return;
         }
     }

@@ -33,9 +33,9 @@ double rest_volume(const Mesh& mesh, ElementId e) {
 }
 
 /// Whether an earlier cut along the same surface has left the face joined.
-bool is_settled(const Mesh& mesh, const CutFront& front, FaceId f) {
+bool is_frozen(const Mesh& mesh, const CutFront& front, FaceId f) {
     for (int p = 0; p < mesh.face_size(f); ++p)
-        if (!front.is_settled(mesh.face_corner(f, p))) return false;
+        if (!front.is_frozen(mesh.face_corner(f, p))) return false;
     return true;
 }
 
@@ -91,7 +91,7 @@ void SliverFragments::keep() {
     std::vector<ElementId> piece;
     std::vector<std::pair<double, FaceId>> doubtful;
     for (const FaceId f : parted_)
-        if (!is_settled(mesh_, front_, f) &&
+        if (!is_frozen(mesh_, front_, f) &&
             (collect_piece(f.element, at_last, piece) ||
              collect_piece(mesh_.neighbor(f).element, at_last, piece)))
             doubtful.emplace_back(time(f), f);
@@ -137,7 +137,7 @@ bool SliverFragments::collect_piece(ElementId start, double by, std::vector<Elem
     for (std::size_t next = 0; next < piece.size(); ++next) {
         const ElementId e = piece[next];
         if (!is_known(e)) volume += rest_volume(mesh_, e);
-        for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.reach(n));
+        for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.local_edge_length(n));
         if (large_.contains(e) || volume > largest_sliver * edge * edge * edge) {
             if (by == at_last)  // and before it was no less
                 for (const ElementId member : piece) large_.insert(member);
@@ -238,14 +238,14 @@ Separation separation(const Mesh& mesh, const CutFront& front, const SnapHistory
     const Sides sides(mesh, front, touched, place_on_cut);
     Separation result{sides.separated_faces(), {}, {}};
     if (is_reached) std::erase_if(result.faces, [&](FaceId f) { return !is_reached(f); });
-    const auto is_settled_face = [&](FaceId f) { return is_settled(mesh, front, f); };
+    const auto is_frozen_face = [&](FaceId f) { return is_frozen(mesh, front, f); };
     if (!course) {
-        std::erase_if(result.faces, is_settled_face);
+        std::erase_if(result.faces, is_frozen_face);
         return result;
     }
     SliverFragments slivers(mesh, front, snap_history, sides, touched, result.faces, *course);
     slivers.keep();
-    std::erase_if(result.faces, [&](FaceId f) { return is_settled_face(f) || slivers.is_kept(f); });
+    std::erase_if(result.faces, [&](FaceId f) { return is_frozen_face(f) || slivers.is_kept(f); });
     result.slivers = slivers.elements();
     result.waiting = slivers.waiting();
     return result;

@@ -155,7 +155,7 @@ class Splitter {
     CutRecord record_at(NodeId n, const EdgeIntersection& intersection) const;
     bool is_at(const EdgeEnd& end, const EdgeIntersection& intersection);
     bool passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const;
-    void settle(const Edge& edge, const EdgeIntersections& intersections);
+    void resolve(const Edge& edge, const EdgeIntersections& intersections);
     bool is_to_be_divided(const Edge& edge, ElementId element, EdgeIntersections& intersections);
     void divide_next();
     double place_to_divide(const Edge& edge, ElementId element,
@@ -168,7 +168,7 @@ class Splitter {
         const std::vector<MeshEdit::DividedElement>& elements;
     };
     Division bisect(const Edge& edge, ElementId element, double place);
-    void place_halves(const Edge& edge, const Division& division, double reach);
+    void place_halves(const Edge& edge, const Division& division, double local_edge_length);
     void divide_at_end();
     NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
     void part();
@@ -180,8 +180,8 @@ class Splitter {
                 point(mesh_.face_corner(f, 2))};
     }
     void put_on_lying_nodes();
-    void put_on(NodeId n, bool is_exact, double reach);
-    void snap_to(NodeId n, double reach);
+    void put_on(NodeId n, bool is_exact, double local_edge_length);
+    void snap_to(NodeId n, double local_edge_length);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -377,22 +377,23 @@ double Splitter::time_of_separation(FaceId f) const {
 /// When all is divided: if they were on the cut before, a bend of the surface or another sheet near
 /// them would count as passing by them.
 void Splitter::put_on_lying_nodes() {
-    for (const auto& [n, normal, reach] : lying_) {
+    for (const auto& [n, normal, local_edge_length] : lying_) {
         if (front_.is_on(n)) continue;
-        snap_to(n, reach);
+        snap_to(n, local_edge_length);
         const Vec3 x = point(n)[1];
         snap_history_.add(n, {normal, Vec3::Zero(), false, front_.rank(n), surface_.identity(), x});
     }
 }
 
-void Splitter::put_on(NodeId n, bool is_exact, double reach) {
+void Splitter::put_on(NodeId n, bool is_exact, double local_edge_length) {
     if (!front_.is_on(n)) came_on_[n] = now_;
-    front_.put_on(n, is_exact, reach, front_.is_on(n) ? front_.rank(n) : snap_history_.take_rank());
+    front_.put_on(n, is_exact, local_edge_length,
+                  front_.is_on(n) ? front_.rank(n) : snap_history_.take_rank());
 }
 
-void Splitter::snap_to(NodeId n, double reach) {
+void Splitter::snap_to(NodeId n, double local_edge_length) {
     if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
-    put_on(n, false, reach);
+    put_on(n, false, local_edge_length);
 }
 
 CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) const {
@@ -465,7 +466,7 @@ void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections in
 }
 
 /// The edge is not divided: what passes through it counts as at its ends.
-void Splitter::settle(const Edge& edge, const EdgeIntersections& intersections) {
+void Splitter::resolve(const Edge& edge, const EdgeIntersections& intersections) {
     for (const EdgeIntersection& intersection : intersections) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
         if (is_at_a && (!is_at_b || intersection.from_a <= intersection.from_b))
@@ -502,7 +503,7 @@ void Splitter::divide_next() {
         snap_history_.add(
             end, record_at(end, intersection));  // beside a crease, even of a node made on the cut
     }
-    settle(edge, due);
+    resolve(edge, due);
     if (!later.empty()) receive(edge, element, std::move(later));
 }
 
@@ -545,11 +546,11 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
 }
 
 /// On this cut and on those of the other blades, once its crossings of the new edges are counted.
-void Splitter::place_halves(const Edge& edge, const Division& division, double reach) {
+void Splitter::place_halves(const Edge& edge, const Division& division, double local_edge_length) {
     const auto& [middle, ring, elements] = division;
     front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
     for (const SuspendedCut& blade : suspended_) {
-        position_of_suspended(blade, edge, middle, ring, reach, snap_history_,
+        position_of_suspended(blade, edge, middle, ring, local_edge_length, snap_history_,
                               [&](NodeId n) { return point(n); });
         blade.front.place_halves(mesh_, edge.a, edge.b, middle, elements);
     }
@@ -558,10 +559,10 @@ void Splitter::place_halves(const Edge& edge, const Division& division, double r
 /// Returns the new node.
 NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
                         const EdgeIntersection& intersection) {
-    const double reach = rest_length(edge);
+    const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, t);
     const auto& [middle, ring, elements] = division;
-    put_on(middle, t == intersection.place, reach);
+    put_on(middle, t == intersection.place, local_edge_length);
 
     const auto holder = [&](NodeId other) {
         ElementId found;
@@ -588,7 +589,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
         place(edge.b, edge.a, to_a);
     else
         place(edge.a, edge.b, to_b);
-    place_halves(edge, division, reach);
+    place_halves(edge, division, local_edge_length);
     // What the blade did before, it did to the edge that was there then: in smaller steps these
     // would not be asked for it.
     const auto take = [&](NodeId other, EdgeIntersections&& passed) {
@@ -626,15 +627,15 @@ void Splitter::divide_at_end() {
 
 /// Both ends are on the cut: so is the new node, on the side of one of them.
 NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
-    const double reach = rest_length(edge);
+    const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, t);
     const auto& [middle, ring, elements] = division;
-    put_on(middle, !front_.is_near(edge.a) && !front_.is_near(edge.b), reach);
+    put_on(middle, !front_.is_near(edge.a) && !front_.is_near(edge.b), local_edge_length);
     place_on_side(
         front_, edge.a, edge.b, middle, ring,
         [](NodeId, NodeId, NodeId) { return std::optional(false); },
         [](std::size_t) { return false; });
-    place_halves(edge, division, reach);
+    place_halves(edge, division, local_edge_length);
     return middle;
 }
 
@@ -654,8 +655,8 @@ Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutF
     if (front.is_empty()) return {};
     const BladeEnd end =
         away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
-    Split result = Splitter(mesh, tissue, end.continuation(way_out(tissue, end)), front, options,
-                            snap_history, resting, &end)
+    Split result = Splitter(mesh, tissue, end.continuation(exit_distance(tissue, end)), front,
+                            options, snap_history, resting, &end)
                        .run();
     front = {};
     return result;

@@ -167,8 +167,9 @@ void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf&
     const auto is_far = [&] {
         bool is_near = false;
         front.for_each([&](NodeId n) {
-            is_near = is_near || (mesh.is_alive(n) &&
-                                  surface.ends_near(position(n), far_away * front.reach(n)));
+            is_near =
+                is_near || (mesh.is_alive(n) &&
+                            surface.ends_near(position(n), far_away * front.local_edge_length(n)));
         });
         return !is_near;
     };

@@ -58,9 +58,9 @@ TEST(CutFront, KnowsItsNodes) {
     EXPECT_EQ(front.rank(node(4)), 0u);
     EXPECT_FALSE(front.is_near(node(3)));
     EXPECT_EQ(front.size(), 2u);
-    EXPECT_EQ(front.reach(node(3)), 2.0);
-    EXPECT_EQ(front.reach(node(5)), 0.5);
-    EXPECT_EQ(front.reach(node(4)), 0.0);
+    EXPECT_EQ(front.local_edge_length(node(3)), 2.0);
+    EXPECT_EQ(front.local_edge_length(node(5)), 0.5);
+    EXPECT_EQ(front.local_edge_length(node(4)), 0.0);
 }
 
 TEST(CutFront, TogglesEdgesWhicheverWayTheyAreAskedFor) {

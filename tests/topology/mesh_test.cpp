@@ -83,6 +83,34 @@ TEST(Mesh, IsValidForEveryFamily) {
     }
 }
 
+TEST(Mesh, ConnectivityIsThatOfEachElement) {
+    test::Random random(3);
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        Mesh mesh = Mesh::build(family.data).mesh;
+        for (int i = 0; i < 3; ++i) {
+            const Mesh::Connectivity all = mesh.connectivity();
+            ASSERT_EQ(all.epoch, mesh.epoch());
+            ASSERT_EQ(all.kinds.size(), mesh.element_capacity());
+            for (std::size_t k = 0; k < all.kinds.size(); ++k) {
+                const ElementId e(k);
+                ASSERT_EQ(all.is_alive[k] != 0, mesh.is_alive(e));
+                ASSERT_EQ(all.kinds[k], mesh.kind(e));
+                ASSERT_EQ(all.regions[k], mesh.region(e));
+                ASSERT_TRUE(std::ranges::equal(
+                    all.corners.subspan(all.corner_begin[k],
+                                        all.corner_begin[k + 1] - all.corner_begin[k]),
+                    mesh.corners(e)));
+                for (int f = 0; f < mesh.num_faces(e); ++f)
+                    ASSERT_EQ(all.neighbors[all.face_begin[k] + static_cast<std::size_t>(f)],
+                              mesh.neighbor({e, f}));
+            }
+            if (mesh.num_elements() < 3) break;
+            test::random_edit(mesh, random);
+        }
+    }
+}
+
 TEST(Mesh, LabelsAreTheNumbersOfTheSource) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
