@@ -1,4 +1,4 @@
-// State as bytes and back, bit for bit: what checkpoints are made of.
+// Conversion of state to bytes and back, bit for bit, as used by checkpoints.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -26,10 +26,11 @@
 
 namespace incise {
 
+/// A type whose bytes an archive stores as they are.
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// A type that lists its members once, for both directions:
+/// A type that lists its members once, for both writing and reading:
 ///     static void archive(auto& ar, auto& self) { ar(self.first, self.second); }
 template <class T, class Archive>
 concept Archivable = requires(Archive& ar, T& value) {
@@ -37,7 +38,7 @@ concept Archivable = requires(Archive& ar, T& value) {
 };
 
 namespace detail {
-/// Little-endian from the machine's order, and the other way.
+/// Converts bytes from the machine's order to little-endian order, or back.
 template <Number T>
 std::array<char, sizeof(T)> little_endian(std::array<char, sizeof(T)> bytes) {
     if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
@@ -45,8 +46,9 @@ std::array<char, sizeof(T)> little_endian(std::array<char, sizeof(T)> bytes) {
 }
 }  // namespace detail
 
-/// Appends values to a string of bytes, without types, names and padding: reading them takes the
-/// same list of types. The same values give the same bytes; unordered containers are sorted.
+/// Writer that appends values to a string of bytes. It stores no types, names or padding, so that
+/// reading needs the same list of types. Equal values give equal bytes, since unordered containers
+/// are sorted.
 class ArchiveWriter {
   public:
     template <class... T>
@@ -123,18 +125,19 @@ class ArchiveWriter {
     std::string bytes_;
 };
 
-/// Reads what an ArchiveWriter wrote, as the same types in the same order. Throws InputError where
-/// the bytes end too early; what else may be wrong, and a checksum has not found, whoever takes the
-/// values has to. Memory stays in proportion to the bytes that are there.
+/// Reader of the bytes of an ArchiveWriter. The types and their order must be those of the writer.
+/// Throws InputError if the bytes end too early, or if a variant has no such alternative. All other
+/// checks of the values are left to the caller. Memory stays in proportion to the number of bytes.
 class ArchiveReader {
   public:
-    /// @param bytes must outlive the reader
+    /// @param bytes  must outlive the reader
     explicit ArchiveReader(std::string_view bytes) : rest_(bytes) {}
 
     template <class... T>
     void operator()(T&... values) {
         (get(values), ...);
     }
+    /// Returns the next value, which must be of type T.
     template <class T>
     T read() {
         T value;
@@ -176,7 +179,7 @@ class ArchiveReader {
     template <class T>
     void get(std::vector<T>& values) {
         values.clear();
-        // A count that is not true is found out before there is memory for so many.
+        // No reserve: with a wrong count, the bytes must run out before the memory does.
         for (auto i = read<std::uint64_t>(); i > 0; --i) get(values.emplace_back());
     }
     template <class Key, class T>

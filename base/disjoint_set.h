@@ -1,4 +1,4 @@
-// Which of many numbers belong together, as that is found out.
+// Disjoint sets of numbers, which can be joined.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,20 +10,20 @@
 
 namespace incise {
 
-/// The numbers from 0 to size - 1, each in a group of its own until groups are joined. The lowest
-/// of a group stands for it (disjoint sets, with paths halved).
+/// Disjoint sets of the numbers from 0 to size - 1 (union-find with path halving). At first each
+/// number is in a set of its own. The lowest number of a set represents it.
 class DisjointSet {
   public:
     explicit DisjointSet(std::size_t size) : lower_(size) {
         std::iota(lower_.begin(), lower_.end(), 0);
     }
 
-    /// The lowest of the group of `i`.
+    /// Returns the lowest number in the set of `i`.
     std::int32_t find(std::int32_t i) {
         while (at(i) != i) i = at(i) = at(at(i));
         return i;
     }
-    /// Returns the lowest of the two groups, which are one from now on.
+    /// Joins the sets of `i` and `j`. Returns the lowest number in the joined set.
     std::int32_t join(std::int32_t i, std::int32_t j) {
         i = find(i), j = find(j);
         return at(std::max(i, j)) = std::min(i, j);

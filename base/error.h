@@ -1,5 +1,5 @@
-// What can go wrong outside the program's own control. The type says whose turn it is; the text
-// names the thing, its value, the place and the remedy.
+// Errors with causes outside the program. The type tells who can correct the error; the text names
+// the thing, its value, its location and the remedy.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,23 +8,23 @@
 
 namespace incise {
 
-/// The input is at fault: a file, a scenario, an argument.
+/// An error in the input: a file, a scenario or an argument.
 struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The physics went wrong: a step too large, a state that is no longer finite.
+/// A failure of the simulation, such as a step that is too large or a state that is not finite.
 struct PhysicsError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A result could not be written.
+/// A failure to write a result.
 struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The machine has less memory than what is asked for takes; known before it is taken, else it is
-/// std::bad_alloc.
+/// A request that needs more memory than the machine has. It is thrown before the memory is
+/// allocated; a failure of the allocation itself throws std::bad_alloc.
 struct MemoryError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-// A function that is called while the one that it is passed to runs.
+// A reference to a callable object, for parameters of functions.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,9 +10,11 @@ namespace incise {
 template <class Signature>
 class FunctionRef;
 
-/// Refers to a callable object, and takes no memory as std::function does of one with several
-/// captures. For parameters only: who gets one must not keep it, as the object may be gone when
-/// the call is over.
+/// Reference to a callable object. In contrast to std::function, it never allocates memory. It is
+/// meant for parameters only.
+///
+/// Lifetime: the function that receives a FunctionRef must not keep it, since the object may be
+/// destroyed when the call ends.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
   public:

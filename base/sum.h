@@ -7,13 +7,15 @@
 
 namespace incise {
 
-/// Compensated sum: what rounding loses is added up by itself (after Neumaier, with Knuth's sum of
-/// two numbers and its error, which has no branch). The error stays at a few units in the last
-/// place of the sum of absolute values, however many terms. The result depends on their order only
-/// in that error.
+/// Compensated sum: the rounding errors are added up in a second number. The method is Neumaier's;
+/// the error of each addition is found by Knuth's TwoSum, which has no branch. For any number of
+/// terms, the error is a few units in the last place of the sum of their absolute values. The order
+/// of the terms changes the result only within this error.
 class Sum {
   public:
     Sum() = default;
+    /// @param sum   the rounded sum
+    /// @param lost  the sum of the rounding errors
     Sum(double sum, double lost) : sum_(sum), lost_(lost) {}
 
     Sum& operator+=(double term) {
@@ -38,7 +40,8 @@ class Sum {
     double sum_ = 0.0, lost_ = 0.0;
 };
 
-/// Several, an even number of them, side by side: two at a time, as every processor can.
+/// `n` compensated sums side by side, where `n` is even. Two of them are computed at a time, since
+/// every processor has instructions for pairs of doubles.
 template <std::size_t n>
 class Sums {
   public:

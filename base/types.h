@@ -14,12 +14,12 @@ namespace incise {
 /// A point or vector in three dimensions.
 using Vec3 = Eigen::Vector3d;
 
-/// A box whose sides are along the axes; empty at first.
+/// A box whose sides are parallel to the axes; a default-constructed box is empty.
 using Box = Eigen::AlignedBox3d;
 
-/// An id that indexes arrays of its own kind and nothing else. Ids are given out in ascending
-/// order and stay with their node or element through all edits; an id is never handed on to
-/// another one, except that undoing an edit takes back the ids which that edit gave out.
+/// Index into arrays of one kind, as a type of its own. Ids are assigned in ascending order and
+/// stay with their node or element through all edits. An id is not used again for another node or
+/// element, with one exception: undoing an edit releases the ids that the edit assigned.
 template <class Tag>
 struct Id {
     std::int32_t value = -1;
@@ -35,7 +35,7 @@ struct Id {
 using NodeId = Id<struct NodeTag>;
 using ElementId = Id<struct ElementTag>;
 
-/// One side of an element: local face numbers are those of cell_kind.h.
+/// One face of an element. Local face numbers are those of cell_kind.h.
 struct FaceId {
     ElementId element;
     std::int32_t face = -1;

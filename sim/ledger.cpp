@@ -19,7 +19,7 @@ double least_altitude(const topology::Mesh& mesh, ElementId e) {
     return topology::min_altitude(mesh.kind(e), x);
 }
 
-/// The elements of before that were divided, and those that came of it.
+/// The elements that an edit divided, and the least altitude of them and of their parts.
 struct Divided {
     std::size_t num_parents = 0;
     double least_altitude = std::numeric_limits<double>::infinity();
@@ -122,8 +122,8 @@ double Ledger::energy_error() const {
     const physics::Totals now = model_.totals();
     const double at_start = initial_.totals.kinetic_energy + initial_.totals.elastic_energy;
     const double at_end = now.kinetic_energy + now.elastic_energy;
-    // Near rest nothing but rounding is left: it is measured against the energy of a strain of
-    // 1e-4, a hundredth of a percent.
+    // Near rest all energies are small and the error is only rounding. The floor is the energy of a
+    // strain of 1e-4.
     const double floor = 1e-8 * model_.stiffness_energy();
     const double scale = std::abs(at_start) + std::abs(at_end) + std::abs(model_.external_work()) +
                          std::abs(model_.dissipated_energy()) + std::abs(energy_removed_);

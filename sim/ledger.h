@@ -1,4 +1,4 @@
-// The books of a run: what each edit took and left, so that nothing is lost in silence.
+// The conservation record of a run: what each edit removed, and the totals of the body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,39 +15,39 @@
 
 namespace incise::sim {
 
-/// The body at one moment.
+/// Counts and totals of the body at one time.
 struct BodyTotals {
     std::size_t nodes = 0, elements = 0;
     int components = 0;
     physics::Totals totals;
-    double stable_step = 0.0;
+    double stable_step = 0.0;                             ///< s
     double external_work = 0.0, dissipated_energy = 0.0;  ///< J, since the start
-    double min_volume_ratio = 0.0;                        ///< of all elements, J
-    std::vector<physics::Reaction> reactions;             ///< of each constraint, in the last step
+    double min_volume_ratio = 0.0;                        ///< least current over rest volume
+    std::vector<physics::Reaction> reactions;             ///< by constraint, in the last step
     static void archive(auto& ar, auto& self) {
         ar(self.nodes, self.elements, self.components, self.totals, self.stable_step,
            self.external_work, self.dissipated_energy, self.min_volume_ratio, self.reactions);
     }
 };
 
-/// One edit, by one tool.
+/// The record of one edit by one tool.
 struct EditRecord {
-    double time = 0.0;
-    std::uint64_t step = 0;
+    double time = 0.0;       ///< s
+    std::uint64_t step = 0;  ///< number of the step, from 1
     std::string tool;
     std::size_t elements_removed = 0;
-    std::size_t elements_crossed = 0;  ///< by the surface of a cut that splits
-    std::size_t elements_split = 0;    ///< of these, the ones that were divided
+    std::size_t elements_crossed = 0;  ///< elements that the surface of a cut passed through
+    std::size_t elements_split = 0;    ///< of these, the elements that were divided
     std::size_t elements_added = 0;
-    std::size_t faces_opened = 0;      ///< between elements that live on
-    std::size_t nodes_added = 0;       ///< of both kinds:
-    std::size_t nodes_duplicated = 0;  ///< copies, where nodes were divided
+    std::size_t faces_opened = 0;      ///< between elements that were not removed
+    std::size_t nodes_added = 0;       ///< new nodes on divided edges, and copies
+    std::size_t nodes_duplicated = 0;  ///< of these, the copies of nodes that were divided
     std::size_t nodes_removed = 0;
-    std::size_t nodes_snapped = 0;  ///< that counted as on the cut, though only near it
-    double cut_area = 0.0;          ///< of one side of the opened faces, at rest, m2
+    std::size_t nodes_snapped = 0;  ///< nodes near the cut that were treated as on it
+    double cut_area = 0.0;          ///< m2, at rest, of one side of the opened faces
     double mass_removed = 0.0;      ///< kg: density times rest volume of the removed elements
-    /// Least altitude of the elements that were divided and of those that came of it, over the
-    /// least of the mesh at the start; not a number if none were.
+    /// The least altitude of the divided elements and of their parts, divided by the least altitude
+    /// of the mesh at the start. Not a number if no element was divided.
     double min_altitude_ratio = std::numeric_limits<double>::quiet_NaN();
     BodyTotals before, after;
     static void archive(auto& ar, auto& self) {
@@ -58,34 +58,41 @@ struct EditRecord {
     }
 };
 
-/// What came in, what went out, and what there is: adds up over all edits.
+/// The balance of mass and energy over all edits.
 class Ledger {
   public:
     explicit Ledger(const physics::Model& model);
 
-    /// The body as the model has it, edits counted up to the last one booked: between an edit of
-    /// the mesh and the model's following it, the body of before. Cost: O(#nodes + #elements).
+    /// Returns the totals of the body in the model. The counts are those after the last recorded
+    /// edit. Called between an edit of the mesh and Model::apply(), it returns the totals before
+    /// the edit. Cost: O(#nodes + #elements).
     BodyTotals body_totals() const;
-    /// The body after the last edit; at the start if there was none.
+    /// Returns the totals after the last edit, or those at the start if there was no edit.
     const BodyTotals& last() const { return last_; }
-    /// Books an edit; called after the model has followed it. Returns its record.
+    /// Records an edit and returns its record.
+    /// @param before        totals of the body before the edit
+    /// @param mass_removed  see removed_mass(), kg
+    /// @pre  the model has followed the edit
     EditRecord record(double time, std::uint64_t step, const std::string& tool,
                       const cutting::Split& done, const BodyTotals& before, double mass_removed);
 
     std::size_t num_edits() const { return num_edits_; }
 
+    /// Returns the totals at the start.
     const BodyTotals& initial() const { return initial_; }
 
-    /// |mass now + mass removed - mass at the start| over that at the start.
+    /// Returns |mass now + mass removed - mass at the start| / mass at the start.
     double mass_error() const;
-    /// What is missing between the energy at the start, what came in (work) and what went out
-    /// (dissipated, removed with elements) on one side and the present energy on the other, over
-    /// the sum of their sizes, or over 1e-8 of the body's stiffness energy if that is more. Of the
-    /// order of the step: the integrator's energy swings with it.
+    /// Returns the relative error of the energy balance: |energy at the start + external work -
+    /// dissipated energy - energy removed by edits - energy now|, divided by a scale.
+    /// The scale is the sum of the absolute values of these five terms, but at least 1e-8 of
+    /// Model::stiffness_energy(). The error is of the order of the time step, since the energy of
+    /// the integrator oscillates with an amplitude of this order.
     double energy_error() const;
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }
-    /// Goes on from what was saved: on a ledger of the model as it was then.
+    /// Restores a ledger that was saved.
+    /// @pre  the ledger was built for the restored model
     void restore(ArchiveReader& ar) { list(ar, *this); }
 
   private:
@@ -107,8 +114,8 @@ class Ledger {
     double mass_removed_ = 0.0, energy_removed_ = 0.0;
 };
 
-/// Mass of the elements that `changes` removed, from their rest volumes, kg. To be called while
-/// the model still has them: before it follows the edit.
+/// Returns the mass of the elements that `changes` removed, kg: density times rest volume.
+/// @pre  the model has not followed the edit yet
 double removed_mass(const physics::Model& model, const topology::ChangeSet& changes);
 
 }  // namespace incise::sim

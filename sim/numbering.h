@@ -1,4 +1,4 @@
-// Numbers for things in a list, which stay when others are removed.
+// Permanent numbers for the things in a list.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,17 +12,22 @@
 
 namespace incise::sim {
 
-/// Where the things are in a list that have been given numbers: those that are removed leave it.
+/// Map from permanent numbers to positions in a list. When a thing is removed, the things behind it
+/// move up in the list and keep their numbers.
 class Numbering {
   public:
+    /// @param noun   what the things are called in messages
+    /// @param count  how many things the list has at first
     explicit Numbering(const char* noun, std::size_t count = 0) : noun_(noun) {
         for (std::size_t i = 0; i < count; ++i) add();
     }
+    /// Appends a thing to the list and returns its number.
     std::size_t add() {
         places_.push_back(count_++);
         return places_.size() - 1;
     }
-    /// Throws InputError for a number that was never given, or whose thing is gone.
+    /// Returns the position in the list of the thing with this number.
+    /// Throws InputError if the number was never assigned, or if the thing has been removed.
     std::size_t place(std::size_t number) const {
         if (number >= places_.size())
             throw InputError(std::string("there is no ") + noun_ + " " + std::to_string(number) +
@@ -32,6 +37,7 @@ class Numbering {
                              " has been removed");
         return *places_[number];
     }
+    /// Removes the thing from the list. Throws InputError as place() does.
     void remove(std::size_t number) {
         const std::size_t gone = place(number);
         places_[number].reset();
@@ -39,6 +45,7 @@ class Numbering {
         for (auto& place : places_)
             if (place && *place > gone) --*place;
     }
+    /// True if the list has `count` things and all positions lie in it.
     bool fits(std::size_t count) const {
         return count_ == count && std::ranges::all_of(places_, [&](const auto& place) {
                    return !place || *place < count;

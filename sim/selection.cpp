@@ -17,14 +17,14 @@ bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
            std::binary_search(where.regions->begin(), where.regions->end(), mesh.region(e));
 }
 
-/// All that `where` asks for but the region: elements and faces are of one region, nodes of
-/// several.
+/// Returns `where` without its regions. Elements and faces belong to one region each and are tested
+/// for it themselves; nodes may belong to several.
 Selection without_regions(Selection where) {
     where.regions.reset();
     return where;
 }
 
-/// By node id: whether it is alive and selected.
+/// Returns, by node id, whether the node is alive and selected.
 std::vector<char> selected(const Mesh& mesh, const Selection& where) {
     std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
     if (where.regions)
@@ -37,7 +37,7 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
             for (int p = 0; p < mesh.face_size(f); ++p)
                 on_surface[mesh.face_corner(f, p).index()] = 1;
 
-    // A pinched point has several nodes, which answer to its number all alike.
+    // A pinched point has several nodes. All of them have the number of the point.
     std::vector<char> is_named(mesh.node_capacity(), !where.nodes);
     if (where.nodes)
         for (const std::int64_t label : *where.nodes) {

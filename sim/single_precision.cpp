@@ -11,7 +11,7 @@ namespace incise::sim {
 
 namespace {
 
-/// Least altitude over longest edge of a tetrahedron.
+/// Returns the least altitude of a tetrahedron divided by its longest edge.
 double thinness(const topology::Mesh& mesh, ElementId e) {
     std::array<Vec3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
@@ -24,7 +24,7 @@ double thinness(const topology::Mesh& mesh, ElementId e) {
 }  // namespace
 
 std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) {
-    constexpr double least_thinness = 1e-2;  // below it floats lose strains of a few per cent
+    constexpr double least_thinness = 1e-2;  // below it, floats lose strains of a few per cent
     std::size_t num_thin = 0;
     double thinnest = 1.0;
     ElementId thinnest_element;

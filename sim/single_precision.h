@@ -1,4 +1,4 @@
-// What single precision cannot compute with.
+// Warning of elements that are too thin for single precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace incise::sim {
 
-/// Returns a warning of the tetrahedra that are too thin at rest for forces in single precision, if
-/// there are any: see docs/theory.md, Accuracy. Cost: O(#elements).
+/// Returns a warning if there are tetrahedra that are too thin at rest for forces in single
+/// precision: see docs/theory.md, Accuracy. Cost: O(#elements).
 std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh);
 
 }  // namespace incise::sim

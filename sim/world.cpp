@@ -34,7 +34,7 @@ const StepReport& World::step_to(double time) {
     if (!(dt > 0.0 && std::isfinite(dt)))
         throw InputError("a step from " + io::format_number(p.time) + " s to " +
                          io::format_number(time) + " s: it must go forward");
-    // Steps that divide an interval evenly may be longer by rounding.
+    // A step that is an exact fraction of an interval may exceed the bound by rounding.
     constexpr double rounding = 1e-8;
     if (p.solver == Solver::semi_implicit_euler &&
         !(dt <= (1.0 + rounding) * p.model.stable_step()))

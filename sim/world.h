@@ -24,164 +24,184 @@
 
 namespace incise::sim {
 
-/// How a world gets from one moment to the next.
+/// The time integration method of a world.
 enum class Solver {
-    semi_implicit_euler,  ///< explicit: steps below World::stable_step()
-    implicit_euler,       ///< any step
-    statics,              ///< equilibrium at each moment
+    semi_implicit_euler,  ///< explicit: steps up to World::stable_step()
+    implicit_euler,       ///< steps of any length
+    statics,              ///< equilibrium at the end of each step
 };
 
-/// What a world is made of: plain values.
+/// The definition of a world, as plain values.
 struct WorldDef {
-    /// The body at rest, m. Mesh data are checked and built; see topology::Mesh::build.
+    /// The body at rest, m. Mesh data are checked and built into a mesh: see topology::Mesh::build.
     std::variant<topology::MeshData, topology::Mesh> mesh = {};
 
     std::vector<physics::Material> materials = {};
-    /// The index of the material of each region. Empty: all regions have the first material.
+    /// By region, an index into `materials`. If empty, all regions have the first material.
     std::map<int, std::size_t> material_of_region = {};
-    /// The direction of the fibres at rest, of unit length, by element id. Needed if a material has
-    /// fibres.
+    /// By element id, the direction of the fibres at rest, of unit length. Needed only if a
+    /// material has fibres.
     std::vector<Vec3> fibres = {};
     physics::Precision precision = physics::Precision::double_precision;
 
     Vec3 gravity = Vec3::Zero();                        ///< m/s2
     double damping = 0.0;                               ///< mass-proportional, 1/s
-    std::vector<physics::Constraint> constraints = {};  ///< their nodes are ids of the mesh
+    std::vector<physics::Constraint> constraints = {};  ///< nodes are given by id
     std::vector<physics::Load> loads = {};
 
     Solver solver = Solver::semi_implicit_euler;
-    int num_threads = 1;  ///< of no influence on any result
+    int num_threads = 1;  ///< does not change any result
 };
 
-/// The number of a tool in its world; never given to another one.
+/// The number of a tool in its world. It is never used for another tool.
 struct ToolId {
     std::size_t index = 0;
     bool operator==(const ToolId&) const = default;
 };
 
-/// The number of a constraint in its world; never given to another one.
+/// The number of a constraint in its world. It is never used for another constraint.
 struct ConstraintId {
     std::size_t index = 0;
     bool operator==(const ConstraintId&) const = default;
 };
 
-/// The number of a load in its world; never given to another one.
+/// The number of a load in its world. It is never used for another load.
 struct LoadId {
     std::size_t index = 0;
     bool operator==(const LoadId&) const = default;
 };
 
+/// The definition of a tool.
 struct ToolDef {
     std::string name = {};  ///< for reports and messages
     cutting::ToolShape shape = {};
 };
 
-/// One edit of the mesh, which a tool has made.
+/// One edit of the mesh by a tool.
 struct Edit {
     ToolId tool;
-    EditRecord record;            ///< what it took and left
-    topology::ChangeSet changes;  ///< what it did to the mesh
+    EditRecord record;            ///< conservation record of the edit
+    topology::ChangeSet changes;  ///< the changes of the mesh
 };
 
-/// A tool after a step.
+/// The state of a tool after a step.
 struct ToolState {
     ToolId tool;
     Pose pose;
-    bool is_in_tissue = false;  ///< of a blade that splits: its cut ends within an element
+    bool is_in_tissue = false;  ///< true if the tool splits elements and its cut ends inside one
 };
 
-/// What happened in one step.
+/// The report of one step.
 struct StepReport {
     double from = 0.0, to = 0.0;   ///< s
-    std::vector<Edit> edits;       ///< in the order in which they were made
-    std::vector<ToolState> tools;  ///< those that took part
+    std::vector<Edit> edits;       ///< in order of execution
+    std::vector<ToolState> tools;  ///< those present at the end of the step
 };
 
-/// A tool has met what it cannot cut.
+/// Thrown if a tool meets something that it cannot cut.
 struct ToolError : InputError {
     ToolError(const std::string& text, ToolId which, bool meets_undividable)
         : InputError(text), tool(which), is_undividable(meets_undividable) {}
     ToolId tool;
-    bool is_undividable;  ///< an element that is to be divided is no tetrahedron
+    bool is_undividable;  ///< true if the tool would divide an element that is no tetrahedron
 };
 
-/// A body, what acts on it, and the tools that cut it.
+/// A deformable body with its boundary conditions and the tools that cut it.
 ///
-/// A world can be moved; the one that it was moved from can be destroyed and assigned to, and
-/// nothing else. Several worlds can live in one process and be stepped by several threads,
-/// each world by one thread at a time. References that its functions return are valid until the
-/// world is stepped, restored or destroyed; moving it keeps them.
+/// A world can be moved. A world that was moved from can only be destroyed or assigned to.
+///
+/// Threads: several threads may step several worlds of one process, but only one thread at a time
+/// may use the same world.
+///
+/// Lifetime: references that member functions return are valid until the world is stepped, restored
+/// or destroyed. They stay valid when the world is moved.
 class World {
   public:
-    /// Throws InputError for what is wrong with the definition: the mesh, a material that does not
-    /// suit its elements, constraints that conflict. Cost: O(n log n).
+    /// Builds a world in its rest state at time 0.
+    /// Throws InputError for an invalid definition: an unsound mesh, a material that does not suit
+    /// its elements, constraints that conflict. Cost: O(n log n).
     explicit World(WorldDef def);
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
     ~World();
 
-    /// Goes on by `dt`, s. First the tissue moves while the tools go to their poses. Then each
-    /// tool, in the order of their ids, cuts what it has met. In statics the edited body goes to
-    /// its new equilibrium, and what crosses a tool on the way is cut as well.
+    /// Advances the world by `dt`, s.
     ///
-    /// Throws InputError, and changes nothing, if dt is not above 0, if it is above the stable step
-    /// of an explicit solver, or if the world has failed before.
-    /// Throws physics::MotionFailure if the motion is lost, ToolError if a tool meets what it
-    /// cannot cut. The world has failed then: it can be looked at, and restored, but not stepped.
+    /// First the tissue moves, while the tools move to their new poses. Then the tools, in the
+    /// order of their ids, cut the tissue that they have met. With Solver::statics the edited body
+    /// then moves to its new equilibrium, and tissue that crosses a tool during this motion is cut
+    /// too.
+    ///
+    /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above the stable
+    /// step of the explicit solver, or if the world has failed before.
+    /// Throws physics::MotionFailure if the solver fails, and ToolError if a tool meets something
+    /// that it cannot cut. In both cases the world has failed: it can be read and restored, but not
+    /// stepped.
     const StepReport& step(double dt);
-    /// The same with the time at the end of the step, s.
+    /// Advances the world to `time`, s, in one step; see step().
     const StepReport& step_to(double time);
-    /// Of the last step; also of one that failed, up to there.
+    /// Returns the report of the last step. For a step that failed, it ends at the failure.
     const StepReport& report() const;
+    /// True if the world has failed; see step().
     bool has_failed() const;
 
     double time() const;  ///< s
     std::uint64_t num_steps() const;
-    /// The bound on explicit steps at rest, s.
+    /// Returns the upper bound on steps of the explicit solver, s, for the body at rest.
     double stable_step() const;
 
-    /// Adds a tool. It is not in the body's space before it has a pose. Throws InputError for a
-    /// shape that is none: a blade with fewer than two points, or a radius that is not above 0.
+    /// Adds a tool. The tool is present in the world only after a pose has been set.
+    /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
+    /// radius that is not above 0.
     ToolId add_tool(ToolDef def);
-    /// Puts a tool to a pose at once: it cuts nothing on the way there.
+    /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose.
+    /// Throws InputError if the tool is a blade whose cut ends in the tissue.
     void place_tool(ToolId tool, const Pose& pose);
-    /// Where the tool is to be at the end of the next step. Without a call it rests. A tool that
-    /// was not there before appears at this pose.
+    /// Sets the pose of the tool at the end of the next step. Without a call the tool does not
+    /// move. A tool that was not present appears at this pose.
     void set_tool_pose(ToolId tool, const Pose& pose);
-    /// The tool takes part in the next step and is gone after it: its cut ends where the blade then
-    /// is. It can come back by a new pose.
-    /// @param pose_before  a pose a moment before its last one, which tells the direction in which
-    ///                     it moved; null: that of the last step in which it moved
+    /// Withdraws a tool at the end of the next step. The tool still takes part in this step, and
+    /// its cut ends at the position that the blade then has. A new pose makes the tool present
+    /// again.
+    /// @param pose_before  a pose shortly before the last one. The two poses give the direction in
+    ///                     which the blade moved. If null, the direction is that of the last step
+    ///                     in which the blade moved.
     void withdraw_tool(ToolId tool, const Pose* pose_before = nullptr);
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
     std::size_t num_tools() const;
 
-    /// Adds a constraint whose motion is known beforehand: its curves go with the time of the
-    /// world. Those of the definition have the first numbers. Throws InputError, and changes
-    /// nothing, if a node is not there, or if it prescribes what another constraint does.
+    /// Adds a constraint with a known motion: its curves are functions of the time of the world.
+    /// The constraints of the definition have the first numbers.
+    /// Throws InputError, and changes nothing, if a node does not exist, or if another constraint
+    /// prescribes the same component of a node.
     ConstraintId add_constraint(physics::Constraint constraint);
-    /// Takes hold of nodes where they are now. `pose` is that of the thing that holds them, m: the
-    /// nodes go where its frame goes. Throws as add_constraint().
+    /// Grasps nodes at their current positions. The nodes then move rigidly with a frame, for
+    /// example that of a gripper.
+    /// @param pose  the present pose of the frame, m
+    /// Throws InputError as add_constraint() does, and for an invalid pose.
     ConstraintId grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose);
-    /// Where the frame of a grasp is to be at the end of the next step. Without a call it rests.
-    /// Throws InputError for a constraint that is no grasp.
+    /// Sets the pose of the frame of a grasp at the end of the next step. Without a call the frame
+    /// does not move. Throws InputError if the constraint is no grasp.
     void set_grasp_pose(ConstraintId grasp, const Pose& pose);
-    /// Removes a constraint, a grasp or another one. Its nodes go on with the velocities that they
-    /// have.
+    /// Removes a constraint, which may be a grasp. The nodes of the constraint keep their
+    /// velocities.
     void release(ConstraintId constraint);
-    /// What a constraint did to the body in the last step, N and N m.
+    /// Returns the force, N, and the moment, N m, that a constraint exerted on the body in the last
+    /// step.
     const physics::Reaction& reaction(ConstraintId constraint) const;
 
-    /// Adds a load. Those of the definition have the first numbers. Throws InputError, and changes
-    /// nothing, if it acts on what is not there, or on nothing.
+    /// Adds a load. The loads of the definition have the first numbers.
+    /// Throws InputError, and changes nothing, if the load acts on nothing, or on nodes, faces or
+    /// elements that do not exist.
     LoadId add_load(physics::Load load);
-    /// Scales a load by a constant factor from now on.
+    /// Scales a load by a constant factor, which replaces its previous factor from now on.
     void set_load_factor(LoadId load, double factor);
     void remove_load(LoadId load);
 
-    /// The surface of the body. It is built at the first call, and follows edits from then on.
+    /// Returns the surface of the body. The surface is built at the first call and then follows the
+    /// edits.
     topology::BoundarySurface& surface();
 
     void set_num_threads(int n);
@@ -191,14 +211,17 @@ class World {
     const cutting::Cutter& cutter() const;
     const Ledger& ledger() const;
 
-    /// Returns everything but the materials and the solver: mesh, state, constraints, loads, tools
-    /// and cuts in progress. Cost: some 100 bytes an element and as many a node.
+    /// Returns the state of the world as bytes: mesh, positions, velocities, constraints, loads,
+    /// tools and cuts in progress. The materials and the solver are not included.
+    /// Cost: some 100 bytes an element and as many a node.
     std::string save() const;
-    /// Goes on from what a world of the same materials and solver has saved, to the same bits.
-    /// Throws InputError, and changes nothing, for bytes that cannot be those of such a world. Laws
-    /// are compared by their kind and their moduli at rest. There is no checksum: a changed number
-    /// goes unnoticed.
-    /// Cost: that of a new world, and of topology::validate().
+    /// Restores a state that save() has returned. Later steps give the same results bit for bit.
+    /// Throws InputError, and changes nothing, for bytes that cannot be a state of a world with the
+    /// same materials and the same solver. Force laws are compared by their kind and by their
+    /// moduli at rest. There is no checksum, so that a changed number may not be detected.
+    ///
+    /// Cost: that of a new world and of topology::validate().
+    /// @pre  the saved world had the same materials and the same solver
     void restore(std::string_view bytes);
 
   private:

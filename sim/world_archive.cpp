@@ -1,4 +1,4 @@
-// A world as bytes, and back.
+// Conversion of a world to bytes and back.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>
 #include <utility>
@@ -62,7 +62,7 @@ void World::Parts::save(ArchiveWriter& ar) const {
     ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);
 }
 
-/// What an archive does not hold of tools, or holds wrongly.
+/// Checks the tools that an archive contained, and computes the members that it does not contain.
 void World::Parts::prepare_tools() {
     if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
     for (std::size_t i = 0; i < tools.size(); ++i) {
@@ -80,11 +80,12 @@ void World::Parts::prepare_tools() {
 
 namespace {
 
-/// To be changed with what save() lists and with the bits that a world computes.
+/// Must change whenever save() lists other members, and whenever a world computes other bits.
 constexpr std::uint32_t state_format = 3;
 constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
 
-/// Of what is plain of the materials: two laws with the same moduli at rest are not told apart.
+/// Returns a checksum of the plain values of the materials. Two laws of one kind with the same
+/// moduli at rest have the same checksum.
 std::uint64_t fingerprint_of(const physics::Model& model) {
     const physics::MaterialTable& table = model.elements().materials();
     ArchiveWriter ar;

@@ -20,7 +20,7 @@ namespace {
 
 bool is_finite(const Vec3& x) { return x.allFinite(); }
 
-/// Throws InputError unless times are finite and ascend strictly, and values are finite.
+/// Throws InputError unless the times are finite and strictly ascending and the values are finite.
 template <class Value>
 void require_curve(const physics::TimeCurve<Value>& curve, const std::string& what) {
     const auto is_sound = [](const Value& value) {
@@ -93,7 +93,7 @@ struct LoadRequirement {
 
 namespace {
 
-/// Why a shape is none; empty if it is one.
+/// Returns why a shape is invalid; empty if it is valid.
 struct FaultOfShape {
     std::string operator()(const Blade& blade) const {
         if (blade.edge.size() < 2)
@@ -175,7 +175,7 @@ void require_sound(const physics::Load& load, const Mesh& mesh) {
 
 namespace {
 
-/// Why a material is none; empty if it is one.
+/// Returns why a material is invalid; empty if it is valid.
 struct FaultOfMethod {
     std::string operator()(const physics::HyperElasticLinks& links) const {
         const double mu = physics::rest_mu(links.law), lambda = physics::rest_lambda(links.law);

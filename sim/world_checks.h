@@ -1,4 +1,4 @@
-// What is at fault with what a world is given.
+// Checks of the definition of a world and of its parts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,16 +8,18 @@
 
 namespace incise::sim {
 
-/// Throws InputError for a shape that is none.
+/// Throws InputError if the shape of a tool is invalid.
 void require_sound(const ToolDef& def);
-/// Throws InputError for nodes that are not there, or for none, and for curves that are none.
+/// Throws InputError if the constraint has no nodes, if a node does not exist, or if a curve is
+/// invalid.
 void require_sound(const physics::Constraint& constraint, const topology::Mesh& mesh);
-/// Throws InputError unless a load acts on something that is there, with a finite value.
+/// Throws InputError unless the load acts on something that exists, with a finite value.
 void require_sound(const physics::Load& load, const topology::Mesh& mesh);
 
-/// Throws InputError for a value that no world can have, a material, constraint or load that is
-/// none, and for indices of what is not there.
+/// Throws InputError for a value out of range, for an invalid material, constraint or load, and for
+/// an index out of range.
 void require_sound(const WorldDef& def, const topology::Mesh& mesh);
+/// Throws InputError unless `n` is at least 1.
 void require_sound_num_threads(int n);
 
 }  // namespace incise::sim

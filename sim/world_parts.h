@@ -1,4 +1,4 @@
-// What a world consists of. Internal to sim.
+// The parts of a world. Internal to sim.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,19 +17,19 @@ namespace incise::sim {
 
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver);
 
-// A body that can be cut, in the order in which its parts refer to each other.
+// The parts of a world. Their order matters: later ones refer to earlier ones.
 struct World::Parts {
-    /// A tool in its world.
+    /// A tool and its state.
     struct Tool {
         ToolDef def;
-        std::optional<cutting::CutId> cut = {};                   // of a blade that splits
-        std::shared_ptr<const cutting::CutSurface> surface = {};  // of a cut at once
+        std::optional<cutting::CutId> cut = {};                   // only for a blade that splits
+        std::shared_ptr<const cutting::CutSurface> surface = {};  // only for cuts at once
         bool is_present = false;
-        Pose pose = {};    // now
+        Pose pose = {};    // at present
         Pose target = {};  // at the end of the next step
         bool is_leaving = false;
         std::optional<Pose> pose_before_end = {};
-        std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // of a blade
+        std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // only for a blade
 
         static void archive(auto& ar, auto& self) {
             ar(self.def.name, self.def.shape, self.cut, self.is_present, self.pose, self.target,
@@ -37,14 +37,15 @@ struct World::Parts {
         }
     };
 
-    /// Where the frame of a grasp is, and where it is to be at the end of the next step.
+    /// The present pose of the frame of a grasp, and its pose at the end of the next step.
     struct Grasp {
         Pose pose, target;
         static void archive(auto& ar, auto& self) { ar(self.pose, self.target); }
     };
 
     explicit Parts(WorldDef def);
-    /// What save() wrote of a world that was made as `former` was.
+    /// Restores what save() wrote of a world that was built with the materials and the solver of
+    /// `former`.
     Parts(const Parts& former, ArchiveReader& ar);
     void save(ArchiveWriter& ar) const;
     void prepare_tools();
@@ -71,7 +72,7 @@ struct World::Parts {
     Numbering constraints{"constraint"};
     std::map<std::size_t, Grasp> grasps;  // by the number of the constraint
     Numbering loads{"load"};
-    bool loads_have_changed = false;  // since forces were computed
+    bool loads_have_changed = false;  // since the forces were computed
     std::optional<topology::BoundarySurface> surface;
     StepReport report;
     std::uint64_t num_steps = 0;

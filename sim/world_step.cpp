@@ -1,4 +1,4 @@
-// How a world is made, and its main loop.
+// Construction of a world, and its main loop.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <array>
 #include <sstream>
@@ -23,7 +23,7 @@ Mesh mesh_of(std::variant<topology::MeshData, Mesh> mesh) {
     return Mesh::build(std::get<topology::MeshData>(mesh)).mesh;
 }
 
-/// Throws InputError if anything of the definition cannot be.
+/// Moves the materials out of a definition. Throws InputError if the definition is invalid.
 physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     require_sound(def, mesh);
     physics::MaterialTable table{std::move(def.materials), std::move(def.material_of_region),
@@ -33,8 +33,8 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     return table;
 }
 
-/// The speed of waves in a region is that which relates the stable step of an element to the
-/// lengths in it.
+/// Returns the lengths of the body at rest that limits of cuts refer to. The speed of waves in an
+/// element is element_step_length() divided by the stable step of the element.
 cutting::UncutBody uncut_body(const physics::Model& model) {
     const Mesh& mesh = model.mesh();
     cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
@@ -60,7 +60,7 @@ std::unique_ptr<physics::Integrator> make_integrator(Solver solver) {
 
 World::Parts::Parts(WorldDef def)
     : mesh(mesh_of(std::move(def.mesh))),
-      // Braces, as the definition is checked before parts of it are moved.
+      // Braces fix the order: the definition is checked before parts of it are moved.
       model{mesh,
             materials_of(def, mesh),
             {def.gravity, def.damping, std::move(def.constraints), std::move(def.loads)}},
@@ -99,7 +99,8 @@ void World::Parts::step_to(double end) {
     ++num_steps;
     end_motion();
     for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
-    // What the way to a new equilibrium takes across a tool, which now rests, is cut as well.
+    // Tissue that crosses a tool during the motion to the new equilibrium is cut too. The tools do
+    // not move during this motion.
     for (std::size_t num_followed = 0; num_followed < report.edits.size();) {
         num_followed = report.edits.size();
         begin_motion();
@@ -113,7 +114,7 @@ void World::Parts::step_to(double end) {
             report.tools.push_back({{i}, tool.pose, tool.cut && cutter.is_in_tissue(*tool.cut)});
 }
 
-/// What a tool meets while it goes from its pose to its target. Then it is there.
+/// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.
 void World::Parts::cut_with(ToolId id, double end) {
     Tool& tool = tools[id.index];
     if (!tool.is_present) return;
@@ -167,7 +168,7 @@ cutting::Split World::Parts::split_with(Tool& tool) {
 void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     const ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
-    // The model has not followed yet.
+    // These totals are those before the edit: the model has not followed it yet.
     if (has_moved) model.compute_totals_and_forces();
     const BodyTotals before = has_moved ? ledger.body_totals() : ledger.last();
     has_moved = false;

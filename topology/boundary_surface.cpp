@@ -14,7 +14,7 @@ void sort_and_make_unique(std::vector<T>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// The elements whose faces may be others now, dead ones too.
+/// Returns the elements, dead ones included, whose boundary faces an edit may have changed.
 std::vector<ElementId> elements_with_other_faces(const ChangeSet& changes) {
     std::vector<ElementId> touched;
     for (const auto* records : {&changes.elements_added, &changes.elements_removed})
@@ -53,7 +53,7 @@ void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
     }
 }
 
-/// The last triangle of the list takes the slot of one that goes.
+/// Fills the slot of each removed triangle with the last triangle of the list.
 void BoundarySurface::remove_faces(ElementId e) {
     const auto row = slots_.find(e);
     if (row == slots_.end()) return;
@@ -83,7 +83,7 @@ void BoundarySurface::apply(const Mesh& mesh, const ChangeSet& changes) {
     for (const ElementId e : touched) remove_faces(e);
     for (const ElementId e : touched)
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e)) add_faces(mesh, e);
-    // Nobody may ever take them.
+    // Without calls of take_changes() the list would grow with each edit.
     if (changed_.size() > 2 * triangles_.size() + 1024) sort_and_make_unique(changed_);
 }
 

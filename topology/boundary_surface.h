@@ -16,32 +16,34 @@
 
 namespace incise::topology {
 
-/// The triangles of all faces that have no neighbour; a quadrilateral makes two. Their nodes index
-/// the positions of the body and run anticlockwise seen from outside.
+/// The triangles of all faces that have no neighbour. A quadrilateral gives two triangles. The node
+/// ids of a triangle index the positions of the body and run anticlockwise as seen from outside.
 ///
 /// Triangles have slots in a list without gaps. An edit changes some slots and the length of the
-/// list; take_changes() names them, so that a renderer uploads no more than these.
+/// list. take_changes() returns these slots, so that a renderer can upload only them.
 class BoundarySurface {
   public:
-    /// Cost: a look at each face.
+    /// Builds the surface of `mesh`. Cost: O(#faces).
     explicit BoundarySurface(const Mesh& mesh);
 
     /// Follows an edit. Throws InputError for an edit out of turn.
-    /// @param mesh after the edit
+    /// @param mesh     the mesh after the edit
+    /// @param changes  the edit
     /// Cost: proportional to the elements that the edit touches.
     void apply(const Mesh& mesh, const ChangeSet& changes);
 
-    /// Shape (T, 3).
+    /// Returns the node ids of each triangle. Shape (T, 3).
     std::span<const std::array<NodeId, 3>> triangles() const { return triangles_; }
-    /// The face of the mesh that each triangle is of. Shape (T).
+    /// Returns the face of the mesh that each triangle belongs to. Shape (T).
     std::span<const FaceId> faces() const { return faces_; }
-    /// 1 for a triangle of the face of a cut: it lay inside the body at first; else 0. Shape (T).
+    /// Returns 1 for each triangle of a cut face, else 0. The faces of a cut are those that lay
+    /// inside the body at first. Shape (T).
     std::span<const std::uint8_t> is_cut() const { return is_cut_; }
 
-    /// The epoch of the mesh that the surface is of.
+    /// Returns the epoch of the mesh that this surface belongs to.
     std::uint64_t version() const { return epoch_.value(); }
-    /// Returns the slots that have changed since the last call, in ascending order, at first all
-    /// of them. Places from triangles().size() on are gone.
+    /// Returns the slots that have changed since the last call, in ascending order; the first call
+    /// returns all slots. Slots from triangles().size() on no longer exist.
     std::vector<std::size_t> take_changes();
 
   private:

@@ -10,16 +10,16 @@ MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::arra
     for (std::int64_t k = 0; k <= nz; ++k)
         for (std::int64_t j = 0; j <= ny; ++j)
             for (std::int64_t i = 0; i <= nx; ++i) {
-                // Divide last: the far faces then lie exactly at origin + size.
+                // The division comes last, so that the far faces lie exactly at origin + size.
                 const Vec3 step(static_cast<double>(i) * size.x() / static_cast<double>(nx),
                                 static_cast<double>(j) * size.y() / static_cast<double>(ny),
                                 static_cast<double>(k) * size.z() / static_cast<double>(nz));
                 mesh.points.push_back(origin + step);
             }
 
-    const std::int64_t along[3] = {1, nx + 1, (nx + 1) * (ny + 1)};  // to the next point in x, y, z
-    // The six ways from a brick's lowest corner to its highest along its edges; odd permutations
-    // have two corners exchanged so that every tetrahedron has positive volume.
+    const std::int64_t along[3] = {1, nx + 1, (nx + 1) * (ny + 1)};  // index steps in x, y, z
+    // The six paths along edges from the lowest corner of a brick to its highest one. For odd
+    // permutations two corners are exchanged, so that every tetrahedron has positive volume.
     constexpr int paths[6][3] = {{0, 1, 2}, {1, 0, 2}, {1, 2, 0}, {2, 1, 0}, {2, 0, 1}, {0, 2, 1}};
     for (std::int64_t k = 0; k < nz; ++k)
         for (std::int64_t j = 0; j < ny; ++j)

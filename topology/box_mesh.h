@@ -8,11 +8,15 @@
 
 namespace incise::topology {
 
-/// A box of size[0] x size[1] x size[2] metres with its lowest corner at `origin`, divided in
-/// cells[0] x cells[1] x cells[2] bricks. Hexahedra are the bricks; tetrahedra are the six of
-/// each brick that share its diagonal from the lowest to the highest corner (Kuhn's division),
-/// so that neighbouring bricks fit. Points run along x first, then y, then z.
-/// @pre sizes are positive and finite, cells at least 1.
+/// Returns the mesh of a box, divided into cells[0] x cells[1] x cells[2] bricks.
+/// For hexahedra, each brick is one cell. For tetrahedra, each brick is divided into the six that
+/// share its diagonal from the lowest to the highest corner (Kuhn's division), so that the faces of
+/// neighbouring bricks match. Points are numbered along x first, then y, then z.
+/// @param kind    hexahedron or tetrahedron
+/// @param origin  the lowest corner of the box, m
+/// @param size    the edge lengths of the box, m
+/// @param cells   the number of bricks along x, y and z
+/// @pre  sizes are positive and finite, numbers of bricks at least 1
 MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::array<int, 3> cells);
 
 }  // namespace incise::topology

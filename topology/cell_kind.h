@@ -1,4 +1,4 @@
-// The local numbering of corners, edges and faces: the one place that knows it.
+// The local numbering of corners, edges and faces, which is defined only here.
 // Corners are in VTK's order; faces are listed so that their corners run anticlockwise as seen
 // from outside the cell.
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -10,6 +10,7 @@
 
 namespace incise::topology {
 
+/// The kind of a cell.
 enum class CellKind : std::uint8_t { tetrahedron, hexahedron, wedge, pyramid };
 
 inline constexpr int num_cell_kinds = 4;
@@ -27,14 +28,17 @@ struct CellTraits {
     std::array<std::array<int, 2>, 12> edges;
     std::array<int, max_faces> face_sizes;
     std::array<std::array<int, max_face_corners>, max_faces> faces;
-    /// Corner i of the same cell wound the other way round is corner mirrored[i]. Faces keep their
-    /// corners, but may change places.
+    /// If the order of corners is reversed so that the volume changes its sign, corner i of the new
+    /// cell is corner mirrored[i] of the old one. Faces keep their corners, but may get other
+    /// numbers.
     std::array<int, max_corners> mirrored;
 
+    /// Returns the corners of face `f`, anticlockwise as seen from outside.
     constexpr std::span<const int> face(int f) const {
         const auto i = static_cast<std::size_t>(f);
         return {faces[i].data(), static_cast<std::size_t>(face_sizes[i])};
     }
+    /// Returns the number of corners of all faces together.
     constexpr int num_face_corners() const {
         int sum = 0;
         for (int f = 0; f < num_faces; ++f) sum += face_sizes[static_cast<std::size_t>(f)];

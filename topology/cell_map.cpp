@@ -1,5 +1,5 @@
-// Dart surgery on CGAL's linear cell complex: links are made and broken directly, for the managed
-// operations cost several times as much and tell nobody when a vertex dies.
+// Operations on the darts of CGAL's linear cell complex. They link and unlink darts directly, since
+// CGAL's own operations cost several times as much and do not report when a vertex is erased.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/topology/cell_map.h"
 
@@ -17,7 +17,7 @@ namespace incise::topology {
 
 namespace {
 
-/// Which corner of which face a dart starts at. Eight bytes are free in a dart of 64.
+/// The position in a face at which a dart starts. A dart of 64 bytes has eight bytes to spare.
 struct DartInfo {
     std::int32_t element = -1;
     std::int16_t face = -1;
@@ -41,7 +41,7 @@ using Dart = Complex::Dart_handle;
 using ConstDart = Complex::Dart_const_handle;
 using Vertex = Complex::Attribute_handle<0>::type;
 
-/// Where the dart lies that runs along the same edge on the adjacent face of the same cell.
+/// The face and position of the dart along the same edge on the adjacent face of the same cell.
 struct DartPlace {
     int face = -1, position = -1;
 };
@@ -74,7 +74,7 @@ Complex::Point to_point(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
 struct CellMap::Impl {
     Complex complex;
-    std::vector<Vertex> vertices;            // by node id; null when the node has no dart
+    std::vector<Vertex> vertices;            // by node id; null if the node has no dart
     std::vector<CellKind> kinds;             // by element id
     std::vector<std::size_t> face_begin{0};  // by element id
     std::vector<Dart> first_darts;           // of each face, by element and face
@@ -84,7 +84,8 @@ struct CellMap::Impl {
         for (int p = 0; p < position; ++p) d = complex_beta1(d);
         return d;
     }
-    // beta is const-correct in CGAL, handles are not: this one only reads.
+    // The const overload of beta returns a const handle. This function needs a plain handle and
+    // only reads.
     Dart complex_beta1(Dart d) const { return const_cast<Complex&>(complex).beta<1>(d); }
 
     Vertex vertex(NodeId n, const Vec3& rest_position) {
@@ -97,7 +98,7 @@ struct CellMap::Impl {
         return v;
     }
 
-    // CGAL erases a vertex whose last dart goes without telling anyone: note it beforehand.
+    // To be called before `d` is removed: CGAL erases a vertex with its last dart without a report.
     void release(Dart d) {
         const Vertex v = complex.attribute<0>(d);
         if (complex.get_attribute_ref_counting<0>(v) == 1)
@@ -115,7 +116,7 @@ void CellMap::add_element(ElementId e, CellKind kind, std::span<const NodeId> co
     Impl& m = *impl_;
     Complex& complex = m.complex;
     const CellTraits& t = traits(kind);
-    // Ids come in ascending order, or come back into the row that they had.
+    // New ids come in ascending order. An element that an undo brings back has its old row.
     if (e.index() >= m.kinds.size()) {
         assert(e.index() == m.kinds.size());
         m.kinds.push_back(kind);
@@ -209,7 +210,7 @@ void CellMap::set_incident_element(NodeId n, ElementId e, int corner) {
 void CellMap::glue(FaceId a, FaceId b, int shift) {
     Impl& m = *impl_;
     const int size = static_cast<int>(traits(m.kinds[a.element.index()]).face(a.face).size());
-    // The dart from a's corner p to p + 1 meets the one of b that runs the other way.
+    // The dart of `a` from corner p to p + 1 is linked to the dart of `b` in opposite direction.
     Dart d = m.dart(a);
     for (int p = 0; p < size; ++p, d = m.complex.beta<1>(d))
         m.complex.basic_link_beta_for_involution<3>(d,

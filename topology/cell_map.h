@@ -1,5 +1,5 @@
-// The combinatorial map beside a mesh: CGAL's linear cell complex, addressed by the mesh's ids.
-// Its local operators work on darts directly and touch only the cells that they name.
+// The combinatorial map of a mesh: CGAL's linear cell complex, addressed by the ids of the mesh.
+// Its operations work on darts directly and change only the cells that are their arguments.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,12 +15,13 @@ namespace incise::topology {
 
 class Mesh;
 
-/// Internal to topology: a second record, by which the mesh's arrays can be checked. It is written
-/// with them, and only validate() and tests read it.
+/// A combinatorial map that stores the topology of a mesh a second time, so that the arrays of the
+/// mesh can be checked. Internal to topology. It is written together with the arrays; validate()
+/// and tests read it.
 ///
-/// Every element has one volume, each of its faces one cycle of darts; the dart at position p of
-/// face f starts at the corner that cell_kind.h lists there. Vertices carry the rest point and the
-/// node id, volumes the element id; edges and faces carry nothing.
+/// Each element has one volume, and each of its faces has one cycle of darts. The dart at position
+/// p of face f starts at the corner that cell_kind.h lists there. Vertices carry the rest position
+/// and the node id, volumes carry the element id. Edges and faces carry nothing.
 class CellMap {
   public:
     CellMap();
@@ -28,28 +29,32 @@ class CellMap {
     CellMap(CellMap&&) noexcept;
     CellMap& operator=(CellMap&&) noexcept;
 
-    /// Adds the free-standing cell `e`. Nodes that have no vertex yet get one.
+    /// Adds the cell `e`, which is joined to no other cell. Nodes without a vertex get one.
     void add_element(ElementId e, CellKind kind, std::span<const NodeId> corners,
                      std::span<const Vec3> rest_positions);
-    /// Removes the cell `e`, whose faces are all free. Vertices without a dart die with it.
+    /// Removes the cell `e`. Vertices that lose their last dart are removed too.
+    /// @pre  no face of `e` is joined to another face
     void remove_element(ElementId e);
-    /// Forgets the rows above these capacities; none of them is in use.
+    /// Deletes the rows from these capacities on.
+    /// @pre  none of these rows is in use
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
-    /// Makes `n` the node at a corner of `e`. The vertex that loses its last dart dies.
+    /// Makes `n` the node at a corner of `e`. A vertex that loses its last dart is removed.
     void set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_position);
-    /// Makes a dart at this corner of `e` the one that CGAL finds the vertex of `n` by.
+    /// Makes a dart at this corner of `e` the dart that CGAL stores for the vertex of `n`.
     void set_incident_element(NodeId n, ElementId e, int corner);
-    /// Joins two free faces; corner 0 of a's face meets the corner at position `shift` of b's.
+    /// Joins two faces that are not joined yet. The corner at position 0 of `a` meets the corner at
+    /// position `shift` of `b`.
     void glue(FaceId a, FaceId b, int shift);
-    /// Frees both sides of a joined face.
+    /// Separates the two faces at a joined face.
     void unglue(FaceId a);
 
     std::size_t num_vertices() const;
     std::size_t num_volumes() const;
     std::size_t num_darts() const;
-    /// CGAL's own check. Cost: about a microsecond an element.
+    /// True if CGAL's own check finds the map valid. Cost: about a microsecond an element.
     bool is_valid() const;
-    /// Compares dart by dart with the flat arrays of `mesh`; says where they differ.
+    /// Compares the map with the arrays of `mesh`, dart by dart. Returns a description of each
+    /// difference.
     std::vector<std::string> differences_to(const Mesh& mesh) const;
 
   private:

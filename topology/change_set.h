@@ -1,5 +1,6 @@
-// What one edit did to a mesh, as a value: comparable, printable and invertible, so that replay,
-// undo, logs, checkpoints and every follower of the mesh need neither the map nor its callbacks.
+// The changes that one edit made to a mesh, as a value that can be compared, printed and inverted.
+// Replay, undo, logs, checkpoints and followers of the mesh need neither the combinatorial map nor
+// its callbacks.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,7 +13,7 @@
 
 namespace incise::topology {
 
-/// Part of a convex combination.
+/// A term of a convex combination of nodes.
 struct NodeSource {
     NodeId node;
     double weight = 0.0;
@@ -20,12 +21,12 @@ struct NodeSource {
     static void archive(auto& ar, auto& self) { ar(self.node, self.weight); }
 };
 
-/// A node that an edit added or removed. Its values follow from those of its sources:
-/// added, one source    the copy of a node that was divided
-/// added, more sources  a point between others
-/// added, no source     a node that comes back; its values are those it had when it went
-/// removed, one source  a node merged into its source
-/// removed, no source   a node whose last element went
+/// A node that an edit added or removed. The sources tell where its values come from:
+/// - added, one source: the copy of a node that was divided
+/// - added, several sources: a point between other nodes
+/// - added, no source: a node that an undo brings back, with the values that it had when removed
+/// - removed, one source: a node that was merged into its source
+/// - removed, no source: a node whose last element was removed
 struct NodeRecord {
     NodeId id;
     Vec3 rest_position = Vec3::Zero();
@@ -37,12 +38,13 @@ struct NodeRecord {
     }
 };
 
-/// An element that an edit added or removed, with its corners after (added) or before (removed).
+/// An element that an edit added or removed. The corners are those after the edit for an added
+/// element, and those before the edit for a removed one.
 struct ElementRecord {
     ElementId id;
     CellKind kind{};
     int region = 0;
-    ElementId parent;  ///< the element it was split from; invalid if none
+    ElementId parent;  ///< the element that it was divided from; invalid if there is none
     std::vector<NodeId> corners;
     bool operator==(const ElementRecord&) const = default;
     static void archive(auto& ar, auto& self) {
@@ -50,7 +52,7 @@ struct ElementRecord {
     }
 };
 
-/// A corner of a living element that now is another node.
+/// A corner of a living element at which an edit replaced the node.
 struct Rewiring {
     ElementId element;
     int corner = 0;
@@ -59,15 +61,15 @@ struct Rewiring {
     static void archive(auto& ar, auto& self) { ar(self.element, self.corner, self.from, self.to); }
 };
 
-/// The two sides of a face, the lower one first.
+/// The two sides of a face, the one with the lower id first.
 struct FacePair {
     FaceId a, b;
     auto operator<=>(const FacePair&) const = default;
     static void archive(auto& ar, auto& self) { ar(self.a, self.b); }
 };
 
-/// All lists are in ascending order of their ids. Faces of removed elements that were shared are
-/// among the opened ones.
+/// The record of one edit. All lists are in ascending order of their ids. The opened faces include
+/// the shared faces of removed elements.
 struct ChangeSet {
     std::uint64_t epoch_before = 0, epoch_after = 0;
     std::size_t node_capacity_before = 0, node_capacity_after = 0;
@@ -78,6 +80,7 @@ struct ChangeSet {
     std::vector<Rewiring> rewired;
     std::vector<FacePair> faces_opened, faces_closed;
 
+    /// True if the edit changed nothing.
     bool is_empty() const;
     bool operator==(const ChangeSet&) const = default;
     static void archive(auto& ar, auto& self) {
@@ -88,7 +91,7 @@ struct ChangeSet {
     }
 };
 
-/// The edit that takes `changes` back.
+/// Returns the edit that undoes `changes`.
 ChangeSet inverse(const ChangeSet& changes);
 
 }  // namespace incise::topology

@@ -10,8 +10,8 @@ namespace incise::topology {
 
 namespace {
 
-/// The elements that an edit touched, in ascending order: those at opened and closed faces, the
-/// removed and the added ones.
+/// Returns the elements that an edit touched, in ascending order: removed and added elements, and
+/// those at opened and closed faces.
 std::vector<ElementId> touched_elements(const ChangeSet& changes) {
     std::vector<ElementId> touched;
     for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
@@ -40,15 +40,16 @@ bool has(const std::vector<ElementRecord>& records, ElementId e) {
 
 }  // namespace
 
-// By the faces that were joined before and still are, the touched elements search for each other,
-// each from where it is, all at once, until no more than one group of them has anywhere left to go.
+// A breadth-first search from all touched elements at once, through the faces that were joined
+// before the edit and still are. Groups that meet are joined. The search ends when at most one
+// group still has elements in the queue.
 DisjointSet ComponentCount::search(const Mesh& mesh, const ChangeSet& changes,
                                    const std::vector<ElementId>& touched,
                                    std::vector<ElementId>& found) {
     const std::vector<FaceId> new_faces = sides_of(changes.faces_closed);
     DisjointSet groups(touched.size());
     std::vector<ElementId> queue;
-    std::vector<int> num_waiting(touched.size());  // in the queue, by group
+    std::vector<int> num_waiting(touched.size());  // number of elements in the queue, by group
     const auto waiting = [&](std::int32_t g) -> int& {
         return num_waiting[static_cast<std::size_t>(g)];
     };
@@ -83,9 +84,9 @@ DisjointSet ComponentCount::search(const Mesh& mesh, const ChangeSet& changes,
     return groups;
 }
 
-// Pieces without a touched element are what they were. The others are counted before and after:
-// what the search finds to hang together did and does; before, it did by the opened faces as well,
-// and now by the closed ones.
+// Components without a touched element have not changed. The others are counted before and after
+// the edit. The groups that the search finds are connected both before and after it. Before the
+// edit, the opened faces connect them too; after it, the closed faces do.
 void ComponentCount::apply(const Mesh& mesh, const ChangeSet& changes) {
     const std::vector<ElementId> touched = touched_elements(changes);
     group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);

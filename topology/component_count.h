@@ -1,4 +1,4 @@
-// How many pieces a mesh has, edit after edit.
+// The number of connected components of a mesh, updated after each edit.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,28 +11,31 @@
 
 namespace incise::topology {
 
-/// The number of Components, without a look at the whole mesh for each edit.
+/// The number of connected components (see Components), updated without a search of the whole mesh.
 class ComponentCount {
   public:
-    /// Cost: that of components().
+    /// Counts the components of `mesh`. Cost: that of components().
     explicit ComponentCount(const Mesh& mesh) : value_(components(mesh).count) {}
 
     int value() const { return value_; }
 
-    /// Follows an edit of the mesh, which has not been edited since.
-    /// Cost: a look at the elements round what it changed, as far as it takes to find that they
-    /// still hang together; where they do not, at the smaller pieces, too.
+    /// Follows an edit of the mesh.
+    /// @param mesh     the mesh after the edit; it has not been edited since
+    /// @param changes  the edit
+    /// Cost: a search round the changed elements, which ends when they are found to be connected.
+    /// Where they are not connected, the search also covers the smaller components.
     void apply(const Mesh& mesh, const ChangeSet& changes);
 
   private:
-    /// Which of the touched elements, by their places in the list, have hung together all the time,
-    /// as far as it takes to count pieces. `found` receives the others that it came through.
+    /// Returns sets of those touched elements, by their index in `touched`, that are connected by
+    /// faces which the edit did not change. The search ends when the components can be counted.
+    /// `found` receives the other elements that the search has visited.
     DisjointSet search(const Mesh& mesh, const ChangeSet& changes,
                        const std::vector<ElementId>& touched, std::vector<ElementId>& found);
     std::int32_t& group_of(ElementId e) { return group_of_[e.index()]; }
 
     int value_;
-    std::vector<std::int32_t> group_of_;  // by element; -1 between edits: kept for its memory only
+    std::vector<std::int32_t> group_of_;  // by element; scratch memory, all -1 between edits
 };
 
 }  // namespace incise::topology

@@ -1,4 +1,4 @@
-// Values of nodes and of elements that follow the edits of a mesh.
+// Fields of values at nodes and elements that follow the edits of a mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,8 +14,9 @@
 
 namespace incise::topology {
 
-/// Calls inherit(parent, part) for each part that the edit divided off, a parent that is such a
-/// part itself before its own parts. Elements that come back have what they had: they are left out.
+/// Calls inherit(parent, part) for each element `part` that the edit divided off from `parent`. If
+/// a parent is itself such a part, the call for it comes before the calls for its own parts.
+/// Elements that an undo brings back are skipped, since they still have their values.
 template <class Inherit>
 void for_each_part(const ChangeSet& changes, Inherit inherit) {
     for (const ElementRecord& record : changes.elements_added)  // in ascending order
@@ -23,13 +24,13 @@ void for_each_part(const ChangeSet& changes, Inherit inherit) {
             inherit(record.parent, record.id);
 }
 
-/// One value for each node, by id. T has sums and multiples. A copy of a node has its value, a node
-/// between others their mean with the weights of its record. Dead nodes keep theirs, so that an
-/// edit that is taken back finds it again.
+/// One value for each node, by id. T must have sums and multiples. A copy of a node gets the value
+/// of that node. A node between others gets the weighted mean of their values, with the weights of
+/// its record. Dead nodes keep their values, so that an edit can be undone.
 template <class T>
 class NodeField {
   public:
-    /// The same value everywhere.
+    /// Gives every node the same value.
     NodeField(const Mesh& mesh, const T& value)
         : epoch_(mesh), values_(mesh.node_capacity(), value) {}
     /// @param values  by node id
@@ -38,11 +39,14 @@ class NodeField {
 
     const T& operator[](NodeId n) const { return values_[n.index()]; }
     T& operator[](NodeId n) { return values_[n.index()]; }
-    /// By node id; as many as Mesh::node_capacity().
+    /// Returns the values by node id. Shape (Mesh::node_capacity()).
     std::span<const T> values() const { return values_; }
+    /// Replaces all values.
+    /// @param values  by node id; as many as the field has
     void assign(std::span<const T> values) { values_.assign(values.begin(), values.end()); }
 
-    /// Follows an edit; several edits one after the other, whatever has become of the mesh since.
+    /// Follows an edit. Only the record is read, so that several edits can be followed one after
+    /// the other when the mesh has already been edited further.
     /// Throws InputError for an edit out of turn. Cost: proportional to the nodes added.
     void apply(const Mesh&, const ChangeSet& changes) {
         if (changes.is_empty()) return;
@@ -50,7 +54,7 @@ class NodeField {
         values_.resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
         // In ascending order: a source may itself be new.
         for (const NodeRecord& record : changes.nodes_added) {
-            if (record.num_sources == 0) continue;  // back with what it had
+            if (record.num_sources == 0) continue;  // an undo brings it back, with its value
             T value = record.sources[0].weight * values_[record.sources[0].node.index()];
             for (std::size_t s = 1; s < static_cast<std::size_t>(record.num_sources); ++s)
                 value += record.sources[s].weight * values_[record.sources[s].node.index()];
@@ -64,12 +68,12 @@ class NodeField {
     std::vector<T> values_;
 };
 
-/// One value for each element, by id. A part of a divided element has that of the whole. Dead
-/// elements keep theirs, so that an edit that is taken back finds it again.
+/// One value for each element, by id. Each part of a divided element gets the value of that
+/// element. Dead elements keep their values, so that an edit can be undone.
 template <class T>
 class ElementField {
   public:
-    /// The same value everywhere.
+    /// Gives every element the same value.
     ElementField(const Mesh& mesh, const T& value)
         : epoch_(mesh), values_(mesh.element_capacity(), value) {}
     /// @param values  by element id
@@ -78,10 +82,11 @@ class ElementField {
 
     const T& operator[](ElementId e) const { return values_[e.index()]; }
     T& operator[](ElementId e) { return values_[e.index()]; }
-    /// By element id; as many as Mesh::element_capacity().
+    /// Returns the values by element id. Shape (Mesh::element_capacity()).
     std::span<const T> values() const { return values_; }
 
-    /// Follows an edit; several edits one after the other, whatever has become of the mesh since.
+    /// Follows an edit. Only the record is read, so that several edits can be followed one after
+    /// the other when the mesh has already been edited further.
     /// Throws InputError for an edit out of turn. Cost: proportional to the elements added.
     void apply(const Mesh&, const ChangeSet& changes) {
         if (changes.is_empty()) return;

@@ -1,4 +1,4 @@
-// Cells without volume, as far as numbers can tell.
+// Test for cells whose volume is zero to rounding.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,7 +13,9 @@
 
 namespace incise::topology {
 
-/// Whether rounding of the coordinates alone may have given the cell this signed volume.
+/// True if the volume of a cell is zero to rounding: the rounding of its coordinates alone can
+/// cause a volume of this size.
+/// @param volume  the signed volume of the cell
 inline bool is_flat_to_rounding(CellKind kind, std::span<const Vec3> corners, double volume) {
     double reach = 0.0, longest = 0.0;
     for (const Vec3& x : corners) reach = std::max(reach, x.cwiseAbs().maxCoeff());

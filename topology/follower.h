@@ -1,4 +1,4 @@
-// What follows the edits of a mesh, and in which order.
+// Objects that follow the edits of a mesh, and the check of the order of edits.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,29 +11,31 @@
 
 namespace incise::topology {
 
-/// Something that keeps values of a mesh and follows its edits, one after the other and none left
-/// out: apply(mesh, changes) is called with the mesh as it is after the edit.
+/// A type that keeps values of a mesh and follows its edits. apply(mesh, changes) is called for
+/// every edit, in order, with the mesh after the edit.
 template <class T>
 concept Follower = requires(T& follower, const Mesh& mesh, const ChangeSet& changes) {
     follower.apply(mesh, changes);
 };
 
-/// The edit up to which a follower has come.
+/// The epoch of the last edit that a follower has followed.
 class FollowedEpoch {
   public:
     explicit FollowedEpoch(const Mesh& mesh) : epoch_(mesh.epoch()) {}
 
     std::uint64_t value() const { return epoch_; }
 
-    /// Goes on to the edit, for a follower that reads nothing but the record. Throws InputError,
-    /// and stays, if the edit does not begin here.
-    /// @param who  names the follower in the message
+    /// Advances to the end of an edit, for a follower that reads only the record. Throws
+    /// InputError, and changes nothing, if the edit does not begin at the present epoch.
+    /// @param changes  the edit
+    /// @param who      the name of the follower in the message
     void advance(const ChangeSet& changes, const char* who) {
         if (changes.epoch_before != epoch_) refuse(changes, who, "");
         epoch_ = changes.epoch_after;
     }
-    /// Goes on to the edit, for a follower that also reads the mesh. Throws InputError, and stays,
-    /// if the edit does not begin here or if the mesh is not where it ends.
+    /// Advances to the end of an edit, for a follower that also reads the mesh. Throws InputError,
+    /// and changes nothing, if the edit does not begin at the present epoch, or if `mesh` is not at
+    /// the epoch at which the edit ends.
     void advance(const Mesh& mesh, const ChangeSet& changes, const char* who) {
         if (changes.epoch_before != epoch_ || changes.epoch_after != mesh.epoch())
             refuse(changes, who, " and the mesh at " + std::to_string(mesh.epoch()));

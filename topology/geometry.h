@@ -1,4 +1,4 @@
-// Volumes and centres of cells from their corner positions, of any kind alike.
+// Volumes and centres of cells of all kinds, from their corner positions.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,14 +9,15 @@
 
 namespace incise::topology {
 
-/// Volume of a tetrahedron; positive when d lies on the side to which a, b, c run anticlockwise.
+/// Returns the signed volume of a tetrahedron. It is positive if a, b, c run anticlockwise as seen
+/// from d.
 inline double tetrahedron_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
-/// Signed volume of a cell with straight edges. Quadrilateral faces are the bilinear patches of
-/// the trilinear map, so that cells which share one fit without gap: the flux of x through such a
-/// patch is the mean of that through its two triangulations.
+/// Returns the signed volume of a cell with straight edges. Quadrilateral faces are the bilinear
+/// patches of the trilinear map, so that cells which share such a face have no gap between them.
+/// The flux of x through a patch is the mean of the fluxes through its two triangulations.
 inline double signed_volume(CellKind kind, std::span<const Vec3> corners) {
     const Vec3& o = corners[0];
     if (kind == CellKind::tetrahedron)
@@ -40,7 +41,7 @@ inline double signed_volume(CellKind kind, std::span<const Vec3> corners) {
     return volume;
 }
 
-/// Mean of the corners.
+/// Returns the mean of the corners.
 inline Vec3 centre(std::span<const Vec3> corners) {
     Vec3 sum = Vec3::Zero();
     for (const Vec3& corner : corners) sum += corner;

@@ -9,7 +9,7 @@ namespace incise::topology {
 
 namespace {
 
-constexpr unsigned bits = 20;  // a side; three of them fit 64 bits
+constexpr unsigned bits = 20;  // per coordinate, so that three fit into 64 bits
 
 std::uint64_t hilbert_index(std::array<std::uint32_t, 3> x) {
     // From coordinates to the transposed index: undo the excess rotations, then Gray encode.

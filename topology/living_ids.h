@@ -7,7 +7,7 @@
 
 namespace incise::topology {
 
-/// The ids that are alive in a mesh, in ascending order, as a range. Dead ones are skipped.
+/// The ids of the living nodes or elements of a mesh, in ascending order, as a range.
 /// Source: Mesh::nodes, Mesh::elements.
 template <class Id, class Mesh>
 class LivingIds {
@@ -45,7 +45,8 @@ class LivingIds {
         std::size_t index_ = 0, end_ = 0;
     };
 
-    /// @param capacity one more than the highest id
+    /// @param mesh      must outlive the range
+    /// @param capacity  one more than the highest id
     LivingIds(const Mesh& mesh, std::size_t capacity) : mesh_(&mesh), capacity_(capacity) {}
 
     Iterator begin() const { return {*mesh_, 0, capacity_}; }

@@ -12,7 +12,7 @@ namespace incise::topology {
 
 namespace {
 
-/// By corner, a bit for each face that has it.
+/// By corner, a bit for each face that contains the corner.
 using CornerFaces = std::array<std::uint8_t, max_corners>;
 
 constexpr CornerFaces corner_faces(const CellTraits& t) {
@@ -37,8 +37,8 @@ void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
     for (; faces != 0; faces &= faces - 1) visit(FaceId{e, std::countr_zero(faces)});
 }
 
-/// Whether `e` is among the elements from `begin` on. Stars are small: looking through the whole
-/// list, with no way out before its end, beats marking, and several threads may do it.
+/// True if `e` is among the elements from `begin` on. The lists are short. A search of the whole
+/// list without an early exit is faster than marking elements, and several threads may do it.
 bool is_known(const std::vector<ElementId>& elements, std::size_t begin, ElementId e) {
     int count = 0;
     for (std::size_t i = begin; i < elements.size(); ++i) count += elements[i] == e ? 1 : 0;
@@ -49,7 +49,7 @@ bool is_known(const std::vector<ElementId>& elements, std::size_t begin, Element
 
 void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements) {
     const std::size_t begin = elements.size();
-    // A bit for each remainder of ids: of most elements that are not known it tells so at once.
+    // One bit for each remainder of ids: a bit that is not set shows that an element is not known.
     const auto bit = [](ElementId e) { return std::uint64_t{1} << (e.index() % 64); };
     std::uint64_t known_bits = bit(start);
     elements.push_back(start);
@@ -105,7 +105,8 @@ std::vector<NodeId> Mesh::nodes_with_label(std::int64_t label) const {
         return nodes;
     }
     nodes.push_back(label_nodes_[static_cast<std::size_t>(label)]);
-    const std::int64_t own_label = node_labels_[nodes.front().index()];  // lower, if it was welded
+    // A lower label if the point was welded to another one.
+    const std::int64_t own_label = node_labels_[nodes.front().index()];
     for (const auto& [of, node] : pinched_)
         if (of == own_label) nodes.push_back(node);
     return nodes;
@@ -178,7 +179,7 @@ double rest_area(const Mesh& mesh, FaceId f) {
     return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
 }
 
-// Elements are taken in ascending order, in which neighbours lie near each other in memory.
+// The loop runs in ascending order of ids, in which neighbours are near each other in memory.
 Components components(const Mesh& mesh) {
     DisjointSet groups(mesh.element_capacity());
     for (const ElementId e : mesh.elements()) {

@@ -1,4 +1,4 @@
-// The mesh: which elements there are, which nodes they join, which faces they share.
+// The mesh: its elements, their nodes, and the faces that they share.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,41 +17,45 @@ namespace incise::topology {
 
 struct BuiltMesh;
 
-/// Elements over nodes, as flat arrays: the mesh that everyone reads and that edits decide by.
+/// A volume mesh: elements over nodes, as flat arrays.
 ///
-/// A combinatorial map of the same topology stands beside the arrays. Construction, edits and
-/// replays write both, row by row. Nothing is copied from the map to the arrays; validate()
+/// A combinatorial map stores the same topology a second time. Construction, edits and replays
+/// write both records, row by row. Nothing is copied from the map to the arrays; validate()
 /// compares the two.
 ///
-/// Ids are dense array indices in an order that keeps neighbours close (a Hilbert curve). The
-/// number by which a user knows a node or element, its number in the source, is its label.
-/// A node is one face-connected star of elements: elements that merely touch in a point or along
-/// an edge have nodes of their own there.
+/// Ids are dense array indices. Their order follows a Hilbert curve, which keeps neighbours close.
+/// The label of a node or element is its number in the source, by which the user knows it.
 ///
-/// Changed only through MeshEdit. Reading is safe from several threads.
+/// The elements at a node are connected with each other through faces at this node. Elements that
+/// touch only in a point or along an edge therefore have different nodes there.
+///
+/// A mesh is changed only by MeshEdit and replay(). Several threads may read a mesh at the same
+/// time.
 class Mesh {
   public:
-    /// Checks `data` (see mesh_check.h) and builds the mesh. Nodes that no element uses are left
-    /// out, pinched ones divided, both with a warning.
-    /// Throws InputError with every problem found. Cost: O(n log n), some 0.5 us an element.
+    /// Checks `data` (see mesh_check.h) and builds the mesh. Points that no element uses are left
+    /// out. Pinched points, at which elements are not connected through faces, get several nodes.
+    /// There are warnings about both.
+    /// Throws InputError with the errors of check(). Cost: O(n log n), some 0.5 us an element.
     static BuiltMesh build(const MeshData& data);
 
-    /// Grows by one with each edit; an undone edit takes it back.
+    /// Returns the epoch: the number of edits so far, without those that were undone.
     std::uint64_t epoch() const { return epoch_; }
 
     std::size_t num_nodes() const { return num_nodes_; }
     std::size_t num_elements() const { return num_elements_; }
-    /// One more than the highest id ever given out: the size of arrays indexed by id.
+    /// Returns one more than the highest id, alive or dead: the size of arrays indexed by id.
     std::size_t node_capacity() const { return incident_elements_.size(); }
     std::size_t element_capacity() const { return kinds_.size(); }
     bool is_alive(NodeId n) const { return incident_elements_[n.index()].is_valid(); }
     bool is_alive(ElementId e) const { return alive_[e.index()] != 0; }
-    /// The living ids in ascending order, to loop over.
-    /// @pre The mesh is not edited while a loop runs.
+    /// Returns the ids of the living nodes in ascending order, as a range.
+    /// @pre  the mesh is not edited while a loop over the range runs
     LivingIds<NodeId, Mesh> nodes() const { return {*this, node_capacity()}; }
+    /// Returns the ids of the living elements as nodes() does those of the nodes.
     LivingIds<ElementId, Mesh> elements() const { return {*this, element_capacity()}; }
 
-    /// Rest positions by node id, metres; those of dead nodes are their last ones.
+    /// Returns the rest positions by node id, m. Dead nodes keep their last rest position.
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
 
@@ -72,19 +76,21 @@ class Mesh {
         std::span<const std::size_t> face_begin;
         std::span<const FaceId> neighbors;  ///< as neighbor()
     };
-    /// @lifetime until the next edit. Cost: O(1).
+    /// Returns views of the connectivity. Cost: O(1).
+    /// @lifetime Until the next edit.
     Connectivity connectivity() const {
         return {epoch_, kinds_, regions_, alive_, corner_begin_, corners_, face_begin_, neighbors_};
     }
 
-    /// Corners in the order of cell_kind.h; for a dead element those it had last.
+    /// Returns the corners in the order of cell_kind.h. A dead element keeps its last corners.
     std::span<const NodeId> corners(ElementId e) const {
         return {corners_.data() + corner_begin_[e.index()],
                 corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
     }
-    /// Which corner of `e` the node is; -1 if none.
+    /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(ElementId e, NodeId n) const;
     int num_faces(ElementId e) const { return traits(kind(e)).num_faces; }
+    /// Returns the node at a position in the face, in the order of cell_kind.h.
     NodeId face_corner(FaceId f, int position) const {
         return corners(f.element)[static_cast<std::size_t>(
             traits(kind(f.element)).face(f.face)[static_cast<std::size_t>(position)])];
@@ -92,33 +98,37 @@ class Mesh {
     int face_size(FaceId f) const {
         return static_cast<int>(traits(kind(f.element)).face(f.face).size());
     }
-    /// The other side of a face; invalid on the boundary.
+    /// Returns the other side of a face; invalid on the boundary.
     FaceId neighbor(FaceId f) const {
         return neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)];
     }
 
-    /// Whether the face was joined to another in the source: inside the body, before any cut. A
-    /// divided element's parts have what it had at the same places.
+    /// True if the face lay inside the body before any cut: it was joined to another face in the
+    /// source. Each part of a divided element takes the values of that element, by local face
+    /// number.
     bool was_inside(FaceId f) const {
         return was_inside_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)] != 0;
     }
 
-    /// Elements round a node in ascending order of id. Cost: O(star), about a microsecond.
+    /// Writes the elements at a node (its star) to `elements`, in ascending order. A dead node has
+    /// none. Cost: about a microsecond; see collect_star().
     void star(NodeId n, std::vector<ElementId>& elements) const;
-    /// The lowest element of the node's star; invalid for a dead node.
+    /// Returns the element with the lowest id at the node; invalid for a dead node.
     ElementId incident_element(NodeId n) const { return incident_elements_[n.index()]; }
 
-    /// The number by which the user knows it: that of the source, or the id for one born later.
+    /// Returns the number by which the user knows the node or element: its number in the source, or
+    /// its id if an edit has made it.
     std::int64_t label(NodeId n) const;
     std::int64_t label(ElementId e) const;
-    /// The nodes that came from point `label` of the source: none if it was not used or is gone
-    /// for good, several if it was pinched. The label of a point that was welded to another gives
-    /// the nodes of that one. The caller checks is_alive.
+    /// Returns the nodes with this label: several if the point of the source was pinched, none if
+    /// there is no such label. A point that was welded to another one gives the nodes of that other
+    /// point. Nodes may be dead, for example if no element used the point: check is_alive().
     std::vector<NodeId> nodes_with_label(std::int64_t label) const;
-    /// Points of the source.
+    /// Returns the number of points in the source.
     std::size_t num_source_points() const { return node_labels_.size(); }
 
-    /// The second record, for validate(). A run reads it only to check what a checkpoint led to.
+    /// Returns the combinatorial map, for validate(). A run reads the map only to check the mesh of
+    /// a checkpoint.
     const CellMap& map() const { return map_; }
 
   private:
@@ -131,8 +141,8 @@ class Mesh {
     void append_element_row(CellKind kind, int region, std::span<const NodeId> corners);
     void inherit_inside(ElementId e, ElementId parent);
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
-    /// Joins two faces in the map and in the arrays; their corners are equal, or `shift` tells
-    /// how they meet.
+    /// Joins two faces in the map and in the arrays. The corner at position 0 of `a` meets the
+    /// corner at position `shift` of `b`.
     void glue(FaceId a, FaceId b, int shift);
     void unglue(FaceId a);
     void set_neighbor(FaceId f, FaceId other) {
@@ -154,47 +164,53 @@ class Mesh {
     std::vector<std::uint8_t> was_inside_;  // by face
 
     std::vector<std::int64_t> node_labels_, element_labels_;
-    std::vector<NodeId> label_nodes_;                       ///< label -> node, the first if pinched
-    std::vector<std::pair<std::int64_t, NodeId>> pinched_;  ///< label -> further nodes, sorted
+    std::vector<NodeId> label_nodes_;                       ///< by label; the first node if pinched
+    std::vector<std::pair<std::int64_t, NodeId>> pinched_;  ///< label, further node; sorted
 
     CellMap map_;
 };
 
+/// A new mesh, with warnings about its source.
 struct BuiltMesh {
     Mesh mesh;
     std::vector<std::string> warnings;
 };
 
-/// Appends, in ascending order, the elements that `start` reaches round its corner `n` through
-/// faces at `n`. Cost: O(star^2) comparisons; stars are small.
+/// Appends the elements that are connected with `start` through faces at its node `n`, in ascending
+/// order. Cost: O(k^2) comparisons for k elements, which are few.
 void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements);
 
-/// Appends the elements round the edge from `a` to `b` that tetrahedron `e` reaches through faces
-/// at the edge, in their order.
+/// Appends the elements at the edge from `a` to `b` that are connected with tetrahedron `e` through
+/// faces at the edge. The first one is `e`; the others follow in the order in which a search from
+/// `e` in both directions finds them.
 void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
                        std::vector<ElementId>& elements);
 
-/// Position in b's face of the node at position 0 of a's, if the two faces have the same nodes
-/// and run in opposite directions; -1 otherwise.
+/// Returns the position in face `b` of the node at position 0 of face `a`, if the two faces have
+/// the same nodes in opposite directions; else -1.
 int matching_shift(const Mesh& mesh, FaceId a, FaceId b);
 
-/// Area of a face at rest, m2; of a quadrilateral that of its bilinear patch's mean plane.
+/// Returns the area of a face at rest, m2. For a quadrilateral it is the area of the projection
+/// onto the mean plane of the bilinear patch.
 double rest_area(const Mesh& mesh, FaceId f);
 
-/// Piece number of each element (by id; -1 for dead ones): elements joined through faces have the
-/// same; pieces are numbered from 0 in the order of their lowest element. Cost: a look at each
-/// face.
+/// The connected components of a mesh: sets of elements that are joined through faces. They are
+/// numbered from 0 in the order of their lowest element.
 struct Components {
-    std::vector<int> of_element;
+    std::vector<int> of_element;  ///< number of the component, by element id; -1 for dead elements
     int count = 0;
 };
+/// Returns the connected components. Cost: O(#faces).
 Components components(const Mesh& mesh);
 
-/// Faces of living elements without a neighbour, in ascending order.
+/// Returns the faces of living elements that have no neighbour, in ascending order.
 std::vector<FaceId> boundary_faces(const Mesh& mesh);
 
-/// The living part as plain arrays, in ascending order of ids, with the given positions by node
-/// id as points. `nodes` and `elements`, when not null, receive the ids of the rows.
+/// Returns the living nodes and elements as plain arrays, in ascending order of ids.
+/// @param mesh       the mesh
+/// @param positions  by node id; the points of the result
+/// @param nodes      if not null, receives the node id of each point
+/// @param elements   if not null, receives the element id of each cell
 MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
                       std::vector<NodeId>* nodes = nullptr,
                       std::vector<ElementId>* elements = nullptr);

@@ -8,8 +8,8 @@
 
 namespace incise::topology {
 
-/// Lists what a mesh consists of. What follows from that is made anew: rows by their kinds, and the
-/// map.
+/// The list of members that an archive of a mesh contains. Row offsets and the combinatorial map
+/// are recomputed from these members.
 class MeshArchive {
   public:
     static void list(auto& ar, auto& m) {
@@ -98,7 +98,7 @@ class MeshArchive {
                 require(shift >= 0, "neighbours disagree on their face");
                 if (face < other) mesh_.map_.glue(face, other, shift);
             }
-        // Elements that came and went have taken the darts by which CGAL finds vertices with them.
+        // Adding and removing dead elements has changed the darts that CGAL stores for vertices.
         for (const NodeId n : mesh_.nodes()) {
             const ElementId incident = mesh_.incident_element(n);
             const int corner = mesh_.is_alive(incident) ? mesh_.corner_of(incident, n) : -1;

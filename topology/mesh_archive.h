@@ -1,4 +1,4 @@
-// A mesh as bytes and back, with all ids, also those of what is dead.
+// Conversion of a mesh to bytes and back, with all ids, including dead nodes and elements.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -7,12 +7,13 @@
 
 namespace incise::topology {
 
-/// Cost: some 100 bytes an element, dead ones too.
+/// Writes the mesh to an archive. Cost: some 100 bytes an element, including dead elements.
 void save(const Mesh& mesh, ArchiveWriter& ar);
 
-/// Returns the mesh that save() has written: the same ids, epoch, labels and neighbours. Edits of
-/// it that are recorded can be taken back.
-/// Throws InputError, saying what is wrong, for bytes that are no sound mesh.
+/// Returns the mesh that save() has written, with the same ids, epoch, labels and neighbours.
+/// Recorded edits of the saved mesh can be undone on it.
+///
+/// Throws InputError, with the reason, if the bytes are no sound mesh.
 /// Cost: that of validate(), some microseconds an element.
 Mesh load_mesh(ArchiveReader& ar);
 

@@ -16,7 +16,7 @@ namespace incise::topology {
 
 namespace {
 
-/// Lists the first few of each kind of complaint and counts the rest.
+/// A list of errors that contains the first few of each kind and counts the others.
 class Complaints {
   public:
     explicit Complaints(std::vector<std::string>& lines) : lines_(lines) {}
@@ -42,11 +42,11 @@ class Complaints {
     std::map<std::string, std::size_t> counts_;
 };
 
-/// What is wrong with the lists themselves; empty if each cell can be looked at.
+/// Returns an error of the lists themselves; empty if all cells can be read.
 std::string fault_of_lists(const MeshData& data) {
     const std::size_t num_cells = data.kinds.size();
     const auto is_one_each = [](std::size_t size, std::size_t count) {
-        return size == 0 || size == count;  // these may be left out
+        return size == 0 || size == count;  // optional lists may be empty
     };
     if (data.offsets.size() != num_cells + 1)
         return "offsets has " + std::to_string(data.offsets.size()) + " entries for " +
@@ -95,7 +95,8 @@ bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complai
             }
     }
     for (const std::int64_t p : corners)
-        if (!data.points[static_cast<std::size_t>(p)].allFinite()) return false;  // told elsewhere
+        // The point is reported elsewhere.
+        if (!data.points[static_cast<std::size_t>(p)].allFinite()) return false;
     return true;
 }
 
@@ -130,12 +131,12 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
         return;
     }
     if (kind == CellKind::tetrahedron) return;
-    // At a corner with three edges, the tetrahedron of those edges must point outwards too.
+    // At a corner with three edges, the tetrahedron of these edges must have positive volume.
     const CellTraits& t = traits(kind);
     for (int k = 0; k < t.num_corners; ++k) {
         if (kind == CellKind::pyramid && k == 4) continue;  // the apex has four edges
-        // Each face at the corner names the edge that leaves it; the three faces, taken in turn
-        // about the corner, name its three edges.
+        // In each of the three faces at the corner, `next` is the corner after it and `previous`
+        // the corner before it. Each edge at the corner is in two of these faces.
         std::array<int, 3> next{}, previous{};
         std::size_t found = 0;
         for (int f = 0; f < t.num_faces; ++f) {
@@ -147,7 +148,8 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
                     ++found;
                 }
         }
-        // Two edges are those of the first face; the third is the other one of the second face.
+        // The first face has two of the three edges. The third edge is the one of the second face
+        // that the first face does not have.
         const bool shares_next = next[1] == next[0] || next[1] == previous[0];
         const int third = shares_next ? previous[1] : next[1];
         const Vec3& o = x[static_cast<std::size_t>(k)];
@@ -164,14 +166,15 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     }
 }
 
-/// A face by its points in descending order, for matching.
+/// A face with its points in descending order, for the search of equal faces.
 struct FaceKey {
     std::array<std::int64_t, 4> points{-1, -1, -1, -1};
     SourceFace face;
     auto operator<=>(const FaceKey&) const = default;
 };
 
-/// All faces, grouped by equal points, groups in no order of meaning, faces in order of cells.
+/// Returns all faces of usable cells, sorted so that faces with the same points follow each other.
+/// Faces with the same points are in the order of their cells.
 std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::uint8_t>& usable) {
     std::vector<FaceKey> keys;
     keys.reserve(4 * data.num_cells());
@@ -188,7 +191,7 @@ std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::u
             keys.push_back(key);
         }
     }
-    // Counting sort by one of the points leaves short buckets.
+    // A counting sort by the highest point leaves short buckets, which are fast to sort.
     std::vector<std::size_t> begin(data.points.size() + 1, 0);
     for (const FaceKey& key : keys) ++begin[static_cast<std::size_t>(key.points[0]) + 1];
     for (std::size_t p = 0; p < data.points.size(); ++p) begin[p + 1] += begin[p];
@@ -200,7 +203,8 @@ std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::u
     return sorted;
 }
 
-/// number_of(face) of at least two faces, the first few.
+/// Returns a text with number_of(face) for the first few faces and the number of the others.
+/// @pre  at least two faces
 template <class NumberOf>
 std::string number_list(std::span<const FaceKey> faces, NumberOf number_of) {
     constexpr std::size_t max_listed = 5;
@@ -237,7 +241,7 @@ bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
 void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& result,
                 Complaints& complaints) {
     if (same_points(data, a.cell, b.cell)) {
-        if (a.face == 0)  // once a pair of cells, not once a face
+        if (a.face == 0)  // one report for each pair of cells, not for each face
             complaints.add("duplicate cells", data.cell_name(a.cell), " and ",
                            data.cell_name(b.cell), " have the same nodes; remove one of them");
         return;

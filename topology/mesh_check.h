@@ -1,4 +1,4 @@
-// What must hold of a mesh before anything is built on it.
+// Check of mesh data before a mesh is built from them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace incise::topology {
 
-/// A side of a cell of the source.
+/// A face of a cell of the source.
 struct SourceFace {
     std::size_t cell = 0;
     int face = 0;
@@ -24,21 +24,30 @@ struct SharedFace {
     int shift = 0;
 };
 
+/// The result of check().
 struct MeshCheck {
-    /// What makes the mesh unusable, in the order found. Many alike are counted, not listed.
+    /// What makes the mesh unusable, in the order found. Of many errors of one kind only the first
+    /// few are listed, and the others are counted.
     std::vector<std::string> errors;
-    /// What was found odd and will be left out.
+    /// What is unusual but does not make the mesh unusable.
     std::vector<std::string> warnings;
-    /// The pairs of faces, in ascending order of a; complete only without errors.
+    /// The shared faces, in ascending order of `a`. The list is complete only if there are no
+    /// errors.
     std::vector<SharedFace> shared_faces;
 };
 
-/// Finds: lists whose lengths do not fit each other; nothing volumetric; indices out of range;
-/// coordinates not finite; repeated corners; zero or negative volume, or a corner of a hexahedron,
-/// wedge or pyramid that is turned inside out; duplicate cells; faces shared by three; neighbours
-/// on the same side of their face, or twisted against each other. Warns of points that no cell
-/// uses, and of points at one position that are not joined (see mesh_repair.h). Cells and points
-/// are named by their numbers from 0, and as the source calls them. Cost: O(n), some 0.3 us a cell.
+/// Checks mesh data. Errors are:
+/// - lists whose lengths do not fit each other, and indices out of range
+/// - no volume cells
+/// - coordinates that are not finite
+/// - cells with repeated corners, or with zero or negative volume
+/// - a corner of a hexahedron, wedge or pyramid that is turned inside out
+/// - duplicate cells, and faces that more than two cells share
+/// - neighbours on the same side of their face, or twisted against each other
+///
+/// There are warnings about points that no cell uses, and about points at one position that are not
+/// joined (see mesh_repair.h). Messages name cells and points by their numbers from 0 and by their
+/// numbers in the source. Cost: O(n), some 0.3 us a cell.
 MeshCheck check(const MeshData& data);
 
 }  // namespace incise::topology

@@ -1,4 +1,4 @@
-// A mesh as plain arrays: what readers deliver, generators make and writers take.
+// A mesh as plain arrays, as used by readers, generators and writers.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,30 +12,32 @@
 
 namespace incise::topology {
 
-/// Cells over points, numbered from 0 in the order of the source. Nothing is promised about the
-/// contents: Mesh::build checks them.
+/// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
+/// Mesh::build checks them.
 struct MeshData {
     std::vector<Vec3> points;     ///< rest positions
     std::vector<CellKind> kinds;  ///< one a cell
     std::vector<std::size_t> offsets{
-        0};  ///< #cells + 1; cell c has corners [offsets[c], offsets[c+1])
+        0};  ///< number of cells + 1; cell c has corners [offsets[c], offsets[c+1])
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
-    /// For messages: what the source calls its cells and points, one each. Empty where that is
-    /// their number here.
+    /// For messages: the number of each cell and of each point in the source. Empty where these are
+    /// the numbers used here.
     std::vector<std::int64_t> source_cells, source_points;
-    /// Of each point the one that stands for it since weld(): itself, or a lower one. Empty where
+    /// By point, the point that replaced it in weld(): itself, or one with a lower number. Empty if
     /// no point was welded to another.
     std::vector<std::int64_t> welded_to;
-    /// Points at one position are meant to be apart, as those on the two faces of a cut are.
+    /// True if points at one position are meant to be separate, such as those on two cut faces.
     bool points_may_coincide = false;
 
     std::size_t num_cells() const { return kinds.size(); }
 
+    /// Returns the corners of cell `c`.
     std::span<const std::int64_t> cell(std::size_t c) const {
         return std::span(corners).subspan(offsets[c], offsets[c + 1] - offsets[c]);
     }
 
+    /// Appends a cell.
     void add_cell(CellKind kind, std::span<const std::int64_t> cell_corners, int region = 0) {
         kinds.push_back(kind);
         corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
@@ -43,11 +45,12 @@ struct MeshData {
         regions.push_back(region);
     }
 
+    /// True if point `p` was welded to another one.
     bool is_welded(std::size_t p) const {
         return !welded_to.empty() && welded_to[p] != static_cast<std::int64_t>(p);
     }
 
-    /// "cell 3 (tetrahedron)", with what the source calls it.
+    /// Returns a name for messages, such as "cell 3 (tetrahedron)", with its number in the source.
     std::string cell_name(std::size_t c) const {
         std::string name = "cell " + std::to_string(c) + " (" + traits(kinds[c]).name;
         if (c < source_cells.size())
@@ -55,7 +58,7 @@ struct MeshData {
         return name + ")";
     }
 
-    /// "point 3", with what the source calls it.
+    /// Returns a name for messages, such as "point 3", with its number in the source.
     std::string point_name(std::size_t p) const {
         const std::string name = "point " + std::to_string(p);
         if (p >= source_points.size()) return name;

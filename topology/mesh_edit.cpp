@@ -11,7 +11,7 @@ namespace incise::topology {
 
 namespace {
 
-/// The face of a tetrahedron that does not have the corner.
+/// By corner of a tetrahedron, the face that does not contain it.
 constexpr std::array<int, 4> opposite_face = [] {
     std::array<int, 4> faces{};
     for (int f = 0; f < 4; ++f) {
@@ -36,7 +36,7 @@ MeshEdit::~MeshEdit() {
     ChangeSet changes = differences();
     changes.epoch_before = changes.epoch_after = mesh_.epoch();
     replay(mesh_, inverse(changes));
-    // Of nodes that took in others for a while the map may know a dart that is no longer theirs.
+    // A node into which others were merged may have a dart in the map that belongs to them again.
     for (const TouchedCorner& touched : touched_) {
         const NodeId n = touched.node;
         if (n.index() >= node_capacity_before_ || !mesh_.is_alive(n)) continue;
@@ -122,7 +122,7 @@ void MeshEdit::close(FaceId a, FaceId b) {
     const int size = mesh_.face_size(a);
     if (mesh_.face_size(b) != size) refuse("they differ in their number of corners");
 
-    // At rest the corners of the two sides coincide: that tells how they meet.
+    // The corners of the two faces coincide at rest, which determines the shift.
     const auto fits = [&](int shift) {
         for (int p = 0; p < size; ++p)
             if (mesh_.rest_position(mesh_.face_corner(a, p)) !=
@@ -156,12 +156,13 @@ void MeshEdit::rewire(ElementId e, int corner, NodeId to) {
     mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(corner)] = to;
 }
 
-// Elements round the edge in their order, arc by arc if the ring is not closed.
+// Collects the elements at the edge in cyclic order. If the ring is not closed, it consists of
+// arcs, which are collected one after the other. Returns false if an element is no tetrahedron.
 bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     ring_.clear();
     const auto enter = [&](ElementId element, int through) {
         RingElement at{element, mesh_.corner_of(element, a), mesh_.corner_of(element, b), -1};
-        // Of its two faces at the edge, the way on is the one that was not come through.
+        // The search leaves the element by the face at the edge through which it has not entered.
         for (int f = 0; f < 4; ++f)
             if (f != face_opposite(at.corner_a) && f != face_opposite(at.corner_b) && f != through)
                 at.next_face = f;
@@ -175,7 +176,7 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
         return mesh_.kind(element) == CellKind::tetrahedron;
     };
     const auto add_arc = [&](ElementId start) {
-        // Back to the beginning of the arc, or once round.
+        // Go to the first element of the arc, or once round a closed ring.
         RingElement first = enter(start, -1);
         for (;;) {
             const FaceId to = mesh_.neighbor({first.element, first.next_face});
@@ -183,7 +184,7 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
             if (!is_tetrahedron(to.element)) return false;
             first = enter(to.element, to.face);
         }
-        // It looks backwards: turn round.
+        // Reverse the direction of the search.
         first = enter(first.element, first.next_face);
         for (RingElement at = first;;) {
             ring_.push_back(at);
@@ -195,7 +196,8 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     };
     if (!is_tetrahedron(e) || !add_arc(e)) return false;
     if (mesh_.neighbor({ring_.back().element, ring_.back().next_face}).is_valid()) return true;
-    // An edge of the boundary: there may be further arcs, joined with this one at its ends only.
+    // The edge is on the boundary. Further arcs may be connected with this one only through faces
+    // at one end of the edge.
     star_.clear();
     collect_star(mesh_, a, e, star_);
     for (const ElementId other : star_) {
@@ -244,7 +246,7 @@ ElementId MeshEdit::divide(const RingElement& at, NodeId middle) {
     };
     join({kept, inner_face}, {added, cut_face});
     if (outer.is_valid()) join({added, inner_face}, outer);
-    // Of the other corners' stars the lowest element stays what it was.
+    // At the other corners the lowest element does not change.
     touched_.push_back({b, added});
     touched_.push_back({middle, kept});
     return added;
@@ -266,11 +268,11 @@ const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, dou
     bisection_.elements.clear();
     for (const RingElement& at : ring_)
         bisection_.elements.push_back({at.element, divide(at, bisection_.node)});
-    // The first halves are still joined round the edge, their complements follow them.
+    // The kept halves are still joined to each other. The added halves are joined in the same way.
     for (std::size_t i = 0; i < ring_.size(); ++i) {
         const FaceId face{ring_[i].element, ring_[i].next_face}, other = mesh_.neighbor(face);
         if (!other.is_valid()) continue;
-        // The next in the list, except where a ring closes.
+        // The neighbour is the next element in the list, except where a ring closes.
         std::size_t next = i + 1;
         if (next == ring_.size() || ring_[next].element != other.element) next = 0;
         while (ring_[next].element != other.element) ++next;
@@ -282,7 +284,7 @@ const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, dou
 }
 
 void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
-    // The absorbed node may already hang together in parts only: start from each that is known.
+    // The elements of the absorbed node may no longer be connected: search from all that are known.
     std::vector<ElementId> starts{at};
     if (mesh_.is_alive(absorbed)) starts.push_back(mesh_.incident_element(absorbed));
     for (const TouchedCorner& touched : touched_)
@@ -302,7 +304,7 @@ void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
 }
 
 NodeId MeshEdit::survivor_of(NodeId n) const {
-    // A survivor may have been absorbed later on, always by a lower node.
+    // A survivor may itself have been absorbed later, always by a node with a lower id.
     for (std::size_t i = 0; i < merged_.size(); ++i)
         if (merged_[i].first == n) return survivor_of(merged_[i].second);
     return n;

@@ -1,4 +1,4 @@
-// The only way to change a mesh: a transaction that ends in a ChangeSet, or leaves no trace.
+// Edits of a mesh: transactions that end in a ChangeSet, or leave the mesh unchanged.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,14 +11,15 @@
 
 namespace incise::topology {
 
-/// Collects operations on a mesh. While it lives nobody else edits the mesh; if it dies without
-/// commit(), the mesh is as it was, ids included.
+/// A transaction of operations on a mesh. If it is destroyed without commit(), the mesh is as it
+/// was before, including all ids.
 ///
-/// Nodes are divided once, at commit: wherever the elements round a node no longer hang together
-/// through faces at it, the part with the lowest element keeps the node and each other part gets
-/// a new one. Removing an element can therefore add nodes, and opening a face need not.
+/// Nodes are divided once, at commit(). A node is divided if its elements are no longer connected
+/// through faces at the node. The part with the lowest element keeps the node, and each other part
+/// gets a new node. Removing an element can therefore add nodes, and opening a face may add none.
 ///
-/// Cost: proportional to the stars of the nodes that the operations touch.
+/// Cost: proportional to the number of elements at the nodes that the operations touch.
+/// @pre  nothing else edits the mesh while the MeshEdit exists
 class MeshEdit {
   public:
     explicit MeshEdit(Mesh& mesh);
@@ -26,53 +27,58 @@ class MeshEdit {
     MeshEdit(const MeshEdit&) = delete;
     MeshEdit& operator=(const MeshEdit&) = delete;
 
-    /// Removes a living element, not one that this edit has made.
+    /// Removes a living element. Throws InputError if there is no such element, or if this edit has
+    /// added it.
     void remove(ElementId e);
-    /// Separates the two elements at a shared face.
+    /// Separates the two elements at a shared face. Throws InputError if the face is on the
+    /// boundary.
     void open(FaceId f);
-    /// Joins two boundary faces whose nodes lie at the same rest positions. Nodes that meet become
-    /// one, the lower id; the record names the other's source.
+    /// Joins two boundary faces whose nodes lie at the same rest positions. Two nodes that meet are
+    /// merged into the node with the lower id, which the record names as the source of the other.
     /// Throws InputError if the faces do not fit.
     void close(FaceId a, FaceId b);
 
-    /// An element divided by a new node on one of its edges: `kept` has the first end of the edge
-    /// and keeps its id, `added` has the second end. Local numbers of corners stay: in each of them
-    /// the new node stands where the other end stood.
+    /// An element that was divided by a new node on one of its edges. `kept` has the first end of
+    /// the edge and keeps its id; `added` has the second end. Local corner numbers do not change:
+    /// in each part the new node replaces the end of the edge that the part does not have.
     struct DividedElement {
         ElementId kept, added;
     };
+    /// The result of bisect().
     struct Bisection {
         NodeId node;
-        std::vector<DividedElement> elements;  ///< the ring round the edge
+        std::vector<DividedElement> elements;  ///< all elements at the edge
     };
 
-    /// Divides the edge from `a` to `b` of tetrahedron `e`, and with it every element round the
-    /// edge, by a node at (1 - t) a + t b at rest, 0 < t < 1. The mesh stays conforming.
-    /// The result is valid until the next call.
-    /// Throws InputError if there is no such edge, t is not inside, or a cell at the edge is no
-    /// tetrahedron.
+    /// Divides the edge from `a` to `b` of tetrahedron `e`, and with it every element at the edge.
+    /// The new node is at (1 - t) a + t b at rest, 0 < t < 1. The mesh stays conforming.
+    /// The returned reference is valid until the next call.
+    /// Throws InputError if there is no such edge, if `t` is out of range, or if an element at the
+    /// edge is no tetrahedron.
     const Bisection& bisect(ElementId e, NodeId a, NodeId b, double t);
 
-    /// Ends the transaction. The mesh's epoch grows by one, unless nothing changed.
+    /// Ends the transaction and returns its record. The epoch of the mesh increases by one, unless
+    /// nothing changed.
     ChangeSet commit();
 
   private:
-    /// One element of the ring round an edge.
+    /// One of the elements at an edge, which form a ring.
     struct RingElement {
         ElementId element;
         int corner_a = 0, corner_b = 0;
-        int next_face = 0;  ///< towards the following element of the ring
+        int next_face = 0;  ///< the face to the next element of the ring
     };
 
+    /// The state of an element before the edit.
     struct SavedRow {
         ElementId element;
         bool was_alive;
-        std::array<NodeId, max_corners> corners;  // as many as the element has; so below
+        std::array<NodeId, max_corners> corners;  // only as many as the element has; neighbors too
         std::array<FaceId, max_faces> neighbors;
     };
     struct TouchedCorner {
         NodeId node;
-        ElementId element;  // may be dead by now; invalid when only the node is of interest
+        ElementId element;  // may have died since; invalid if only the node matters
         auto operator<=>(const TouchedCorner&) const = default;
     };
 
@@ -100,14 +106,14 @@ class MeshEdit {
     std::vector<TouchedCorner> touched_;
     std::vector<std::pair<NodeId, NodeId>> merged_;  // absorbed, survivor
     std::vector<NodeRecord> nodes_added_;
-    std::vector<ElementId> parents_;  // of the elements added, in their order
+    std::vector<ElementId> parents_;  // of the added elements, in ascending order
     std::vector<RingElement> ring_;   // scratch
     std::vector<ElementId> star_;     // scratch
     Bisection bisection_;
 };
 
-/// Applies a recorded edit to a mesh that stands at changes.epoch_before, with the ids recorded.
-/// Throws InputError for an edit out of turn.
+/// Applies a recorded edit to a mesh, with the ids of the record.
+/// Throws InputError if the mesh is not at changes.epoch_before.
 void replay(Mesh& mesh, const ChangeSet& changes);
 
 }  // namespace incise::topology

@@ -1,4 +1,5 @@
-// From plain arrays to a mesh: check, renumber for locality, divide pinched nodes, build the map.
+// Conversion of plain arrays to a mesh: check the data, renumber for locality, divide pinched nodes
+// and build the combinatorial map.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <numeric>
@@ -14,7 +15,7 @@ namespace incise::topology {
 
 namespace {
 
-/// Disjoint sets of corners that faces join.
+/// Disjoint sets of corners, which are joined where cells share a face.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t size) : parent_(size) {
@@ -24,7 +25,8 @@ class DisjointSets {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// The lower root stays a root, so a set's root is its lowest member.
+    /// Joins two sets. The lower root remains the root, so that the root of a set is its lowest
+    /// member.
     void join(std::size_t i, std::size_t j) {
         i = find(i);
         j = find(j);
@@ -76,8 +78,9 @@ class MeshImport {
         mesh_.element_labels_.assign(cell_of_element_.begin(), cell_of_element_.end());
     }
 
-    // Nodes in the order in which the elements first use them; unused ones, dead, at the end, so
-    // that labels stay numbers of points and ids of later nodes lie above all of them.
+    // Nodes are numbered in the order in which the elements first use them. Unused points become
+    // dead nodes at the end. Every label is then the number of a point, and later nodes have higher
+    // ids.
     void order_nodes() {
         mesh_.label_nodes_.resize(data_.points.size());
         const auto number = [&](std::size_t point) {
@@ -122,7 +125,8 @@ class MeshImport {
             for (int p = 0; p < size; ++p)
                 sets.join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
         }
-        // Slots ascend with elements: the set that a node's first slot is in keeps the node.
+        // Slots are in ascending order of elements. The set of the first slot of a node keeps the
+        // node.
         std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), mesh_.corners_.size());
         std::vector<NodeId> node_of_set(mesh_.corners_.size());
         std::vector<bool> is_pinched(mesh_.rest_positions_.size(), false);

@@ -18,7 +18,7 @@ namespace incise::topology {
 
 namespace {
 
-/// The corners that edges join to each corner, for corners where three meet; -1 for others.
+/// By corner, the other ends of its edges if three edges meet there; else -1.
 using CornerNeighbors = std::array<std::array<int, 3>, max_corners>;
 
 constexpr CornerNeighbors corner_neighbors(const CellTraits& cell) {
@@ -39,7 +39,7 @@ constexpr std::array<CornerNeighbors, num_cell_kinds> neighbors_of_kind = {
     corner_neighbors(cell_traits[0]), corner_neighbors(cell_traits[1]),
     corner_neighbors(cell_traits[2]), corner_neighbors(cell_traits[3])};
 
-/// Looks at a cell from the corner where the edges p, q and r begin.
+/// Updates the metrics by the three edges of a cell that begin at one corner.
 void measure_corner(const std::array<Vec3, 3>& edges, MeshMetrics& metrics) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 &p = edges[i], &q = edges[(i + 1) % 3], &r = edges[(i + 2) % 3];
@@ -51,7 +51,7 @@ void measure_corner(const std::array<Vec3, 3>& edges, MeshMetrics& metrics) {
     }
 }
 
-/// Looks at a cell from each of its corners.
+/// Updates the metrics by all corners of a cell.
 void measure_cell(CellKind kind, std::span<const Vec3> corners, MeshMetrics& metrics) {
     for (std::size_t k = 0; k < corners.size(); ++k) {
         const auto& neighbors = neighbors_of_kind[static_cast<std::size_t>(kind)][k];

@@ -1,4 +1,4 @@
-// Figures that describe a mesh: its size, extent and the shape of its cells.
+// Measures of a mesh: its size, its extent and the shape of its cells.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,31 +13,33 @@
 
 namespace incise::topology {
 
-/// Lengths in the unit of the points, angles in radians.
+/// Measures of a mesh. Lengths are in the unit of the points, angles in radians.
 struct MeshMetrics {
     std::array<std::size_t, num_cell_kinds> num_of_kind{};  ///< indexed by CellKind
     std::map<int, std::size_t> cells_of_region;
-    /// Sum of signed_volume() over the cells.
+    /// The sum of signed_volume() over all cells.
     double volume = 0.0;
-    /// Of the faces that belong to one cell only; a quadrilateral counts the mean of its two
-    /// divisions in triangles, which is exact where it is flat.
+    /// The area of all faces that belong to only one cell. The area of a quadrilateral is the mean
+    /// over its two divisions into triangles, which is exact for a flat one.
     double surface_area = 0.0;
-    /// Of the points that cells use.
+    /// The bounding box of the points that cells use.
     Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
-    /// Each edge counts once, however many cells share it.
+    /// An edge that several cells share counts once.
     double min_edge_length = 0.0, mean_edge_length = 0.0, max_edge_length = 0.0;
-    /// Least distance of a corner from a plane in which a neighbouring corner's face lies: of a
-    /// tetrahedron the least altitude, of a brick the least thickness. The tips of pyramids, where
-    /// four edges meet, are not looked at from.
+    /// The least altitude of all cells. At each corner where three edges of a cell meet, the
+    /// altitude is the distance from the end of one edge to the plane of the two others. For a
+    /// tetrahedron this is the usual altitude, for a brick the thickness. The apex of a pyramid,
+    /// where four edges meet, is not such a corner.
     double min_altitude = 0.0;
-    /// Least angle between two faces of a cell along their common edge, measured at its ends.
+    /// The least angle between two faces of a cell at their common edge, measured at the ends of
+    /// the edge.
     double min_dihedral_angle = 0.0;
 };
 
-/// MeshMetrics::min_altitude of one cell.
+/// Returns MeshMetrics::min_altitude of one cell.
 double min_altitude(CellKind kind, std::span<const Vec3> corners);
 
-/// Throws InputError with all that check() finds wrong. Cost: O(n log n).
+/// Returns the measures of a mesh. Throws InputError with the errors of check(). Cost: O(n log n).
 MeshMetrics measure(const MeshData& data);
 
 }  // namespace incise::topology

@@ -23,7 +23,8 @@ const Vec3& position_of(const MeshData& data, std::int64_t point) {
     return data.points[static_cast<std::size_t>(point)];
 }
 
-/// Zero where squares of lengths leave the range of numbers: then only equal positions are one.
+/// Returns the length of the shortest edge. If squares of lengths overflow or underflow, it returns
+/// zero, so that only equal positions count as one.
 double shortest_edge(const MeshData& data) {
     double shortest = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
@@ -48,10 +49,10 @@ std::vector<std::int64_t> used_points(const MeshData& data) {
     return used;
 }
 
-/// Of each point the lowest one at its position: nearer than `part` of the shortest edge.
-/// Points that no cell uses stand for themselves.
-/// A sweep along one direction compares few points with each other, and most of those along a
-/// second one only: the directions are those of no plane in which meshes have many of their points.
+/// Returns, by point, the lowest point at the same position: at a distance of at most `part` of the
+/// shortest edge. For points that no cell uses it returns the point itself.
+/// A sweep along one direction finds few candidates, and a second direction excludes most of these.
+/// Both directions are oblique, since meshes often have many points in one plane normal to an axis.
 std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) {
     struct Leader {
         double at, across;
@@ -71,7 +72,7 @@ std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) 
     std::vector<std::int64_t> leader_of(data.points.size());
     std::iota(leader_of.begin(), leader_of.end(), 0);
     std::vector<Leader> leaders;
-    std::size_t begin = 0;  // of the leaders that later points may be near to
+    std::size_t begin = 0;  // of the leaders that may be near later points
     for (const auto& [at, across, point] : order) {
         while (begin < leaders.size() && leaders[begin].at < at - 2.0 * tolerance) ++begin;
         const Vec3& here = position_of(data, point);
@@ -96,7 +97,7 @@ std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) 
     return leader_of;
 }
 
-/// Points that have another one to stand for them.
+/// Returns the points for which `lowest` names another point.
 std::vector<std::size_t> doubles(const std::vector<std::int64_t>& lowest) {
     std::vector<std::size_t> found;
     for (std::size_t p = 0; p < lowest.size(); ++p)
@@ -104,7 +105,7 @@ std::vector<std::size_t> doubles(const std::vector<std::int64_t>& lowest) {
     return found;
 }
 
-/// "point 3 of cell 5 (tetrahedron)", the first that has it.
+/// Returns a name such as "point 3 of cell 5 (tetrahedron)". The cell is the first with this point.
 std::string corner_name(const MeshData& data, std::size_t point) {
     std::size_t c = 0;
     while (std::ranges::find(data.cell(c), static_cast<std::int64_t>(point)) == data.cell(c).end())
@@ -112,7 +113,7 @@ std::string corner_name(const MeshData& data, std::size_t point) {
     return data.point_name(point) + " of " + data.cell_name(c);
 }
 
-/// Why to weld the points or why not, and how.
+/// Returns a sentence that says whether and how to weld the points.
 std::string remedy_for_coincidence(const MeshData& data) {
     const std::string apart =
         "if they are meant to be apart, as the faces of a cut are, say 'weld = false' ";
@@ -139,7 +140,7 @@ std::string remedy_for_coincidence(const MeshData& data) {
     return text + "; " + apart + "there";
 }
 
-/// About points that are near to others, but not at one position.
+/// Returns a warning if boundary points are near each other but not joined.
 std::optional<std::string> nearness_warning(const MeshData& data,
                                             const std::vector<std::int64_t>& lowest) {
     const auto is_on_boundary = points_of_boundary(data);
@@ -171,7 +172,7 @@ std::optional<std::string> coincidence_warning(const MeshData& data) {
     if (doubles(near).empty()) return std::nullopt;
     const auto lowest = lowest_at_position(data, weld_tolerance);
     const auto found = doubles(lowest);
-    // Those of a welded mesh are apart but for rounding.
+    // In a mesh that has been welded, points at one position differ only by rounding.
     if (found.empty() || !data.welded_to.empty()) return nearness_warning(data, near);
     const std::size_t example = found.front();
     const Vec3& x = data.points[example];
@@ -186,8 +187,8 @@ std::optional<std::string> coincidence_warning(const MeshData& data) {
     return text.str();
 }
 
-// Again and again: the points that stand for others, and the shortest edge, are not quite those of
-// before. What is left at last is apart for whoever looks again.
+// Welding is repeated, since it can change the shortest edge and the points that others are joined
+// to. At the end, a further call finds no points at one position.
 std::size_t weld(MeshData& data) {
     std::size_t num_joined = 0;
     while (true) {

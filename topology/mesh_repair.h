@@ -1,5 +1,5 @@
-// What is often wrong with a mesh from a file and can be put right: points that are not joined,
-// cells that are wound the wrong way round.
+// Repair of frequent errors in meshes from files: points that are not joined, and cells whose
+// corners are in the wrong order.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,37 +11,38 @@
 
 namespace incise::topology {
 
-/// Two points are at one position if they are nearer to each other than this part of the shortest
-/// edge. It is well above the rounding of single precision in coordinates, and far below anything
-/// that a mesh resolves.
+/// Two points count as being at one position if their distance is at most this fraction of the
+/// shortest edge. The fraction is well above the rounding of coordinates in single precision, and
+/// far below all lengths that a mesh resolves.
 inline constexpr double weld_tolerance = 1e-4;
 
-/// Points of the boundary nearer to each other than this part of the shortest edge are a gap that
-/// is hardly meant.
+/// Two boundary points whose distance is at most this fraction of the shortest edge form a gap that
+/// is probably an error.
 inline constexpr double near_tolerance = 1e-2;
 
-/// A warning about points that cells use and that lie where another such point lies, or on the
-/// boundary and near another one there, unless they may (MeshData::points_may_coincide). It offers
-/// welding where that joins cells.
-/// @pre  corners are numbers of points, whose coordinates are finite
+/// Returns a warning if points that cells use lie at one position (see weld_tolerance), or if
+/// boundary points lie near each other (see near_tolerance). The warning proposes welding where
+/// welding joins cells. There is no warning if MeshData::points_may_coincide is set.
 /// Cost: O(n log n) in the number of points, some 0.3 us each.
+/// @pre  corners are valid point numbers, and all coordinates are finite
 std::optional<std::string> coincidence_warning(const MeshData& data);
 
-/// Joins the points at one position: cells then have the lowest of them. No point is removed or
-/// renumbered: MeshData::welded_to tells what became of each. Returns how many points were joined
-/// to a lower one. Whether the cells still are sound after that, check() tells.
-/// @pre  as above
+/// Joins points at one position: cells then use the one with the lowest number. Returns how many
+/// points were joined to a lower one. No point is removed or renumbered; MeshData::welded_to names
+/// the point that replaced each point. Welding can make cells invalid: use check() afterwards.
+/// @pre  corners are valid point numbers, and all coordinates are finite
 std::size_t weld(MeshData& data);
 
-/// What weld() did, in words.
+/// Returns a sentence that reports the result of weld().
 std::string weld_report(std::size_t num_joined);
 
-/// Removes the points that were welded to others. Later points move up.
+/// Removes the points that were welded to others. Later points get lower numbers.
 void drop_welded_points(MeshData& data);
 
-/// Winds all cells the other way round if every cell has negative volume, but for cells without
-/// volume to rounding. Returns how many had negative volume, or zero if none was turned.
-/// @pre  as above
+/// Reverses the corner order of all cells if every cell has negative volume. Cells whose volume is
+/// zero to rounding are ignored in this test. Returns how many cells had negative volume, or zero
+/// if no cell was reversed.
+/// @pre  corners are valid point numbers, and all coordinates are finite
 std::size_t turn_inverted_cells(MeshData& data);
 
 }  // namespace incise::topology

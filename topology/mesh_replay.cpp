@@ -1,4 +1,4 @@
-// Replays a recorded edit: forwards, or backwards with its inverse.
+// Replay of a recorded edit. The replay of its inverse undoes an edit.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace incise::topology {
 
-/// Carries a record out as it stands, deciding nothing.
+/// Execution of a record. All decisions are in the record.
 class MeshReplay {
   public:
     MeshReplay(Mesh& mesh, const ChangeSet& changes) : mesh_(mesh), changes_(changes) {}

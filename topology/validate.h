@@ -1,4 +1,4 @@
-// Whole-mesh invariants.
+// Check of the invariants of a mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,11 +9,18 @@
 
 namespace incise::topology {
 
-/// Says everything that is wrong with the mesh; empty if all is well. Checks that map and flat
-/// arrays agree and CGAL calls the map valid; that neighbours know each other and share their
-/// nodes; that each node is one face-connected star with the right incident_element; that corners
-/// are alive and distinct, counts right and rest volumes positive. Cost: some microseconds an
-/// element; for tests and debug builds.
+/// Returns a description of each violated invariant; empty if the mesh is valid.
+///
+/// The invariants are:
+/// - the combinatorial map and the arrays agree, and CGAL finds the map valid
+/// - neighbours name each other and share the nodes of their face
+/// - the elements at each node are connected through faces at it
+/// - incident_element() is the lowest element at each node
+/// - corners are alive and distinct
+/// - the counts of nodes and elements are right
+/// - rest volumes are positive
+///
+/// Cost: some microseconds an element. Meant for tests and debug builds.
 std::vector<std::string> validate(const Mesh& mesh);
 
 }  // namespace incise::topology

@@ -13,7 +13,7 @@ namespace incise::topology {
 
 namespace {
 
-/// The check of the mesh itself: how its points lie to each other is not looked at.
+/// Returns the result of check() without the search for points at one position.
 MeshCheck check_cells(MeshData data) {
     data.points_may_coincide = true;
     return check(data);
@@ -27,7 +27,7 @@ std::vector<std::size_t> points_of(const MeshData& data, SourceFace f) {
     return points;
 }
 
-/// Those of one cell only, in ascending order.
+/// Returns the faces that belong to only one cell, in ascending order.
 std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& checked) {
     std::vector<SourceFace> all, inner, boundary;
     for (std::size_t c = 0; c < data.num_cells(); ++c)
@@ -39,8 +39,8 @@ std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& check
     return boundary;
 }
 
-/// A cell with a quadrilateral of the boundary and one with a triangle that has three of its
-/// corners.
+/// Returns two cells, if there are any: the first with a quadrilateral boundary face, the second
+/// with a triangular boundary face that has three corners of the quadrilateral.
 std::optional<std::pair<std::size_t, std::size_t>> find_unlike_faces(const MeshData& data,
                                                                      const MeshCheck& checked) {
     std::map<std::array<std::size_t, 3>, std::size_t> cell_of_corners;

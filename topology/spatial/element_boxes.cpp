@@ -18,7 +18,7 @@ void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
         update_group(mesh, positions, g);
         if (!groups_[g].isEmpty()) sum += groups_[g].sizes().maxCoeff();
     }
-    // Boxes that have grown by this much let twice as many elements through, or a few times more.
+    // At this margin, a search visits twice to a few times as many elements as with new boxes.
     if (!groups_.empty()) largest_margin_ = 0.4 * sum / static_cast<double>(groups_.size());
 }
 
@@ -29,7 +29,7 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
         if (const ElementId e(i); mesh.is_alive(e))
             for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
     groups_[g] = box;
-    // Only ever larger, until all are made anew: a group may have lost elements.
+    // The box of a supergroup only grows until the next rebuild, even if a group has lost elements.
     supergroups_[g / supergroup_size].extend(box);
 }
 
@@ -37,7 +37,7 @@ void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, doubl
     margin_ += distance;
     if (margin_ <= largest_margin_) return;
     build(mesh, positions);
-    margin_ = distance;  // they have to hold what was before the step too
+    margin_ = distance;  // the boxes must also contain the elements before the motion
 }
 
 bool ElementBoxes::may_meet(const Box& swept) const {
@@ -59,7 +59,7 @@ void ElementBoxes::apply(const Mesh& mesh, std::span<const Vec3> positions,
         touched.push_back(record.element.index() / group_size);
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    // From the positions of now, which the margin covers from both sides.
+    // The boxes contain the current positions; the margin covers the earlier ones.
     for (const std::size_t g : touched)
         if (g < groups_.size()) update_group(mesh, positions, g);
 }

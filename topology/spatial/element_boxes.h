@@ -1,4 +1,4 @@
-// Which elements are near a tool, without looking at all of them.
+// Search for the elements near a tool by a hierarchy of bounding boxes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,33 +13,38 @@
 
 namespace incise::topology {
 
-/// Boxes round groups of elements with neighbouring ids, which lie near each other, and round
-/// groups of groups. They stay right while the body moves, for they grow by as much as any node
-/// has moved; when they have grown too large they are made anew.
+/// Bounding boxes of groups of elements and of groups of groups. A group has elements with
+/// consecutive ids, which lie near each other. The boxes remain valid while the body moves, since
+/// they grow by the largest distance that any node has moved. When they have grown too large, they
+/// are rebuilt.
 class ElementBoxes {
   public:
-    /// Cost: O(n).
+    /// Builds the boxes for the current positions (m, by node id). Cost: O(n).
     ElementBoxes(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
-    /// The body moves on: no node by more than `distance` (m), to `positions`.
-    /// Cost: now and then O(n).
+    /// Follows a motion of the body.
+    /// @param mesh       the mesh of the body
+    /// @param positions  by node id, after the motion, m
+    /// @param distance   at least the largest distance that a node has moved, m
+    /// Cost: O(n) when the boxes are rebuilt, else O(1).
     void move(const topology::Mesh& mesh, std::span<const Vec3> positions, double distance);
-    /// Takes in what an edit has changed. Cost: proportional to the edit.
+    /// Follows an edit. Cost: proportional to the edit.
     void apply(const topology::Mesh& mesh, std::span<const Vec3> positions,
                const topology::ChangeSet& changes);
 
-    /// Whether there are as many boxes as the mesh needs.
+    /// True if there are as many boxes as the mesh needs.
     bool cover(const topology::Mesh& mesh) const {
         return groups_.size() == num_groups(mesh.element_capacity()) &&
                supergroups_.size() == num_supergroups(groups_.size());
     }
 
-    /// Calls visit(element) for the living elements, in ascending order, of all groups for which
-    /// may_meet(box) holds. The boxes hold the elements throughout the last motion.
+    /// Calls visit(element) for the living elements of all groups for which may_meet(box) is true,
+    /// in ascending order. The boxes contain the elements throughout the last motion.
     template <class MayMeet, class Visit>
     void for_each_near(const topology::Mesh& mesh, MayMeet may_meet, Visit visit) const;
 
-    /// False only if no element has a point in it during the last motion. Cost: that of the boxes.
+    /// True if an element may have had a point in the box `swept` during the last motion. If false,
+    /// no element had one. Cost: O(number of boxes).
     bool may_meet(const Box& swept) const;
 
     static void archive(auto& ar, auto& self) {
@@ -62,8 +67,8 @@ class ElementBoxes {
 
     std::vector<Box> groups_;       // of elements
     std::vector<Box> supergroups_;  // of groups
-    double margin_ = 0.0;           // by how much nodes may have moved since the boxes were made
-    double largest_margin_ = 0.0;   // beyond which they are made anew
+    double margin_ = 0.0;           // how far nodes may have moved since the boxes were built
+    double largest_margin_ = 0.0;   // above it, the boxes are rebuilt
 };
 
 template <class MayMeet, class Visit>
