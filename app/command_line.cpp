@@ -13,6 +13,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_writer.h"
+#include "incise/physics/elements/workers.h"
 #include "incise/scenario/table_reader.h"
 
 namespace incise::app {
@@ -66,7 +67,7 @@ void declare_run(CLI::App& app, Action& action) {
     verb->add_option("--threads", options->num_threads,
                      "How many threads compute (default: one a core); results are the same bits")
         ->type_name("N")
-        ->check(CLI::Range(1, 256).description(""));
+        ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
     verb->add_flag("--resume", options->resume,
                    "Go on with a run that was stopped, from its last checkpoint, to the same files "
                    "as if it had not been; with the SCENARIO, --out, --set and --end-time that it "

@@ -275,7 +275,7 @@ class CountingCutter {
         for (const topology::ElementRecord& record : changes.elements_removed)
             removed += volume_of(mesh_, record.kind, record.corners);
         counts_.volume_removed = static_cast<double>(removed);
-        book(changes);
+        record_changes(changes);
     }
 
     void split(const cutting::CutSurface& surface) {
@@ -303,7 +303,7 @@ class CountingCutter {
             assert(opened.size() == 2 * result.report.faces_opened);
             for (const FaceId f : opened) remember(f);
         }
-        book(result.changes);
+        record_changes(result.changes);
     }
 
     /// Opens the faces between elements for whose centres, at rest, `are_separated` holds.
@@ -333,11 +333,11 @@ class CountingCutter {
         }
         counts_.elements_crossed += crossed.size();
         counts_.faces_opened += changes.faces_opened.size();
-        book(changes);
+        record_changes(changes);
     }
 
-    void book(const topology::ChangeSet& changes) {
-        cutter_.apply(mesh_, mesh_.rest_positions(), changes);
+    void record_changes(const topology::ChangeSet& changes) {
+        cutter_.apply(mesh_, changes);
         counts_.elements_added += changes.elements_added.size();
         counts_.elements_removed += changes.elements_removed.size();
         counts_.nodes_added += changes.nodes_added.size();

@@ -15,6 +15,35 @@ namespace {
 
 using nlohmann::ordered_json;
 
+ordered_json row_of(const bench::StepRate& rate) {
+    ordered_json row = {{"method", rate.method},
+                        {"law", rate.law.empty() ? ordered_json(nullptr) : rate.law},
+                        {"elements", rate.elements},
+                        {"threads", rate.num_threads},
+                        {"forces_ns_per_element", rate.forces},
+                        {"step_ns_per_element", rate.step},
+                        {"single_forces_ns_per_element", rate.single_forces},
+                        {"single_step_ns_per_element", rate.single_step},
+                        {"reference_ns_per_element", nullptr},
+                        {"reference_step_over_step", nullptr},
+                        {"arithmetic_ns_per_element", nullptr},
+                        {"step_over_arithmetic", nullptr},
+                        {"microseconds_per_step", 1e6 / rate.steps_per_second},
+                        {"steps_per_second", rate.steps_per_second},
+                        {"real_time_factor", rate.real_time_factor},
+                        {"gflops", rate.gigaflops},
+                        {"gbytes_per_second", rate.gigabytes_per_second},
+                        {"share_of_peak", rate.share_of_peak},
+                        {"share_of_bandwidth", rate.share_of_bandwidth}};
+    if (rate.reference) row["reference_ns_per_element"] = *rate.reference;
+    if (rate.reference_ratio) row["reference_step_over_step"] = *rate.reference_ratio;
+    if (rate.arithmetic) {
+        row["arithmetic_ns_per_element"] = *rate.arithmetic;
+        row["step_over_arithmetic"] = rate.step / *rate.arithmetic;
+    }
+    return row;
+}
+
 ordered_json as_json(const bench::Throughput& throughput) {
     const bench::MachineSpeed& machine = throughput.machine;
     ordered_json json;
@@ -29,34 +58,7 @@ ordered_json as_json(const bench::Throughput& throughput) {
                                              {"gbytes_per_second", limit.gigabytes_per_second}});
     json["tissue"] = throughput.tissue;
     json["steps"] = ordered_json::array();
-    for (const bench::StepRate& rate : throughput.steps) {
-        ordered_json row = {{"method", rate.method},
-                            {"law", rate.law.empty() ? ordered_json(nullptr) : rate.law},
-                            {"elements", rate.elements},
-                            {"threads", rate.num_threads},
-                            {"forces_ns_per_element", rate.forces},
-                            {"step_ns_per_element", rate.step},
-                            {"single_forces_ns_per_element", rate.single_forces},
-                            {"single_step_ns_per_element", rate.single_step},
-                            {"reference_ns_per_element", nullptr},
-                            {"reference_step_over_step", nullptr},
-                            {"arithmetic_ns_per_element", nullptr},
-                            {"step_over_arithmetic", nullptr},
-                            {"microseconds_per_step", 1e6 / rate.steps_per_second},
-                            {"steps_per_second", rate.steps_per_second},
-                            {"real_time_factor", rate.real_time_factor},
-                            {"gflops", rate.gigaflops},
-                            {"gbytes_per_second", rate.gigabytes_per_second},
-                            {"share_of_peak", rate.share_of_peak},
-                            {"share_of_bandwidth", rate.share_of_bandwidth}};
-        if (rate.reference) row["reference_ns_per_element"] = *rate.reference;
-        if (rate.reference_ratio) row["reference_step_over_step"] = *rate.reference_ratio;
-        if (rate.arithmetic) {
-            row["arithmetic_ns_per_element"] = *rate.arithmetic;
-            row["step_over_arithmetic"] = rate.step / *rate.arithmetic;
-        }
-        json["steps"].push_back(std::move(row));
-    }
+    for (const bench::StepRate& rate : throughput.steps) json["steps"].push_back(row_of(rate));
     json["edits"] = ordered_json::array();
     for (const bench::EditRate& rate : throughput.edits)
         json["edits"].push_back({{"method", rate.method},

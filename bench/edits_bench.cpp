@@ -126,7 +126,7 @@ void split(benchmark::State& state) {
         for (int step = 0; step < num_steps; ++step) {
             auto done = cutter.split(cut, mesh, model.positions(), edge(step), edge(step + 1));
             model.apply(model.mesh(), done.changes);
-            cutter.apply(mesh, model.positions(), done.changes);
+            cutter.apply(mesh, done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);
             history.push_back(std::move(done.changes));
         }

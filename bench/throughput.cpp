@@ -192,7 +192,7 @@ struct CutCube {
 
     void follow(const topology::ChangeSet& changes) {
         model.apply(model.mesh(), changes);
-        cutter.apply(mesh, model.positions(), changes);
+        cutter.apply(mesh, changes);
     }
 };
 

@@ -14,6 +14,8 @@ namespace incise::cutting {
 using topology::ChangeSet;
 using topology::Mesh;
 
+static_assert(topology::Follower<Cutter>);
+
 namespace {
 
 /// Carries the plan out. Faces of removed elements are not counted as opened.
@@ -100,6 +102,7 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, std::span<const Vec3> positions,
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
     auto resting = suspended_cuts(id.index);
+    boxes_.refresh(mesh, positions);
     return noted(finish(mesh, {mesh, positions, positions, &boxes_}, blade, cut.front,
                         {cut.snap, uncut_}, snap_history_, resting),
                  id.index);
@@ -128,7 +131,7 @@ Split Cutter::carve(Mesh& mesh, std::span<const Vec3> positions, const CarverSha
     return noted(carry_out({covered, {}}, mesh), std::nullopt);
 }
 
-void Cutter::apply(const Mesh& mesh, std::span<const Vec3> positions, const ChangeSet& changes) {
+void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
     const OwnEdit own = changes.epoch_after == own_edit_.epoch ? own_edit_ : OwnEdit{};
     own_edit_ = {};
@@ -136,7 +139,7 @@ void Cutter::apply(const Mesh& mesh, std::span<const Vec3> positions, const Chan
     if (!own.history_followed) snap_history_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (i != own.cut) cuts_[i].front.apply(mesh, changes);
-    boxes_.apply(mesh, positions, changes);
+    boxes_.apply(mesh, changes);
 }
 
 bool Cutter::is_on(const Mesh& mesh) const {

@@ -37,7 +37,7 @@ struct CutId {
 ///     cutter.end_motion(mesh, positions, largest_move);
 ///     const Split done = cutter.split(cut, mesh, positions, edge_before, edge_after);
 ///     model.apply(mesh, done.changes);
-///     cutter.apply(mesh, model.positions(), done.changes);
+///     cutter.apply(mesh, done.changes);
 ///
 /// Positions are current ones, by node id, m. They are those of before an edit while that edit is
 /// made, and have the new nodes when apply() is called.
@@ -84,10 +84,9 @@ class Cutter {
                 const Pose& pose_before, const Pose& pose_after);
 
     /// Follows an edit, of this cutter or of anybody else.
-    /// @param mesh, positions  after the edit
+    /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the edit.
-    void apply(const topology::Mesh& mesh, std::span<const Vec3> positions,
-               const topology::ChangeSet& changes);
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     /// What earlier cuts have left at nodes.
     const SnapHistory& snap_history() const { return snap_history_; }
@@ -123,7 +122,8 @@ class Cutter {
     const Cut& cut_of(CutId id) const;
     /// The other cuts in progress: fronts that an edit by `worker` may touch.
     std::vector<SuspendedCut> suspended_cuts(std::optional<std::size_t> worker);
-    TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) const {
+    TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) {
+        boxes_.refresh(mesh, positions);
         return {mesh, before_.values(), positions, &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);

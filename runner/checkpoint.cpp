@@ -21,9 +21,6 @@ namespace {
 
 constexpr std::string_view suffix = ".checkpoint";
 
-/// To be raised, within a version, with what a simulation saves or the bits that it computes.
-constexpr std::uint32_t state_format = 5;
-
 constexpr std::string_view prefix_of(CheckpointKind kind) {
     return kind == CheckpointKind::regular ? "step_" : "stop_";
 }
@@ -116,8 +113,8 @@ void SavedMoment::write(const fs::path& folder, const Written& written, Checkpoi
     if (!fs::is_directory(folder_of_checkpoints(folder)))
         io::make_output_folder(folder_of_checkpoints(folder));
     ArchiveWriter ar;
-    ar(std::string(INCISE_VERSION), state_format, scenario_->contents, fingerprint_, written,
-       state_.bytes());
+    ar(std::string(INCISE_VERSION), sim::World::state_format, scenario_->contents, fingerprint_,
+       written, state_.bytes());
     io::write_checked_file(folder_of_checkpoints(folder) / CheckpointName{kind, step_}.text(),
                            ar.bytes());
     tidy_checkpoints(folder, step_);
@@ -156,10 +153,10 @@ Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)
                          "; resume with that one, or begin anew without --resume");
     std::uint32_t format = 0;
     name_location([&] { ar(format); });
-    if (format != state_format)
+    if (format != sim::World::state_format)
         throw InputError(path_.string() + ": was written by another build of version " + version +
                          " of incise, with state format " + std::to_string(format) +
-                         ", and this has " + std::to_string(state_format) +
+                         ", and this has " + std::to_string(sim::World::state_format) +
                          "; resume with that one, or begin anew without --resume");
     name_location([&] {
         ar(contents_, fingerprint_, written_, state_);

@@ -119,7 +119,7 @@ void Simulation::restore(ArchiveReader& ar) {
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
     if (world_.num_tools() != paths_.size()) throw InputError("its tools are not those of the run");
-    if (edits_.size() != ledger().num_edits()) throw InputError("its books are not of its edits");
+    if (edits_.size() != ledger().num_edits()) throw InputError("its ledger is not that of its edits");
     for (const sim::EditRecord& edit : edits_) warn_of_short_steps(edit);
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");

@@ -215,6 +215,18 @@ void check_fibre(const TableReader& material, const MeshSpec& mesh, const Materi
 /// Indexed by physics::PronyRule.
 constexpr std::string_view prony_rule_names[] = {"stress", "nodal"};
 
+/// @returns false where a value is not sound; it then has a message and counts as given
+bool read_parameters(const TableReader& material, ElasticParameters& given) {
+    bool are_sound = read_terms(material, given);
+    for (const auto& row : parameters()) {
+        if (row.parameter == Parameter::terms || !material.has(row.key)) continue;
+        const auto value = material.number_if_given(row.key, row.limits);
+        are_sound = are_sound && value;
+        given[row.parameter] = value.value_or(1.0);
+    }
+    return are_sound;
+}
+
 MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     MaterialSpec spec;
     spec.location = material.location_text();
@@ -239,13 +251,7 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
         material.require("density", "kilograms a cubic metre, as in density = 1060");
     spec.density =
         material.number("density", preset != nullptr ? preset->density : 1.0, limits::positive);
-    bool values_are_sound = read_terms(material, spec.parameters);
-    for (const auto& row : parameters()) {
-        if (row.parameter == Parameter::terms || !material.has(row.key)) continue;
-        const auto value = material.number_if_given(row.key, row.limits);
-        values_are_sound = values_are_sound && value;
-        spec.parameters[row.parameter] = value.value_or(1.0);  // it counts as given
-    }
+    const bool values_are_sound = read_parameters(material, spec.parameters);
     spec.inversion_threshold =
         material.number("inversion_threshold", spec.inversion_threshold, {.low = 0.0, .high = 1.0});
     spec.prony = read_prony(material);

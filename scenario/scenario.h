@@ -79,7 +79,6 @@ struct DynamicsSpec {
     double safety = 0.8;   ///< in (0, 1]
     double damping = 0.0;  ///< mass-proportional, 1/s
     Vec3 gravity = Vec3::Zero();
-    std::uint64_t seed = 1;
     /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
     physics::Precision precision = physics::Precision::double_precision;
     std::string end_time_location = {}, time_step_location = {},

@@ -26,7 +26,7 @@ constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
                                                 topology::CellKind::hexahedron};
 constexpr Keys dynamics_keys[] = {"mode",   "integrator", "end_time", "time_step", "steps",
-                                  "safety", "damping",    "gravity",  "seed",      "precision"};
+                                  "safety", "damping",    "gravity",  "precision"};
 constexpr Keys mode_names[] = {"dynamic", "static"};
 constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
 constexpr Keys precision_names[] = {"double", "single"};
@@ -233,7 +233,6 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
         dynamics->number("safety", spec.safety, {.low = 0.0, .high = 1.0, .includes_high = true});
     spec.damping = dynamics->number("damping", spec.damping, limits::non_negative);
     spec.gravity = dynamics->vector("gravity");
-    spec.seed = static_cast<std::uint64_t>(dynamics->integer("seed", 1, {.low = 0}));
     if (const auto mode = dynamics->choice("mode", {mode_names}))
         spec.mode = static_cast<Mode>(*mode);
     if (const auto integrator = dynamics->choice("integrator", {integrator_names}))

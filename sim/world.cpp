@@ -149,6 +149,12 @@ const physics::Reaction& World::reaction(ConstraintId constraint) const {
     return parts_->model.reactions()[parts_->constraints.place(constraint.index)];
 }
 
+void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
+    if (!term) throw InputError("a force term is given as null");
+    parts_->model.add_force_term(std::move(term));
+    parts_->loads_have_changed = true;
+}
+
 LoadId World::add_load(physics::Load load) {
     Parts& p = *parts_;
     require_sound(load, p.mesh);

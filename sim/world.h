@@ -15,6 +15,7 @@
 #include "incise/base/error.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/force_term.h"
 #include "incise/physics/body/model.h"
 #include "incise/sim/ledger.h"
 #include "incise/topology/boundary_surface.h"
@@ -200,6 +201,12 @@ class World {
     void set_load_factor(LoadId load, double factor);
     void remove_load(LoadId load);
 
+    /// Adds a force of your own, such as springs to points in space or a field. It acts in all
+    /// steps from the next one on. Bytes of save() do not contain it: restore() keeps the terms
+    /// that the world has, and calls their update(). Throws InputError for null. Cost: O(n), for
+    /// the stable step.
+    void add_force_term(std::unique_ptr<physics::ForceTerm> term);
+
     /// Returns the surface of the body. The surface is built at the first call and then follows the
     /// edits.
     topology::BoundarySurface& surface();
@@ -210,6 +217,10 @@ class World {
     const physics::Model& model() const;
     const cutting::Cutter& cutter() const;
     const Ledger& ledger() const;
+
+    /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
+    /// run lists other members, or if a world computes other bits.
+    static constexpr std::uint32_t state_format = 6;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, constraints, loads,
     /// tools and cuts in progress. The materials and the solver are not included.

@@ -80,9 +80,19 @@ void World::Parts::prepare_tools() {
 
 namespace {
 
-/// Must change whenever save() lists other members, and whenever a world computes other bits.
-constexpr std::uint32_t state_format = 3;
 constexpr std::uint32_t state_mark = 0x57434e49;  // "INCW"
+
+void add_values(ArchiveWriter& ar, const physics::HyperElasticLinks& links) {
+    ar(static_cast<std::uint64_t>(links.law.index()), physics::rest_mu(links.law),
+       physics::rest_lambda(links.law), links.inversion_threshold, links.prony_rule);
+    for (const physics::PronyTerm& term : links.prony) ar(term.alpha, term.tau);
+}
+
+void add_values(ArchiveWriter& ar, const physics::MassSprings& springs) { ar(springs.young); }
+
+void add_values(ArchiveWriter& ar, const physics::HybridSprings& springs) {
+    ar(springs.shear_modulus, springs.volume_modulus, springs.stiffness_ratio);
+}
 
 /// Returns a checksum of the plain values of the materials. Two laws of one kind with the same
 /// moduli at rest have the same checksum.
@@ -91,16 +101,7 @@ std::uint64_t fingerprint_of(const physics::Model& model) {
     ArchiveWriter ar;
     for (const physics::Material& material : table.materials) {
         ar(material.density, static_cast<std::uint64_t>(material.method.index()));
-        if (const auto* links = std::get_if<physics::HyperElasticLinks>(&material.method)) {
-            ar(static_cast<std::uint64_t>(links->law.index()), physics::rest_mu(links->law),
-               physics::rest_lambda(links->law), links->inversion_threshold, links->prony_rule);
-            for (const physics::PronyTerm& term : links->prony) ar(term.alpha, term.tau);
-        } else if (const auto* springs = std::get_if<physics::MassSprings>(&material.method)) {
-            ar(springs->young);
-        } else {
-            const auto& hybrid = std::get<physics::HybridSprings>(material.method);
-            ar(hybrid.shear_modulus, hybrid.volume_modulus, hybrid.stiffness_ratio);
-        }
+        std::visit([&](const auto& method) { add_values(ar, method); }, material.method);
     }
     for (const auto& [region, material] : table.of_region)
         ar(region, static_cast<std::uint64_t>(material));
@@ -129,7 +130,9 @@ void World::restore(std::string_view bytes) {
         throw InputError("the world that was saved has another solver");
     if (ar.read<std::uint64_t>() != fingerprint_of(parts_->model))
         throw InputError("the world that was saved has other materials");
-    parts_ = std::make_unique<Parts>(*parts_, ar);
+    auto restored = std::make_unique<Parts>(*parts_, ar);
+    restored->model.take_force_terms(parts_->model, restored->time);
+    parts_ = std::move(restored);
 }
 
 }  // namespace incise::sim

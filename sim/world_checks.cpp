@@ -9,6 +9,7 @@
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
+#include "incise/physics/elements/workers.h"
 
 namespace incise::sim {
 
@@ -250,9 +251,9 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
 }
 
 void require_sound_num_threads(int n) {
-    if (n < 1)
+    if (n < 1 || n > physics::Workers::max_threads)
         throw InputError("the number of threads is " + std::to_string(n) +
-                         ": it must be at least 1");
+                         ": it must be from 1 to " + std::to_string(physics::Workers::max_threads));
 }
 
 }  // namespace incise::sim

@@ -174,7 +174,7 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);
     model.apply(mesh, changes);
-    cutter.apply(mesh, model.positions(), changes);
+    cutter.apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
     EditRecord record =
         ledger.record(end, num_steps, tools[id.index].def.name, done, before, mass_removed);

@@ -260,7 +260,7 @@ std::vector<std::string> CellMap::differences_to(const Mesh& mesh) const {
                 if (info != DartInfo{e.value, static_cast<std::int16_t>(f),
                                      static_cast<std::int16_t>(p)} ||
                     complex.info<3>(d) != e)
-                    report("element ", e.value, " face ", f, ": a dart knows another place");
+                    report("element ", e.value, " face ", f, ": a dart refers to another face");
                 if (complex.info<0>(d) != n)
                     report("element ", e.value, " face ", f, " position ", p, ": the map has node ",
                            complex.info<0>(d).value, ", the mesh ", n.value);

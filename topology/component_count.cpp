@@ -88,6 +88,7 @@ DisjointSet ComponentCount::search(const Mesh& mesh, const ChangeSet& changes,
 // the edit. The groups that the search finds are connected both before and after it. Before the
 // edit, the opened faces connect them too; after it, the closed faces do.
 void ComponentCount::apply(const Mesh& mesh, const ChangeSet& changes) {
+    epoch_.advance(mesh, changes, "count of components");
     const std::vector<ElementId> touched = touched_elements(changes);
     group_of_.resize(std::max(group_of_.size(), mesh.element_capacity()), -1);
     for (std::size_t i = 0; i < touched.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include "incise/base/disjoint_set.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
@@ -15,13 +16,14 @@ namespace incise::topology {
 class ComponentCount {
   public:
     /// Counts the components of `mesh`. Cost: that of components().
-    explicit ComponentCount(const Mesh& mesh) : value_(components(mesh).count) {}
+    explicit ComponentCount(const Mesh& mesh) : value_(components(mesh).count), epoch_(mesh) {}
 
     int value() const { return value_; }
 
     /// Follows an edit of the mesh.
     /// @param mesh     the mesh after the edit; it has not been edited since
     /// @param changes  the edit
+    /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: a search round the changed elements, which ends when they are found to be connected.
     /// Where they are not connected, the search also covers the smaller components.
     void apply(const Mesh& mesh, const ChangeSet& changes);
@@ -36,6 +38,7 @@ class ComponentCount {
 
     int value_;
     std::vector<std::int32_t> group_of_;  // by element; scratch memory, all -1 between edits
+    FollowedEpoch epoch_;
 };
 
 }  // namespace incise::topology

@@ -100,69 +100,71 @@ bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complai
     return true;
 }
 
-void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
-    std::array<Vec3, max_corners> x;
-    const auto corners = data.cell(c);
-    for (std::size_t k = 0; k < corners.size(); ++k)
-        x[k] = data.points[static_cast<std::size_t>(corners[k])];
+/// The corners at the other ends of the three edges of a corner, in an order in which they span
+/// positive volume where the element is not turned inside out.
+/// @pre the corner has three edges
+std::array<int, 3> edges_at_corner(const CellTraits& t, int corner) {
+    // In each of the three faces at the corner, `next` is the corner after it and `previous` the
+    // corner before it. Each edge at the corner is in two of these faces.
+    std::array<int, 3> next{}, previous{};
+    std::size_t found = 0;
+    for (int f = 0; f < t.num_faces; ++f) {
+        const auto face = t.face(f);
+        for (std::size_t p = 0; p < face.size(); ++p)
+            if (face[p] == corner) {
+                next[found] = face[(p + 1) % face.size()];
+                previous[found] = face[(p + face.size() - 1) % face.size()];
+                ++found;
+            }
+    }
+    // The first face has two of the three edges. The third edge is the one of the second face that
+    // the first face does not have.
+    const bool shares_next = next[1] == next[0] || next[1] == previous[0];
+    return {previous[0], next[0], shares_next ? previous[1] : next[1]};
+}
+
+/// At a corner with three edges, the tetrahedron of these edges must have positive volume.
+void check_corners(const MeshData& data, std::size_t c, std::span<const Vec3> x,
+                   Complaints& complaints) {
     const CellKind kind = data.kinds[c];
-    const double volume = signed_volume(kind, {x.data(), corners.size()});
-    if (!std::isfinite(volume)) {
-        complaints.add("cells of no finite volume", data.cell_name(c),
-                       " has no finite volume; its coordinates are too large: scale the mesh");
-        return;
-    }
-    if (volume < 0.0 && is_flat_to_rounding(kind, {x.data(), corners.size()}, volume)) {
-        complaints.add("cells without positive volume", data.cell_name(c),
-                       " is flat: its volume of ", volume,
-                       " is nothing but rounding; remove it or remesh");
-        return;
-    }
-    if (!(volume > 0.0)) {
-        complaints.add("cells without positive volume", data.cell_name(c), " has ",
-                       volume == 0.0 ? "zero volume" : "negative volume ",
-                       volume == 0.0 ? std::string() : [&] {
-                           std::ostringstream text;
-                           text << volume;
-                           return text.str();
-                       }(),
-                       volume == 0.0 ? "; remove it or remesh"
-                                     : "; its corners run the wrong way round: reverse their order");
-        return;
-    }
-    if (kind == CellKind::tetrahedron) return;
-    // At a corner with three edges, the tetrahedron of these edges must have positive volume.
     const CellTraits& t = traits(kind);
     for (int k = 0; k < t.num_corners; ++k) {
         if (kind == CellKind::pyramid && k == 4) continue;  // the apex has four edges
-        // In each of the three faces at the corner, `next` is the corner after it and `previous`
-        // the corner before it. Each edge at the corner is in two of these faces.
-        std::array<int, 3> next{}, previous{};
-        std::size_t found = 0;
-        for (int f = 0; f < t.num_faces; ++f) {
-            const auto face = t.face(f);
-            for (std::size_t p = 0; p < face.size(); ++p)
-                if (face[p] == k) {
-                    next[found] = face[(p + 1) % face.size()];
-                    previous[found] = face[(p + face.size() - 1) % face.size()];
-                    ++found;
-                }
-        }
-        // The first face has two of the three edges. The third edge is the one of the second face
-        // that the first face does not have.
-        const bool shares_next = next[1] == next[0] || next[1] == previous[0];
-        const int third = shares_next ? previous[1] : next[1];
+        const auto [from, along, third] = edges_at_corner(t, k);
         const Vec3& o = x[static_cast<std::size_t>(k)];
         const auto edge = [&](int to) -> Vec3 { return x[static_cast<std::size_t>(to)] - o; };
-        const double corner_volume = edge(previous[0]).cross(edge(next[0])).dot(edge(third));
-        if (!(corner_volume > 0.0)) {
-            complaints.add(
-                "cells with a corner turned inside out", data.cell_name(c),
-                " is turned inside out or flat at its corner ", k, ", ",
-                data.point_name(static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])),
-                "; remesh it");
-            return;
-        }
+        if (edge(from).cross(edge(along)).dot(edge(third)) > 0.0) continue;
+        const auto point = data.cell(c)[static_cast<std::size_t>(k)];
+        complaints.add("cells with a corner turned inside out", data.cell_name(c),
+                       " is turned inside out or flat at its corner ", k, ", ",
+                       data.point_name(static_cast<std::size_t>(point)), "; remesh it");
+        return;
+    }
+}
+
+void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
+    std::array<Vec3, max_corners> all;
+    const auto corners = data.cell(c);
+    const std::span<Vec3> x(all.data(), corners.size());
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        x[k] = data.points[static_cast<std::size_t>(corners[k])];
+    const CellKind kind = data.kinds[c];
+    const double volume = signed_volume(kind, x);
+    if (!std::isfinite(volume)) {
+        complaints.add("cells of no finite volume", data.cell_name(c),
+                       " has no finite volume; its coordinates are too large: scale the mesh");
+    } else if (volume < 0.0 && is_flat_to_rounding(kind, x, volume)) {
+        complaints.add("cells without positive volume", data.cell_name(c),
+                       " is flat: its volume of ", volume,
+                       " is nothing but rounding; remove it or remesh");
+    } else if (volume < 0.0) {
+        complaints.add("cells without positive volume", data.cell_name(c), " has negative volume ",
+                       volume, "; its corners run the wrong way round: reverse their order");
+    } else if (volume == 0.0) {
+        complaints.add("cells without positive volume", data.cell_name(c),
+                       " has zero volume; remove it or remesh");
+    } else if (kind != CellKind::tetrahedron) {
+        check_corners(data, c, x, complaints);
     }
 }
 

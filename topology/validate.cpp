@@ -62,7 +62,7 @@ std::vector<std::string> validate(const Mesh& mesh) {
         if (star != holders[i])
             report("the elements of node ", i, " do not hang together through faces at it");
         else if (star.front() != mesh.incident_element(n))
-            report("the anchor of node ", i, " is not its lowest element");
+            report("the incident element of node ", i, " is not its lowest one");
     }
     if (num_nodes != mesh.num_nodes())
         report("there are ", num_nodes, " nodes, counted as ", mesh.num_nodes());

@@ -41,6 +41,42 @@ std::vector<T> parse_list(const char* option, std::string_view text, char separa
     refuse(option, text, std::string("is not of the form ") + form);
 }
 
+/// The options whose values are lists of numbers.
+void add_list_options(CLI::App& app, Options& options) {
+    app.add_option_function<std::string>(
+           "--range",
+           [&options](const std::string& text) {
+               const auto values =
+                   parse_list<double>("--range", text, ',', 2, "LOW,HIGH, such as 0,0.05");
+               if (!(values[0] < values[1])) refuse("--range", text, "LOW must be below HIGH");
+               options.range.emplace(values[0], values[1]);
+           },
+           "values of the first and the last colour (default: all that occur)")
+        ->type_name("LOW,HIGH");
+    app.add_option_function<std::string>(
+           "--size",
+           [&options](const std::string& text) {
+               constexpr int least = 64, most = 8192;
+               const auto values = parse_list<int>("--size", text, 'x', 2, "WxH, such as 1280x960");
+               if (std::min(values[0], values[1]) < least || std::max(values[0], values[1]) > most)
+                   refuse("--size", text, "width and height are from 64 to 8192 pixels");
+               options.size = {values[0], values[1]};
+           },
+           "pixels (default: 1280x960)")
+        ->type_name("WxH");
+    app.add_option_function<std::string>(
+           "--view",
+           [&options](const std::string& text) {
+               const auto values =
+                   parse_list<double>("--view", text, ',', 3, "X,Y,Z, such as -0.5,-1,0.5");
+               const Vec3 view(values[0], values[1], values[2]);
+               if (!(view.stableNorm() > 0)) refuse("--view", text, "is no direction");
+               options.view = view.stableNormalized();
+           },
+           "from where one looks, seen from the body (default: -0.55,-1,0.55)")
+        ->type_name("X,Y,Z");
+}
+
 }  // namespace
 
 std::variant<Options, int> parse_options(int argc, char** argv) {
@@ -67,38 +103,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
                    "field of points or cells; vectors by length, or displacement_z for a "
                    "component; stress by von Mises; none (default: displacement, else region)")
         ->type_name("FIELD");
-    app.add_option_function<std::string>(
-           "--range",
-           [&](const std::string& text) {
-               const auto values =
-                   parse_list<double>("--range", text, ',', 2, "LOW,HIGH, such as 0,0.05");
-               if (!(values[0] < values[1])) refuse("--range", text, "LOW must be below HIGH");
-               options.range.emplace(values[0], values[1]);
-           },
-           "values of the first and the last colour (default: all that occur)")
-        ->type_name("LOW,HIGH");
-    app.add_option_function<std::string>(
-           "--size",
-           [&](const std::string& text) {
-               constexpr int least = 64, most = 8192;
-               const auto values = parse_list<int>("--size", text, 'x', 2, "WxH, such as 1280x960");
-               if (std::min(values[0], values[1]) < least || std::max(values[0], values[1]) > most)
-                   refuse("--size", text, "width and height are from 64 to 8192 pixels");
-               options.size = {values[0], values[1]};
-           },
-           "pixels (default: 1280x960)")
-        ->type_name("WxH");
-    app.add_option_function<std::string>(
-           "--view",
-           [&](const std::string& text) {
-               const auto values =
-                   parse_list<double>("--view", text, ',', 3, "X,Y,Z, such as -0.5,-1,0.5");
-               const Vec3 view(values[0], values[1], values[2]);
-               if (!(view.stableNorm() > 0)) refuse("--view", text, "is no direction");
-               options.view = view.stableNormalized();
-           },
-           "from where one looks, seen from the body (default: -0.55,-1,0.55)")
-        ->type_name("X,Y,Z");
+    add_list_options(app, options);
     app.add_flag("--edges", options.has_edges, "draw the mesh in full");
 
     try {

@@ -1,3 +1,5 @@
+// A cut in one class: its passes over the crossed elements share what the class holds, hence a
+// long file.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/cutting/exact/splitter.h"
 

@@ -12,6 +12,8 @@ namespace incise::physics {
 using topology::ChangeSet;
 using topology::NodeRecord;
 
+static_assert(topology::Follower<Model>);
+
 namespace {
 
 double diagonal(const topology::Mesh& mesh) {
@@ -213,6 +215,14 @@ void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
     added_terms_.push_back(std::move(term));
     for (const NodeId n : mesh_.nodes()) gather(n);
     ++structure_version_;
+}
+
+void Model::take_force_terms(Model& former, double time) {
+    if (former.added_terms_.empty()) return;
+    added_terms_ = std::move(former.added_terms_);
+    update_outer_terms();
+    for (const NodeId n : mesh_.nodes()) gather(n);
+    compute_forces(time);
 }
 
 void Model::save(ArchiveWriter& ar) const {

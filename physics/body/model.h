@@ -173,6 +173,9 @@ class Model {
     /// Adds a term to the forces from outside. Archives do not hold it: who restores a model adds
     /// it again. Cost: O(n), for the stable step.
     void add_force_term(std::unique_ptr<ForceTerm> term);
+    /// Takes the added terms of a model that this one replaces, and computes the forces anew: for
+    /// a model that was just read from an archive. Cost: O(n).
+    void take_force_terms(Model& former, double time);
 
     /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
     /// constraints and loads. Cost: O(n).

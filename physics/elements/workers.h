@@ -26,6 +26,9 @@ struct NodeRange {
 
 class Workers {
   public:
+    /// More threads than this are refused where users ask for them.
+    static constexpr int max_threads = 256;
+
     /// Throws std::system_error if the system has no memory for so many threads, or allows fewer.
     /// @param num_threads at least 1, the caller's own among them; more than num_cores() come only
     /// if no other Workers with fewer of them live

@@ -77,7 +77,7 @@ template <class Law, class Number>
 /// w_i = sum of G_ij v_j, the columns of F V^-T, and B = F F^T = sum of v_i w_i^T,
 ///     f_i = -2 Vol ((w_a + 2 w_b (B - 1)) w_i + w_f u_i F a0) - w_J dvol/dx_i.
 /// Strain is taken from B and not from links: those lose the square of what B loses in elements
-/// that are thin.
+/// that are thin. Longer than 60 lines: what is computed here has to stay in registers.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkVectors<Number> link_forces(
     const Law& law, double J0, const LinkGroup<Number>& group,

@@ -83,6 +83,12 @@ class Statics final : public Integrator {
 
   private:
     void require_equilibrium_of_free_components(const Model& model, double time);
+    /// The components of a force that no constraint takes.
+    Vec3 free_part(std::size_t node, const Vec3& force) const;
+    /// Moves the body to x_ and records the work of the increment.
+    /// @param from  share of the load step before the increment, from 0 to 1
+    /// @param to    share of the load step after it
+    void take_increment(Model& model, double from, double to);
 
     NewtonSolver newton_{true};
     std::uint64_t structure_version_ = 0;  // of the model, at the last equilibrium

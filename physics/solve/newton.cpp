@@ -193,9 +193,34 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
     return constraints_move;
 }
 
+void NewtonSolver::go_along(const std::vector<Vec3>& x, double share) {
+    for (std::size_t n = 0; n < x.size(); ++n) {
+        trial_[n] = x[n];
+        for (int c = 0; c < 3; ++c)
+            if (const auto row = tangent_.row_of(n, c); row >= 0)
+                trial_[n][c] += share * direction_[row];
+    }
+}
+
+bool NewtonSolver::search_line(const Model& model, const StepProblem& problem,
+                               const std::vector<Vec3>& x) {
+    constexpr double enough = 1e-4, shortest = 1e-6;
+    const double slope = -net_.dot(direction_);
+    const double start = potential(model, problem, x);
+    const double stiffness_energy = model.stiffness_energy();
+    for (double share = 1.0; share > shortest; share *= 0.5) {
+        go_along(x, share);
+        const double end = potential(model, problem, trial_);
+        const double work = work_of_loads(model, problem, x, trial_);
+        const double noise = rounding_of_energy *
+                             (std::abs(start) + std::abs(end) + std::abs(work) + stiffness_energy);
+        if (end - start - work <= enough * share * slope + noise) return true;
+    }
+    return false;
+}
+
 NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
                                  std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
-    const double stiffness_energy = model.stiffness_energy();
     // The first iteration takes the rest of the body along.
     bool constraints_move = find_increments(model, problem.time, x);
 
@@ -220,36 +245,15 @@ NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
                   constraints_move ? std::span<const Vec3>(increments_) : std::span<const Vec3>());
         direction_ = net_ + tangent_.load();
         tangent_.solve(direction_);
-        const auto go = [&](double share) {
-            for (std::size_t n = 0; n < x.size(); ++n) {
-                trial_[n] = x[n];
-                for (int c = 0; c < 3; ++c)
-                    if (const auto row = tangent_.row_of(n, c); row >= 0)
-                        trial_[n][c] += share * direction_[row];
-            }
-        };
         if (constraints_move) {
-            go(1.0);
+            go_along(x, 1.0);
             for (std::size_t n = 0; n < x.size(); ++n) x[n] = trial_[n] + increments_[n];
             constraints_move = false;
             forces = evaluate(model, problem, x);
             continue;
         }
 
-        // Down in energy, as far as rounding lets see; the first trial nearly always does.
-        constexpr double enough = 1e-4, shortest = 1e-6;
-        const double slope = -net_.dot(direction_);
-        const double start = potential(model, problem, x);
-        double share = 1.0;
-        for (; share > shortest; share *= 0.5) {
-            go(share);
-            const double end = potential(model, problem, trial_);
-            const double work = work_of_loads(model, problem, x, trial_);
-            const double noise = rounding_of_energy * (std::abs(start) + std::abs(end) +
-                                                       std::abs(work) + stiffness_energy);
-            if (end - start - work <= enough * share * slope + noise) break;
-        }
-        if (share <= shortest) break;
+        if (!search_line(model, problem, x)) break;
         x = trial_;
         forces = evaluate(model, problem, x);
     }

@@ -78,6 +78,13 @@ class NewtonSolver {
     double work_of_loads(const Model& model, const StepProblem& problem,
                          const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
+    /// Sets trial_ to the positions at `share` of the way from x along direction_.
+    void go_along(const std::vector<Vec3>& x, double share);
+    /// Sets trial_ to positions from x along direction_ at which the energy has fallen enough, as
+    /// far as rounding lets see. The whole way nearly always is.
+    /// @returns false if there are none
+    bool search_line(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x);
+
     bool pins_free_components_;
     std::optional<std::uint64_t> structure_version_;  // of the model, when the pattern was found
     std::vector<std::array<bool, 3>> is_free_;

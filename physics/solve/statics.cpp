@@ -31,6 +31,32 @@ void Statics::require_equilibrium_of_free_components(const Model& model, double 
         require_equilibrium(model.mesh(), piece, x_, next_outer_);
 }
 
+Vec3 Statics::free_part(std::size_t node, const Vec3& force) const {
+    Vec3 part = force;
+    for (int c = 0; c < 3; ++c)
+        if (!newton_.is_free(node, c)) part[c] = 0.0;
+    return part;
+}
+
+void Statics::take_increment(Model& model, double from, double to) {
+    double work = 0.0, released = 0.0;
+    const double held = 1.0 - 0.5 * (from + to);
+    for (std::size_t n = 0; n < x_.size(); ++n) {
+        if (model.masses()[n] == 0.0) continue;  // dead
+        const Vec3 displacement = x_[n] - model.positions()[n];
+        const Vec3 net = elastic_[n] + outer_[n], next_net = next_elastic_[n] + next_outer_[n];
+        reactions_[n] = free_part(n, next_net) - next_net;
+        // Forces go in proportion to the displacement, so that their mean does the work.
+        work += 0.5 * (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n])
+                          .dot(displacement);
+        released += held * imbalance_[n].dot(displacement);
+    }
+    const double taken = model.take_step(x_, velocities_, reactions_, infinite);
+    model.record_work(work, released + taken);
+    std::swap(elastic_, next_elastic_);
+    std::swap(outer_, next_outer_);
+}
+
 void Statics::step(Model& model, double time, double dt) {
     structure_version_ = model.structure_version();
     newton_.follow(model);
@@ -44,12 +70,6 @@ void Statics::step(Model& model, double time, double dt) {
     for (auto* field : {&outer_, &next_outer_}) field->resize(num_nodes);
     model.elements().add_forces({x_, model.history(), infinite}, elastic_);
     model.outer_forces_at(x_, time, outer_);
-    const auto free_part = [&](std::size_t n, const Vec3& force) {
-        Vec3 part = force;
-        for (int c = 0; c < 3; ++c)
-            if (!newton_.is_free(n, c)) part[c] = 0.0;
-        return part;
-    };
     for (std::size_t n = 0; n < num_nodes; ++n)
         imbalance_[n] = free_part(n, elastic_[n] + outer_[n]);
 
@@ -72,22 +92,7 @@ void Statics::step(Model& model, double time, double dt) {
             throw MotionFailure(FailureCause::no_equilibrium, text.str());
         }
         model.outer_forces_at(x_, now, next_outer_);
-        // Forces go in proportion to the displacement, so that their mean does the work.
-        double work = 0.0, released = 0.0;
-        const double held = 1.0 - 0.5 * (done + next);
-        for (std::size_t n = 0; n < num_nodes; ++n) {
-            if (model.masses()[n] == 0.0) continue;  // dead
-            const Vec3 displacement = x_[n] - model.positions()[n];
-            const Vec3 net = elastic_[n] + outer_[n], next_net = next_elastic_[n] + next_outer_[n];
-            reactions_[n] = free_part(n, next_net) - next_net;
-            work += 0.5 * (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n])
-                              .dot(displacement);
-            released += held * imbalance_[n].dot(displacement);
-        }
-        const double taken = model.take_step(x_, velocities_, reactions_, infinite);
-        model.record_work(work, released + taken);
-        std::swap(elastic_, next_elastic_);
-        std::swap(outer_, next_outer_);
+        take_increment(model, done, next);
         done = next;
         if (report.iterations <= few_iterations) increment *= 2.0;
     }

@@ -400,7 +400,7 @@ TEST_F(Resume, RefusesAnotherScenarioAndNamesWhatDiffers) {
     std::string harder = text_;
     harder.replace(harder.find("young = 1000"), 12, "young = 1500");
     EXPECT_NE(refusal(harder).find("material[0].young was 1000 and is 1500; "), std::string::npos);
-    EXPECT_NE(refusal(text_ + "seed = 3\n").find("dynamics.seed was not given and is 3; "),
+    EXPECT_NE(refusal(text_ + "safety = 0.7\n").find("dynamics.safety was not given and is 0.7; "),
               std::string::npos);
     std::string coarser = text_;
     coarser.replace(coarser.find("[3, 3, 3]"), 9, "[2, 3, 3]");

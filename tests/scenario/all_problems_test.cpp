@@ -327,10 +327,11 @@ TEST(AllProblems, OfAnItemHideNoneOfItsOthers) {
         {"[[tool]]\nkind = 'cut'\ntime = 1\nsurface = 'none.stl'\nscale = 0\n", {"12:11", "13:9"}},
         // The time step.
         {"time_step = 5\ndamping = -1\n", {"10:11", "9:13"}},
-        {"time_step = 5\nseed = 'a'\n", {"10:8", "9:13"}},
+        {"time_step = 5\nsafety = 'a'\n", {"10:10", "9:13"}},
+        {"time_step = 5\nprecision = 'a'\n", {"10:13", "9:13"}},
         {"time_step = 5\nmode = 'statc'\n", {"10:8"}},
         {"time_step = 5\nintegrator = 1\n", {"10:14"}},
-        {"time_step = 1e-300\nseed = 'a'\n", {"10:8", "9:13"}},
+        {"time_step = 1e-300\nprecision = 'a'\n", {"10:13", "9:13"}},
     });
     // Without end there is no number of steps, and without safety none of their length.
     const auto places = [](const std::string& dynamics) {
@@ -400,9 +401,9 @@ TEST(AllProblems, OfHeadingsAndArraysTakenForEachOther) {
     });
     EXPECT_EQ(
         places_of(ScenarioFile(minimal_mesh + "[material]\ndensity = -1\nyoung = 1\npoisson = 0.3\n"
-                                              "[[dynamics]]\nend_time = 1\nseed = -1\n")
+                                              "[[dynamics]]\nend_time = 1\nsafety = -1\n")
                       .all_errors()),
-        (Lines{"3:1", "4:11", "7:1", "9:8"}));
+        (Lines{"3:1", "4:11", "7:1", "9:10"}));
 }
 
 TEST(AllProblems, OfMisspeltHeadingsBesideTheRightOne) {

@@ -22,7 +22,7 @@ TEST(Overrides, AreQuotedByTheirErrors) {
         error("dynamics.end_tim=1"),
         "--set dynamics.end_tim=1: key 'dynamics.end_tim': is not known; did you mean "
         "'end_time'? Known here: mode, integrator, end_time, time_step, steps, safety, damping, "
-        "gravity, seed, precision");
+        "gravity, precision");
     EXPECT_EQ(error("dynamics.end_time=2s"),
               "--set dynamics.end_time=2s: key 'dynamics.end_time': must be a number, but is the "
               "text \"2s\"");

@@ -40,7 +40,7 @@ poisson = 0.6
 [dynamics]
 gravity = [0, 0]
 safety = 1.5
-seed = 1.5
+seed = 1
 [[constraint]]
 where = { nodes = [-1], spere = { center = [0, 0, 0], radius = 1 } }
 fix = "xxy"
@@ -62,8 +62,9 @@ fix = "xxy"
                "[0, 0, 1], but is an array of 2",
                "scene.toml:11:10: key 'dynamics.safety': 1.5 is not allowed: must be above 0 and "
                "at most 1",
-               "scene.toml:12:8: key 'dynamics.seed': must be a whole number, but is the number "
-               "1.5",
+               "scene.toml:12:1: key 'dynamics.seed': is not known; did you mean 'mode'? Known "
+               "here: mode, integrator, end_time, time_step, steps, safety, damping, gravity, "
+               "precision",
                "scene.toml:14:20: key 'constraint[0].where.nodes[0]': -1 is not allowed: must be "
                "at least 0",
                "scene.toml:14:25: key 'constraint[0].where.spere': is not known; did you mean "

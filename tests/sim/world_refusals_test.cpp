@@ -115,7 +115,8 @@ TEST(World, RefusesDefinitionsThatCannotBe) {
         {[&](WorldDef& d) { d.gravity.x() = nan; }, "gravity is not finite"},
         {[](WorldDef& d) { d.damping = -5; }, "damping is -5"},
         {[](WorldDef& d) { d.solver = Solver(17); }, "no such solver"},
-        {[](WorldDef& d) { d.num_threads = 0; }, "must be at least 1"},
+        {[](WorldDef& d) { d.num_threads = 0; }, "must be from 1 to 256"},
+        {[](WorldDef& d) { d.num_threads = 257; }, "must be from 1 to 256"},
         {[&](WorldDef& d) { d.constraints = {{.name = "a", .nodes = nowhere}}; },
          "there is no node 100000"},
         {[](WorldDef& d) { d.constraints = {{}}; }, "it has no node"},
@@ -188,7 +189,7 @@ TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
                                   .factor = physics::TimeCurve<double>({{0.0, nan}})});
               }).find("not finite"),
               std::string::npos);
-    EXPECT_NE(input_error_of([&] { world.set_num_threads(0); }).find("at least 1"),
+    EXPECT_NE(input_error_of([&] { world.set_num_threads(0); }).find("from 1 to 256"),
               std::string::npos);
     EXPECT_TRUE(world.save() == before);
 }

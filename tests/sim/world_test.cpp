@@ -210,6 +210,58 @@ TEST(World, LoadsActFromTheirFirstStep) {
     EXPECT_NEAR(momentum(), 1.0 * dt, 1e-12 * mass);
 }
 
+/// Springs from all nodes to where they are at rest.
+class Tethers final : public physics::ForceTerm {
+  public:
+    void update(const physics::BodyView& body) override { num_nodes = body.mesh.num_nodes(); }
+    void add_forces(const physics::BodyView& body, physics::NodeRange range,
+                    std::span<const Vec3> positions, double,
+                    std::span<Vec3> forces) const override {
+        for (std::size_t n = range.begin; n < range.end; ++n)
+            if (body.masses[n] > 0.0)
+                forces[n] += stiffness * (body.mesh.rest_position(NodeId(n)) - positions[n]);
+    }
+    double stiffness_bound(NodeId) const override { return stiffness; }
+    void apply(const physics::BodyView&, const topology::ChangeSet&,
+               std::span<const NodeId>) override {
+        ++num_edits;
+    }
+
+    static constexpr double stiffness = 2.0;  // N/m
+    std::size_t num_edits = 0, num_nodes = 0;
+};
+
+TEST(World, ForceTermsActFollowEditsAndOutliveRestore) {
+    const auto tethered = [](const Tethers** seen = nullptr) {
+        World world = held_world();
+        const double bound = world.stable_step();
+        auto term = std::make_unique<Tethers>();
+        if (seen) *seen = term.get();
+        world.add_force_term(std::move(term));
+        EXPECT_LT(world.stable_step(), bound);
+        return world;
+    };
+    const Tethers* term = nullptr;
+    Session session(tethered(&term)), without(held_world());
+    session.run(0, 25);
+    without.run(0, 25);
+    EXPECT_GT(term->num_edits, 0u);
+    const std::string bytes = session.world().save();
+    EXPECT_FALSE(bytes == without.world().save());
+    const std::size_t num_nodes = session.world().mesh().num_nodes();
+    session.run(25, Session::num_steps);
+    const std::string end = session.world().save();
+    session.world().restore(bytes);
+    EXPECT_EQ(term->num_nodes, num_nodes);
+    session.run(25, Session::num_steps);
+    EXPECT_TRUE(session.world().save() == end);
+    Session fresh(tethered());
+    fresh.world().restore(bytes);
+    fresh.run(25, Session::num_steps);
+    EXPECT_TRUE(fresh.world().save() == end);
+    EXPECT_NE(input_error_of([&] { fresh.world().add_force_term(nullptr); }), "");
+}
+
 TEST(World, RefusesStepsAfterFailureUntilRestored) {
     World world = held_world();
     const double dt = 0.5 * world.stable_step();

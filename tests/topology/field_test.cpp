@@ -8,7 +8,9 @@
 
 #include "incise/base/error.h"
 #include "incise/topology/boundary_surface.h"
+#include "incise/topology/component_count.h"
 #include "incise/topology/mesh_edit.h"
+#include "incise/topology/spatial/element_boxes.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
@@ -16,7 +18,7 @@ namespace incise::topology {
 namespace {
 
 static_assert(Follower<NodeField<Vec3>> && Follower<ElementField<int>> &&
-              Follower<BoundarySurface>);
+              Follower<BoundarySurface> && Follower<ComponentCount> && Follower<ElementBoxes>);
 
 /// A linear function of the place at rest, which means with weights reproduce.
 Vec3 function_of(const Vec3& x) { return Vec3(2.0 * x.x() - x.y(), x.z() + 1.0, x.sum()); }
@@ -78,10 +80,13 @@ TEST(Fields, FollowSeveralEditsAfterTheLast) {
     EXPECT_TRUE(std::ranges::equal(at_once.values(), one_by_one.values()));
 }
 
-TEST(Fields, RefuseEditsOutOfTurn) {
+TEST(Followers, RefuseEditsOutOfTurn) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     NodeField<double> nodes(mesh, 1.0);
     ElementField<double> elements(mesh, 1.0);
+    ComponentCount components(mesh);
+    BoundarySurface surface(mesh);
+    ElementBoxes boxes(mesh, mesh.rest_positions());
     MeshEdit first(mesh);
     first.remove(ElementId(3));
     first.commit();
@@ -90,6 +95,9 @@ TEST(Fields, RefuseEditsOutOfTurn) {
     const ChangeSet changes = second.commit();
     EXPECT_THROW(nodes.apply(mesh, changes), InputError);
     EXPECT_THROW(elements.apply(mesh, changes), InputError);
+    EXPECT_THROW(components.apply(mesh, changes), InputError);
+    EXPECT_THROW(surface.apply(mesh, changes), InputError);
+    EXPECT_THROW(boxes.apply(mesh, changes), InputError);
 }
 
 }  // namespace

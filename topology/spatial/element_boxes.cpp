@@ -3,14 +3,13 @@
 
 namespace incise::topology {
 
-using topology::Mesh;
-
-ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) {
+ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) : epoch_(mesh) {
     build(mesh, positions);
 }
 
 void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
     margin_ = 0.0;
+    stale_.clear();
     groups_.assign(num_groups(mesh.element_capacity()), Box());
     supergroups_.assign(num_supergroups(groups_.size()), Box());
     double sum = 0.0;
@@ -35,7 +34,7 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
 
 void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, double distance) {
     margin_ += distance;
-    if (margin_ <= largest_margin_) return;
+    if (margin_ <= largest_margin_) return refresh(mesh, positions);
     build(mesh, positions);
     margin_ = distance;  // the boxes must also contain the elements before the motion
 }
@@ -48,20 +47,23 @@ bool ElementBoxes::may_meet(const Box& swept) const {
            std::any_of(groups_.begin(), groups_.end(), meets);
 }
 
-void ElementBoxes::apply(const Mesh& mesh, std::span<const Vec3> positions,
-                         const topology::ChangeSet& changes) {
+void ElementBoxes::apply(const Mesh& mesh, const ChangeSet& changes) {
+    epoch_.advance(mesh, changes, "search structure");
     groups_.resize(num_groups(mesh.element_capacity()));
     supergroups_.resize(num_supergroups(groups_.size()));
-    std::vector<std::size_t> touched;
     for (const auto& record : changes.elements_added)
-        touched.push_back(record.id.index() / group_size);
+        stale_.push_back(record.id.index() / group_size);
     for (const auto& record : changes.rewired)
-        touched.push_back(record.element.index() / group_size);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    // The boxes contain the current positions; the margin covers the earlier ones.
-    for (const std::size_t g : touched)
+        stale_.push_back(record.element.index() / group_size);
+    std::sort(stale_.begin(), stale_.end());
+    stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
+}
+
+void ElementBoxes::refresh(const Mesh& mesh, std::span<const Vec3> positions) {
+    // The boxes contain the present positions; the margin covers the earlier ones.
+    for (const std::size_t g : stale_)
         if (g < groups_.size()) update_group(mesh, positions, g);
+    stale_.clear();
 }
 
 }  // namespace incise::topology

@@ -9,6 +9,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
@@ -28,9 +29,15 @@ class ElementBoxes {
     /// @param distance   at least the largest distance that a node has moved, m
     /// Cost: O(n) when the boxes are rebuilt, else O(1).
     void move(const topology::Mesh& mesh, std::span<const Vec3> positions, double distance);
-    /// Follows an edit. Cost: proportional to the edit.
-    void apply(const topology::Mesh& mesh, std::span<const Vec3> positions,
-               const topology::ChangeSet& changes);
+    /// Follows an edit. refresh() or move() must be called before the next search.
+    /// Throws InputError, and changes nothing, for an edit out of turn.
+    /// Cost: proportional to the edit.
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Updates the boxes that edits have changed.
+    /// @param mesh       the mesh of the body
+    /// @param positions  by node id, at present, m
+    /// Cost: proportional to the edits since the last call.
+    void refresh(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
     /// True if there are as many boxes as the mesh needs.
     bool cover(const topology::Mesh& mesh) const {
@@ -48,7 +55,7 @@ class ElementBoxes {
     bool may_meet(const Box& swept) const;
 
     static void archive(auto& ar, auto& self) {
-        ar(self.groups_, self.supergroups_, self.margin_, self.largest_margin_);
+        ar(self.groups_, self.supergroups_, self.stale_, self.margin_, self.largest_margin_);
     }
 
   private:
@@ -65,10 +72,12 @@ class ElementBoxes {
         return {box.min() - margin, box.max() + margin};
     }
 
-    std::vector<Box> groups_;       // of elements
-    std::vector<Box> supergroups_;  // of groups
-    double margin_ = 0.0;           // how far nodes may have moved since the boxes were built
-    double largest_margin_ = 0.0;   // above it, the boxes are rebuilt
+    std::vector<Box> groups_;         // of elements
+    std::vector<Box> supergroups_;    // of groups
+    std::vector<std::size_t> stale_;  // groups whose boxes edits have changed, in ascending order
+    double margin_ = 0.0;             // how far nodes may have moved since the boxes were built
+    double largest_margin_ = 0.0;     // above it, the boxes are rebuilt
+    FollowedEpoch epoch_;
 };
 
 template <class MayMeet, class Visit>
