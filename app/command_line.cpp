@@ -181,7 +181,7 @@ void declare_cut(CLI::App& app, Action& action) {
                 },
                 tool.meaning)
             ->type_name(tool.form)
-            ->trigger_on_parse()  // at each occurrence: the order between options counts
+            ->trigger_on_parse()  // at each occurrence: the order of options matters
             ->group("Tools, applied in the order given, each any number of times");
     verb->footer("Formats to write: " + written_formats() + "\n" + cut_footer);
     verb->callback([options, &action] { action = [options] { return cut(*options); }; });
@@ -245,7 +245,7 @@ void declare_materials(CLI::App& app, Action& action) {
     verb->callback([options, &action] { action = [options] { return materials(*options); }; });
 }
 
-/// Its options are those of incise-render, which also answers --help.
+/// Declares the verb without options. All arguments, also --help, go to incise-render.
 void declare_render(CLI::App& app, Action& action) {
     auto* verb = app.add_subcommand("render", "Draw pictures of a finished run, off screen");
     verb->set_help_flag();
@@ -255,7 +255,8 @@ void declare_render(CLI::App& app, Action& action) {
     });
 }
 
-/// An empty word is no value of anything, but what is left of a shell's variable that is not set.
+/// Makes all options refuse empty values. An empty value usually comes from a shell variable that
+/// is not set.
 void refuse_empty_words(CLI::App& app) {
     const auto complaint = [](const std::string& word) {
         return std::string(word.empty() ? "must not be empty; give a value or leave it out" : "");
@@ -265,7 +266,7 @@ void refuse_empty_words(CLI::App& app) {
             if (option->get_items_expected_max() > 0) option->check(complaint);
 }
 
-/// A first word that is no verb, told in our own words.
+/// Throws InputError if the first word is no verb, with a better message than that of CLI11.
 void check_verb(int argc, const char* const* argv) {
     if (argc < 2)
         throw InputError("a verb is missing: one of " + scenario::list_of(verbs) +

@@ -33,7 +33,7 @@ Vec3 point(const Numbers& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
-/// Reads one argument; `fail` names it.
+/// A parser of one argument. Its errors name the argument.
 struct Reader {
     const CutToolArgument& argument;
     const CutToolOption& option;
@@ -131,7 +131,7 @@ ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
             parsed.tool.kind = app::SurfaceCut{std::move(file.surface)};
         }
     }
-    // Long sweeps would drown the messages that name them.
+    // The values of sweeps can be too long for messages.
     constexpr std::size_t longest = 60;
     parsed.tool.name = argument.option + " " + argument.text.substr(0, longest) +
                        (argument.text.size() > longest ? "..." : "");

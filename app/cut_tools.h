@@ -1,4 +1,4 @@
-// The tools of `incise cut` as the command line names them.
+// The tools of `incise cut`, as given on the command line.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,21 +11,23 @@
 
 namespace incise::app {
 
-/// One option that adds a tool.
+/// An option of the command line that adds a tool.
 struct CutToolOption {
     const char* name;     ///< "--plane"
-    const char* form;     ///< what its value holds
-    const char* meaning;  ///< a line of help
+    const char* form;     ///< form of the value, for help and messages
+    const char* meaning;  ///< line of the help text
 };
+/// Returns all options that add a tool.
 std::span<const CutToolOption> cut_tool_options();
 
+/// The result of parse_cut_tool().
 struct ParsedCutTool {
     app::CutTool tool;
-    std::vector<std::string> warnings;  ///< about the surface's file; they name it
+    std::vector<std::string> warnings;  ///< about the file of the surface; each names it
 };
 
-/// Reads the file of a surface too. Throws InputError that names the option, its text and what is
-/// expected.
+/// Parses the value of an option, and reads the file of its surface if it has one.
+/// Throws InputError. For a wrong value the message has the option, its text and the expected form.
 ParsedCutTool parse_cut_tool(const CutToolArgument& argument);
 
 }  // namespace incise::app

@@ -40,8 +40,8 @@ double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corner
     return topology::signed_volume(kind, {x.data(), corners.size()});
 }
 
-/// Of the whole body. Volumes are summed in more digits than they have, so that the volume error
-/// tells of the cuts and not of the sums.
+/// Returns the volume at rest of the whole body, m3. The sum has more digits than its terms, so
+/// that the volume error has no part from the summation.
 double volume_of(const Mesh& mesh) {
     long double sum = 0.0;
     for_each_element(mesh,
@@ -49,7 +49,7 @@ double volume_of(const Mesh& mesh) {
     return static_cast<double>(sum);
 }
 
-/// What has to be known of a mesh before it is split to tell which faces a split opened.
+/// The state of a mesh before a split, from which the faces that the split opens are found.
 class FacesBefore {
   public:
     explicit FacesBefore(const Mesh& mesh)
@@ -63,8 +63,8 @@ class FacesBefore {
         });
     }
 
-    /// Both sides of each face that the split has opened: those on the boundary that lie inside
-    /// an element of before, or in a face of one that was joined to another.
+    /// Returns both sides of each face that the split has opened. These are the boundary faces
+    /// inside an old element, or in a face of an old element that was shared with another element.
     std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
         std::vector<FaceId> opened;
         for (const FaceId f : topology::boundary_faces(mesh)) {
@@ -73,7 +73,7 @@ class FacesBefore {
             while (root.index() >= rows_.size())
                 root = changes.elements_added[root.index() - rows_.size()].parent;
             const Row& row = rows_[root.index()];
-            unsigned on = 0;  // between which corners of before the face lies
+            unsigned on = 0;  // the old corners that span the face
             for (int p = 0; p < 3; ++p) on |= support(mesh.face_corner(f, p), row, changes);
             bool was_open = false;
             for (int side = 0; side < 4; ++side)
@@ -86,7 +86,7 @@ class FacesBefore {
   private:
     struct Row {
         std::array<NodeId, 4> corners;
-        unsigned joined = 0;  // a bit a face
+        unsigned joined = 0;  // a bit for each face that was shared
     };
 
     static unsigned corners_of(int face) {
@@ -95,7 +95,7 @@ class FacesBefore {
         return bits;
     }
 
-    /// The corners between which the node was made, a bit each.
+    /// Returns the old corners between which the node was added, as one bit each.
     unsigned support(NodeId n, const Row& row, const topology::ChangeSet& changes) const {
         unsigned bits = 0;
         if (n.index() < num_nodes_) {
@@ -112,7 +112,8 @@ class FacesBefore {
     std::size_t num_nodes_;
 };
 
-/// What the edge sweeps, as space_time.h takes it: two triangles for each segment and two poses.
+/// Returns the surface that the edge sweeps: two triangles for each segment and motion, as in
+/// cutting/surfaces/space_time.h.
 topology::SurfaceData swept_surface(const SweepCut& sweep) {
     topology::SurfaceData surface;
     for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p)
@@ -128,7 +129,7 @@ topology::SurfaceData swept_surface(const SweepCut& sweep) {
     return surface;
 }
 
-/// Its direction is that of the last stretch in which it moved.
+/// Returns the end of the sweep. Its direction is that of the last motion that was not zero.
 cutting::BladeEnd end_of(const SweepCut& sweep) {
     const auto& last = sweep.poses.back();
     std::vector<Vec3> motion(last.size(), Vec3::Zero());
@@ -139,8 +140,8 @@ cutting::BladeEnd end_of(const SweepCut& sweep) {
     return {last, motion};
 }
 
-/// Scaled by a power of two, which changes no sign and no plane, so that squares neither overflow
-/// nor vanish.
+/// Returns the normal scaled by a power of two, so that squares neither overflow nor become zero.
+/// The scaling is exact: it changes neither signs nor the plane.
 Vec3 well_scaled(const Vec3& normal) {
     const int exponent = -std::ilogb(normal.cwiseAbs().maxCoeff());
     return normal.unaryExpr([&](double x) { return std::scalbn(x, exponent); });
@@ -202,7 +203,7 @@ void add(const CutCounts& counts, CutCounts& total) {
     }
 }
 
-/// Cuts with one tool after the other, and counts what each does.
+/// A cutter that applies tools one after the other and counts the changes by each.
 class CountingCutter {
   public:
     CountingCutter(Mesh& mesh, const GeometricCutOptions& options)
@@ -284,10 +285,11 @@ class CountingCutter {
         });
     }
 
-    /// edit(positions) returns a cutting::Split.
+    /// Makes a split and counts its changes. edit(positions) makes the split and returns a
+    /// cutting::Split.
     template <class Edit>
     void split_by(Edit edit) {
-        // A copy: the split adds positions to those of the mesh.
+        // A copy, because the split adds nodes and with them positions to the mesh.
         const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
@@ -306,7 +308,7 @@ class CountingCutter {
         record_changes(result.changes);
     }
 
-    /// Opens the faces between elements for whose centres, at rest, `are_separated` holds.
+    /// Opens the faces between elements whose centres at rest satisfy `are_separated`.
     template <class AreParted>
     void separate(AreParted are_separated) {
         std::vector<FaceId> faces;
@@ -380,14 +382,14 @@ class CountingCutter {
     const CutMode mode_;
     const double snap_;
     cutting::Cutter cutter_;
-    // Of the tool at work.
+    // The counts and faces of the present tool.
     CutCounts counts_;
     struct {
-        std::vector<Vec3> nodes, middles;  // these of their edges and their own
-    } opened_faces_;                       // by it; m, at rest
+        std::vector<Vec3> nodes, middles;  // m, at rest; middles of edges and of faces
+    } opened_faces_;
 };
 
-/// What to say of a tool that cut nothing, which is seldom what was meant.
+/// Returns a warning if the tool cut nothing, because this is rarely intended.
 std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts& counts,
                                            const CutBody& body) {
     std::ostringstream text;

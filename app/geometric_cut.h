@@ -1,4 +1,4 @@
-// Cuts of a mesh at rest, one tool after the other and without dynamics: what `incise cut` does.
+// Cuts of a mesh at rest, one tool after the other and without dynamics, for `incise cut`.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -20,104 +20,119 @@ namespace incise::app {
 
 using cutting::CutMode;
 
-/// Tools, in the mesh's unit of length (m).
+/// A plane. All tools have the unit of length of the mesh, m.
 struct PlaneCut {
-    Vec3 point, normal;  ///< the normal is of any length but zero
+    Vec3 point, normal;  ///< the normal has any length above zero
 };
+/// A triangulated surface.
 struct SurfaceCut {
     topology::SurfaceData surface;
 };
-/// A blade's edge, a polyline, that moves straight from pose to pose. Each of its segments sweeps
-/// two triangles then, which share the diagonal from its first point before to its second after.
+/// The edge of a blade, a polyline, whose points move along straight lines from pose to pose. From
+/// one pose to the next, each segment sweeps two triangles. The triangles share the diagonal from
+/// the first point of the segment before the motion to the second point after it.
 struct SweepCut {
-    std::vector<std::vector<Vec3>> poses;  ///< two or more, each of as many points, two or more
+    /// At least two poses. All have the same number of points, at least two.
+    std::vector<std::vector<Vec3>> poses;
 };
+/// Removal of the elements whose centres a shape covers.
 struct ShapeRemoval {
     cutting::CarverShape shape;
-    Vec3 at = Vec3::Zero();  ///< the shape's origin
+    Vec3 at = Vec3::Zero();  ///< position of the origin of the shape
 };
 
+/// A tool with its name.
 struct CutTool {
     std::string name;  ///< for reports and messages
     std::variant<PlaneCut, SurfaceCut, SweepCut, ShapeRemoval> kind;
 };
 
+/// Options that all tools share.
 struct GeometricCutOptions {
-    CutMode mode = CutMode::split;        ///< of all tools; split is for tetrahedra only
-    double snap = cutting::default_snap;  ///< see cutting::SplitOptions; split mode only
+    CutMode mode = CutMode::split;        ///< split is for tetrahedra only
+    double snap = cutting::default_snap;  ///< for CutMode::split; see cutting::SplitOptions
 };
 
-/// What one tool did, or all of them.
+/// Counts of the changes by one tool, or by all tools together.
 struct CutCounts {
-    /// Split: elements through which the surface passed, of a sweep in each of its stretches.
-    /// Separate: elements with a face that opened.
+    /// With CutMode::split, the elements through which the surface passed. For a sweep this is the
+    /// sum over the motions from pose to pose. With CutMode::separate, the elements with a face
+    /// that was opened.
     std::size_t elements_crossed = 0;
     std::size_t elements_added = 0, elements_removed = 0;
-    std::size_t nodes_added = 0;       ///< all new ones
-    std::size_t nodes_duplicated = 0;  ///< those of them that are copies, where faces opened
-    std::size_t nodes_snapped = 0;     ///< counted as on the surface, though they are only near it
+    std::size_t nodes_added = 0;       ///< all new nodes
+    std::size_t nodes_duplicated = 0;  ///< of these, the copies at opened faces
+    std::size_t nodes_snapped = 0;     ///< nodes near the surface that were treated as on it
     std::size_t faces_opened = 0;
     double cut_area = 0.0;        ///< of one side of the opened faces, m2
     double volume_removed = 0.0;  ///< m3
-    double split_seconds = 0.0;   ///< wall time of the splits, nothing else
-    /// Largest distance of the opened faces from the tool's surface, m; nothing if no face opened.
+    double split_seconds = 0.0;   ///< wall time of the splits only, s
+    /// Largest distance of the opened faces from the surface of the tool, m. Not set if no face was
+    /// opened.
     struct Distance {
-        double nodes = 0.0;  ///< of their nodes only
-        double faces = 0.0;  ///< also of the middles of their edges and their own: more at folds
+        double nodes = 0.0;  ///< at the nodes of the faces
+        double faces = 0.0;  ///< also at the midpoints of edges and faces: larger at folds
     };
     std::optional<Distance> surface_distance;
 };
 
+/// The changes by one tool.
 struct ToolReport {
     std::string tool;
     CutCounts counts;
-    int pieces = 0;  ///< of the body, afterwards
+    int pieces = 0;  ///< connected components of the body after the tool
 };
 
+/// A connected component of the body.
 struct Piece {
-    double volume = 0.0;
+    double volume = 0.0;  ///< m3
     std::size_t elements = 0;
 };
 
-/// The body at one moment.
+/// Measures of the body before or after the cuts.
 struct CutBody {
     std::size_t elements = 0, nodes = 0;
-    double volume = 0.0;
-    double min_dihedral_angle = 0.0;  ///< radians
-    double min_altitude = 0.0, mean_edge_length = 0.0;
-    Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
-    /// cutting::step_length; nothing if there are other elements than tetrahedra.
+    double volume = 0.0;                                  ///< m3
+    double min_dihedral_angle = 0.0;                      ///< radians
+    double min_altitude = 0.0, mean_edge_length = 0.0;    ///< m
+    Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();  ///< bounding box, m
+    /// cutting::step_length(), m. Not set if there are elements other than tetrahedra.
     std::optional<double> step_length;
 };
 
+/// The result of geometric_cut().
 struct GeometricCutReport {
     CutBody before, after;
     std::vector<Piece> pieces;  ///< largest volume first
     CutCounts total;
     std::vector<ToolReport> tools;
-    std::vector<std::string> warnings;  ///< tools that cut nothing; one sentence each
+    std::vector<std::string> warnings;  ///< one sentence for each tool that cut nothing
 
-    /// |volume after + removed - before| / before.
+    /// Returns |volume after + volume removed - volume before| / volume before.
     double volume_error() const;
-    /// Elements added per crossed one; nothing if none was crossed.
+    /// Returns the number of added elements per crossed element, or nothing if none was crossed.
     std::optional<double> growth() const;
+    /// Returns the wall time of the splits per crossed element, us, or nothing if there was no
+    /// split.
     std::optional<double> microseconds_per_crossed_element() const;
-    /// How much shorter the stable step of the body at rest becomes by the shape of its elements,
-    /// if it is of one material.
+    /// Returns the stable step at rest after the cuts, divided by that before, for a body of one
+    /// material. Returns nothing if there are elements other than tetrahedra.
     std::optional<double> stable_step_ratio() const;
 };
 
-/// Applies the tools in their order to the body at rest. Planes, surfaces and sweeps part it;
-/// shapes remove the elements whose centres they cover.
+/// Applies the tools in their order to the body at rest. Planes, surfaces and sweeps cut the body.
+/// Shapes remove the elements whose centres they cover.
 ///
-/// Split: cutting::split, with limits from the mesh as given. Separate: a sweep opens
-/// cutting::faces_to_open; planes and surfaces open the faces between elements whose centres are
-/// on different sides (of a surface: the straight way between them crosses it an odd number of
-/// times).
+/// With CutMode::split, tools divide elements by cutting::Cutter::split(), with the limits of the
+/// uncut mesh. With CutMode::separate, a sweep opens cutting::faces_to_open(). Planes and surfaces
+/// open the faces between elements whose centres are on different sides. Two points are on
+/// different sides of a surface if the straight line between them crosses it an odd number of
+/// times.
 ///
-/// Throws InputError, naming the tool, if an element to be split is no tetrahedron, or nothing is
-/// left of the body; the mesh then has what the earlier tools did to it.
-/// Cost: some microseconds an element, and a tool.
+/// Throws InputError with the name of the tool if an element to be divided is no tetrahedron, or if
+/// no element of the body is left. The mesh then has the changes by the tools before it, and the
+/// removal of the last element.
+/// Cost: some microseconds for each element and tool.
 GeometricCutReport geometric_cut(topology::Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options);
 

@@ -1,4 +1,4 @@
-// How help texts look.
+// The layout of help texts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace incise::app {
 
-/// Breaks descriptions of options into lines that fit beside their names.
+/// A formatter that breaks the descriptions of options into lines that fit beside the names.
 class HelpFormatter final : public CLI::Formatter {
   public:
     std::string make_option_desc(const CLI::Option* option) const override {

@@ -1,4 +1,4 @@
-// The incise command: the one place where exceptions become messages and exit statuses.
+// The main function of incise, which turns exceptions into messages and exit statuses.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <fcntl.h>
 #include <unistd.h>
@@ -33,14 +33,14 @@ int fail_by_fault(std::string_view text) {
                 "a fault of the program, please report it: " + std::string(text));
 }
 
-/// Needs no memory.
+/// Reports that memory is exhausted. Allocates none.
 int fail_for_memory() {
     std::cerr << "incise: out of memory: the mesh is too large for this machine\n";
     return app::out_of_memory;
 }
 
-/// Gives descriptors that the caller has closed to nobody else: the first files of a run would be
-/// its standard output otherwise. Writing there still fails.
+/// Occupies the standard descriptors that the caller has closed. Otherwise the first files of a run
+/// would get these descriptors and receive standard output. Writing to them still fails.
 void occupy_standard_descriptors() {
     int file = 0;
     do {
@@ -55,7 +55,7 @@ int fail_for_threads() {
                 "limits (ulimit -v, ulimit -u), or let a run have --threads 1");
 }
 
-/// Prints what the exception says; returns the status that it stands for.
+/// Prints the message of the exception and returns its exit status.
 int report(const std::exception_ptr& exception) {
     if (!exception) return fail_by_fault("it has given up");
     try {
@@ -84,11 +84,12 @@ int report(const std::exception_ptr& exception) {
     }
 }
 
-/// Of several threads that fail at the same time one tells; the others wait for the end.
+/// Reports an exception once: if several threads fail, the first one reports and the others wait
+/// for the end of the process.
 int report_once(const std::exception_ptr& exception) {
     static std::atomic_flag is_told;
     thread_local bool is_telling = false;
-    if (is_telling) return fail_for_memory();  // nothing else can fail about that
+    if (is_telling) return fail_for_memory();  // only lack of memory can make a report fail
     while (is_told.test_and_set()) ::pause();
     is_telling = true;
     try {
@@ -102,10 +103,10 @@ int report_once(const std::exception_ptr& exception) {
 
 int main(int argc, char** argv) {
     occupy_standard_descriptors();
-    // A limit on file sizes or a closed pipe is then an error of writing like any other.
+    // Makes a limit on file sizes and a closed pipe ordinary errors of writing.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
-    // In the threads of libraries there is nobody to catch.
+    // For exceptions in threads of libraries, which nothing catches.
     std::set_terminate([] { std::_Exit(report_once(std::current_exception())); });
     try {
         const int status = app::dispatch(argc, argv);

@@ -1,4 +1,4 @@
-// How the command speaks: everything about the work goes to stderr, one message a line.
+// Messages of the program. All messages go to stderr, one a line.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,24 +12,24 @@
 
 namespace incise::app {
 
-/// "incise: TEXT", each line of the text for itself.
+/// Prints "incise: LINE" for each line of the text.
 void print_error(std::string_view text);
-/// "incise: warning: TEXT".
+/// Prints "incise: warning: LINE" for each line of the text.
 void print_warning(std::string_view text);
 
-/// One line each.
+/// Returns the lines as one text, with line feeds between them.
 std::string joined(std::span<const std::string> lines);
 
-/// The text with `prefix` before each of its lines.
+/// Returns the text with `prefix` before each of its lines.
 std::string prefixed(std::string_view prefix, std::string_view text);
 
-/// Appends what is at fault or odd with the body that the scenario describes. If memory
-/// does not suffice for it, throws MemoryError or std::bad_alloc where there are no errors before.
+/// Appends the errors and warnings about the body of a scenario. If there is too little memory for
+/// the body, throws MemoryError or std::bad_alloc, but only if `errors` was empty.
 void add_body_findings(const scenario::Scenario& scenario, std::vector<std::string>& errors,
                        std::vector<std::string>& warnings);
 
-/// The scenario, its warnings printed. If there are errors, throws InputError with them and those
-/// of the body that it describes, one a line.
+/// Reads a scenario and prints its warnings. If there are errors, throws InputError with these and
+/// with the errors of the body, one a line.
 scenario::Scenario load_scenario(const std::filesystem::path& file,
                                  std::span<const std::string> overrides = {});
 

@@ -18,7 +18,7 @@ constexpr auto redraw_interval = 100ms;
 constexpr auto line_interval = 10s;
 constexpr double line_step = 0.1;
 constexpr int bar_columns = 24;
-constexpr double least_fraction_for_estimate = 1e-3;  // before it, the time left is a guess
+constexpr double least_fraction_for_estimate = 1e-3;  // below it, the remaining time is not shown
 
 int terminal_columns() {
     winsize size{};
@@ -111,7 +111,7 @@ void Progress::draw(Clock::time_point now) {
     std::fflush(stderr);
     is_line_open_ = is_terminal_;
     last_ = now;
-    // Whole tenths, so that rounding of `done` moves no later line.
+    // Rounded down to tenths, so that rounding of `done` does not shift later lines.
     last_fraction_ = std::max(last_fraction_, std::floor(fraction / line_step + 1e-9) * line_step);
 }
 

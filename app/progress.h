@@ -1,5 +1,5 @@
-// How far long work has come: a bar with the time left on a terminal, plain lines now and then
-// elsewhere.
+// Display of the progress of long tasks: a bar with the remaining time on a terminal, and single
+// lines elsewhere.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,22 +9,25 @@
 
 namespace incise::app {
 
-/// Writes to stderr. On a terminal one line is drawn anew, at most ten times a second; elsewhere a
-/// line comes every tenth of the work or every ten seconds, whichever is first.
+/// A display of progress on stderr. On a terminal it redraws one line, at most ten times a second.
+/// Elsewhere it prints a line after every tenth of the work or after ten seconds, whichever is
+/// first.
 class Progress {
   public:
     /// @param total  amount of work, above 0, in any unit
-    /// @param quiet  say nothing
+    /// @param label  text at the beginning of the line
+    /// @param quiet  if true, nothing is written
     Progress(double total, std::string label, bool quiet);
-    /// Leaves the line, so that what is written next begins on a fresh one.
+    /// Ends the line, so that later output begins on a new line.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// @param done  how much of `total`; never less than before
-    /// @param note  shown behind, such as "12034 elements"
+    /// Sets the progress and redraws the display if due.
+    /// @param done  the completed part of `total`; not below the last value
+    /// @param note  text at the end of the line, such as "12034 elements"
     void update(double done, std::string_view note = {});
-    /// Shows the last state once more and leaves the line.
+    /// Shows the last state and ends the line.
     void finish();
 
   private:
@@ -43,11 +46,16 @@ class Progress {
     Clock::time_point start_, last_;
 };
 
-/// "0:42", "12:05", "3:04:05".
+/// Returns a duration in s as text, such as "0:42", "12:05" or "3:04:05".
 std::string duration_text(double seconds);
 
-/// The line without its end: "LABEL [####....] 42 %, 0:12 left, NOTE"; without bar if `width` is 0.
-/// @param width  columns of the whole line, at which it is cut
+/// Returns the line without line feed: "LABEL [####....] 42 %, 0:12 left, NOTE".
+/// @param label            text at the beginning
+/// @param fraction         completed part, from 0 to 1
+/// @param elapsed_seconds  time since the start, s
+/// @param note             text at the end; may be empty
+/// @param width            columns, at which the line is cut off; if 0, the line has no bar and no
+///                         limit
 std::string progress_line(std::string_view label, double fraction, double elapsed_seconds,
                           std::string_view note, int width);
 

@@ -12,7 +12,7 @@ namespace incise::app {
 
 namespace {
 
-// Handlers have no other way to know.
+// Global, because signal handlers have no other access to data.
 volatile std::sig_atomic_t noted_signal = 0;
 std::string last_words;
 
@@ -22,7 +22,7 @@ void handle_by(void (*handler)(int)) {
     for (const int signal : stop_signals) std::signal(signal, handler);
 }
 
-/// With calls only that a handler may make.
+/// Prints the farewell and ends the process. Makes only calls that are allowed in signal handlers.
 void end(int signal) {
     const auto written = ::write(STDERR_FILENO, last_words.data(), last_words.size());
     static_cast<void>(written);

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM to a run.
+// Handling of SIGINT and SIGTERM during a run.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,19 +6,22 @@
 
 namespace incise::app {
 
-/// What the two signals do while it is there: at first they end the process, and are only noted
-/// once the run has begun to write, so that it can close its files properly. One at a time.
+/// A handler of SIGINT and SIGTERM during its lifetime. At first a signal ends the process. After
+/// note_only() a signal is only recorded, so that the run can close its files properly.
+/// @pre  there is only one object at a time
 class StopSignals {
   public:
-    /// Until note_only(), they end the process at once, with `farewell` as an error message and the
-    /// exit status 128 + signal: reading a large mesh can take long.
+    /// Until note_only() is called, a signal ends the process at once, because reading a large mesh
+    /// can take long. The exit status is 128 + signal.
+    /// @param farewell  error message at the end of the process
     explicit StopSignals(const std::string& farewell);
     ~StopSignals();
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;
 
+    /// From now on, signals are recorded and have no other effect.
     void note_only() const;
-    /// The last that was noted, or 0.
+    /// Returns the last recorded signal, or 0.
     int noted() const;
 };
 

@@ -15,7 +15,7 @@ namespace incise::app {
 
 namespace {
 
-/// For a shell.
+/// Returns the word with quotes where a shell needs them.
 std::string quoted(const std::string& word) {
     const auto is_plain = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+./,:=%@", c);

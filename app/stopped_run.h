@@ -1,4 +1,4 @@
-// Runs that were stopped: how to go on with them.
+// Resuming of runs that were stopped.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,16 +12,17 @@
 
 namespace incise::app {
 
-/// The command that goes on with the run, for a shell.
+/// Returns the shell command that resumes the run.
 std::string resuming_command(const RunOptions& options);
 
-/// What is there of a run to be resumed: nobody else writes there from now on.
+/// The folder and the checkpoint of a run that is to be resumed. The folder is locked
+/// against other runs (io::OutputFolder).
 struct StoppedRun {
     io::OutputFolder folder;
     runner::Checkpoint checkpoint;
 };
-/// The run of this scenario in the folder; damaged checkpoints are warned of.
-/// Throws InputError if there is none, or another run is writing there.
+/// Returns the stopped run of this scenario in the folder. Prints warnings about damaged
+/// checkpoints. Throws InputError if there is none, or if another run is writing to the folder.
 StoppedRun stopped_run(const std::filesystem::path& folder, const scenario::Scenario& scenario);
 
 }  // namespace incise::app

@@ -1,4 +1,4 @@
-// incise bench: how fast this machine computes forces, steps and edits.
+// incise bench: measures how fast the machine computes forces, steps and edits.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstdio>
 #include <iostream>

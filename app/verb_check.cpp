@@ -1,4 +1,4 @@
-// incise check: every problem of scenarios and meshes, without changing anything.
+// incise check: reports every problem of scenarios and meshes without changing anything.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <iostream>
@@ -20,7 +20,7 @@ namespace {
 
 struct Findings {
     std::vector<std::string> errors, warnings;
-    std::string summary;  ///< meaningful without errors
+    std::string summary;  ///< meaningful only without errors
 };
 
 std::string count_of(std::size_t count, const std::string& noun) {
@@ -34,7 +34,7 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
         const auto file = io::read_mesh(path, {region_array});
         for (const auto& warning : file.warnings) findings.warnings.push_back(prefix + warning);
         auto found = topology::check(file.mesh);
-        // What is odd about the connections is known only once they are made.
+        // Warnings about connections exist only after the mesh is built.
         if (found.errors.empty()) found.warnings = topology::Mesh::build(file.mesh).warnings;
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
@@ -51,7 +51,7 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
     return findings;
 }
 
-/// The scenario and what it describes, as far as it can be read.
+/// Checks the scenario, and its body as far as the scenario can be read.
 Findings check_scenario(const std::filesystem::path& path) {
     auto [scenario, errors, warnings] = scenario::read_scenario(path);
     Findings findings{std::move(errors), std::move(warnings), {}};

@@ -1,4 +1,4 @@
-// incise convert: a mesh from one format to another.
+// incise convert: converts a mesh from one format to another.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <iostream>
 
@@ -14,7 +14,7 @@ namespace incise::app {
 
 namespace {
 
-/// Throws InputError with what is wrong with the mesh after that. Returns what was done.
+/// Welds the mesh and returns a report. Throws InputError with the problems of the welded mesh.
 std::string weld(topology::MeshData& mesh, const std::string& prefix) {
     const auto report = topology::weld_report(topology::weld(mesh));
     const auto errors = topology::check(mesh).errors;
@@ -32,7 +32,7 @@ int convert(const ConvertOptions& options) {
     for (const auto& warning : file.warnings) print_warning(prefix + warning);
     std::string report;
     if (options.weld) report = "; " + weld(file.mesh, prefix);
-    if (const auto warning = topology::coincidence_warning(file.mesh))  // after welding, of gaps
+    if (const auto warning = topology::coincidence_warning(file.mesh))  // gaps, after welding
         print_warning(prefix + *warning);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "

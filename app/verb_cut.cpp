@@ -1,4 +1,4 @@
-// incise cut: cuts a mesh at rest and tells what that did.
+// incise cut: cuts a mesh at rest and reports what was done.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
@@ -45,14 +45,14 @@ double parse_snap(const std::string& text) {
                      " is not allowed; it must be a number from 0 to 1");
 }
 
-/// Also by another name or a link.
+/// True if both paths name the same file, also through a link.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code is_missing;
     return a.lexically_normal() == b.lexically_normal() ||
            std::filesystem::equivalent(a, b, is_missing);
 }
 
-/// What is read, and the mesh that is written, are no files for the figures.
+/// Throws InputError if the JSON file is also an input file or the mesh to write.
 void check_json(const CutOptions& options) {
     const auto refuse = [&](const std::filesystem::path& file, const std::string& what) {
         if (is_same_file(*options.json, file))
@@ -238,7 +238,7 @@ int cut(const CutOptions& options) {
         print_text(result);
         return done;
     }
-    // Names of files may be in whatever encoding.
+    // File names may have any encoding.
     const auto text =
         as_json(options, result).dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
     if (is_json_on_stdout)

@@ -1,4 +1,4 @@
-// incise info: what a mesh is, for people and as JSON.
+// incise info: describes a mesh, as text or as JSON.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstdio>
 #include <iostream>
@@ -90,7 +90,7 @@ void print_text(const MeshInfo& info) {
 int info(const InfoOptions& options) {
     const auto info = look_at(options);
     if (options.json) {
-        // Warnings may quote names from the file, in whatever encoding.
+        // Warnings may quote names from the file, which can have any encoding.
         std::cout << as_json(info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
                   << '\n';
         return done;

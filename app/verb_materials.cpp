@@ -1,4 +1,4 @@
-// incise materials: the laws, their parameters and their limits; the tissues and their sources.
+// incise materials: lists laws with parameters and limits, and tissues with their sources.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <iostream>
@@ -26,7 +26,7 @@ std::vector<const MaterialModel*> all_models() {
     return models;
 }
 
-/// Each parameter of the model once, in the order of the table.
+/// Returns each parameter of the model once, in the order of the table.
 std::vector<const scenario::ParameterInfo*> parameters_of(const MaterialModel& model) {
     std::vector<const scenario::ParameterInfo*> rows;
     for (const auto& row : scenario::parameters()) {
@@ -103,7 +103,7 @@ nlohmann::ordered_json as_json(const Tissue& tissue) {
     return json;
 }
 
-/// Words that fit in 80 columns, after an indent.
+/// Prints the text in lines of at most 80 columns, with an indentation.
 void print_wrapped(std::string_view text, std::string_view indent) {
     constexpr std::size_t width = 80;
     std::size_t column = 0;
@@ -178,7 +178,7 @@ void print_detail(const Tissue& tissue) {
                 std::string(scenario::toughness_source) + ")");
 }
 
-/// What was asked for: everything, or the one of this name.
+/// The materials to print: all, or the one with the given name.
 struct Choice {
     std::vector<const MaterialModel*> models;
     std::vector<const Tissue*> tissues;

@@ -1,4 +1,4 @@
-// incise mesh: from a label image to a mesh.
+// incise mesh: generates a mesh from a label image.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <array>
 #include <cmath>
@@ -59,7 +59,7 @@ void scale(topology::MeshData& mesh, double factor) {
                          " makes coordinates beyond the range of numbers; give one nearer to 1");
 }
 
-/// Labels of the image that no cell has: they were missed by the centres of the cubes.
+/// Warns of labels of the image that no cell has, because no centre of a cube has the label.
 void warn_of_lost_labels(const std::string& prefix, const io::LabelImage& image,
                          const topology::MeshData& mesh) {
     std::set<int> lost(image.labels.begin(), image.labels.end());

@@ -1,4 +1,4 @@
-// incise render: hands over to incise-render, a program of its own that needs VTK's rendering.
+// incise render: starts incise-render, a separate program that needs the rendering of VTK.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <unistd.h>
 

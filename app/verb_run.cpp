@@ -36,7 +36,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Shows how far the run has come.
+/// An observer that shows the progress of the run.
 class ProgressObserver : public runner::Observer {
   public:
     ProgressObserver(double end_time, bool quiet) : progress_(end_time, "running", quiet) {}
@@ -53,7 +53,7 @@ class ProgressObserver : public runner::Observer {
     Progress progress_;
 };
 
-/// Prints the warnings that the simulation adds while it goes on.
+/// An observer that prints the warnings that the simulation adds during the run.
 class WarningObserver : public runner::Observer {
   public:
     explicit WarningObserver(const runner::Simulation& simulation)
@@ -62,7 +62,8 @@ class WarningObserver : public runner::Observer {
     void on_edit(const runner::Simulation& simulation, const sim::EditRecord&) override {
         tell(simulation);
     }
-    /// Those of the last step are of the state at the end, and come behind the progress.
+    /// Prints the new warnings. Warnings of the last step are about the state at the end, so that
+    /// the caller prints them after the progress.
     void tell(const runner::Simulation& simulation) {
         for (; num_told_ < simulation.warnings().size(); ++num_told_)
             print_warning(simulation.warnings()[num_told_]);
@@ -77,7 +78,7 @@ int num_threads(const RunOptions& options) {
     return physics::Workers::num_cores();
 }
 
-/// Its errors name the scenario.
+/// Builds the simulation. Messages of errors name the scenario.
 std::unique_ptr<runner::Simulation> build(const scenario::Scenario& scenario,
                                           const std::filesystem::path& file) {
     try {
@@ -90,7 +91,8 @@ std::unique_ptr<runner::Simulation> build(const scenario::Scenario& scenario,
     }
 }
 
-/// A run replaces the frames of a former one in its folder: none of them may be what it reads.
+/// Throws InputError if the run reads a file that is among the frames in its folder, because the
+/// run replaces these.
 void require_inputs_elsewhere(const scenario::Scenario& scenario,
                               const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> inputs;
@@ -100,7 +102,7 @@ void require_inputs_elsewhere(const scenario::Scenario& scenario,
         if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))
             if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
                 inputs.push_back(*surface);
-    // What cannot be looked at is told when it is opened.
+    // A path that cannot be examined gives an error when it is opened.
     std::error_code error;
     const auto frames = weakly_canonical(folder / "frames", error);
     for (const auto& input : inputs) {
@@ -114,7 +116,7 @@ void require_inputs_elsewhere(const scenario::Scenario& scenario,
     }
 }
 
-/// Why nothing can be written to the folder, as far as that can be told before.
+/// Returns the error that prevents writing to the folder, as far as it can be found in advance.
 std::optional<OutputError> refusal_of(const std::filesystem::path& folder) {
     try {
         io::require_output_folder(folder);
@@ -124,7 +126,7 @@ std::optional<OutputError> refusal_of(const std::filesystem::path& folder) {
     }
 }
 
-/// What read() returns. If it throws, the refusal is told with that.
+/// Returns read(). If read() throws, adds the text of the refusal to the error.
 template <class Read>
 auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
     if (!refusal) return read();
@@ -142,7 +144,8 @@ auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
     }
 }
 
-/// Tools that had time to cut and did not, which is seldom what was meant.
+/// Warns of tools that were present during the run but cut nothing, because this is rarely
+/// intended.
 void warn_of_idle_tools(const runner::Simulation& simulation) {
     for (const scenario::ToolSpec& tool : simulation.scenario().tools) {
         const auto& edits = simulation.edits();
@@ -174,7 +177,7 @@ int tell_expectations(const scenario::Scenario& scenario, const runner::Quantiti
     return failures.empty() ? done : missed_expectation;
 }
 
-/// From where the simulation is to its end, or to a signal.
+/// Runs the simulation from its present state to the end or to a signal. Returns the exit status.
 int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const RunOptions& options,
              const StopSignals& signals) {
     const scenario::Scenario& scenario = simulation.scenario();
@@ -207,7 +210,7 @@ int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const Ru
         while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
     } catch (const PhysicsError& error) {
         throw PhysicsError(failure(error, simulation.num_steps() + 1));
-    } catch (const InputError& error) {  // a tool has met what it cannot cut
+    } catch (const InputError& error) {  // a tool has met something that it cannot cut
         throw InputError(failure(error, simulation.num_steps()));
     }
     if (!simulation.is_finished()) {
@@ -249,7 +252,7 @@ int run(const RunOptions& options) {
     std::optional<StoppedRun> stopped;
     if (options.resume) {
         if (const auto quantities = runner::finished_quantities(folder, scenario)) {
-            if (!options.dry_run)  // one may be left if it was killed when all else was done
+            if (!options.dry_run)  // one is left if the run was killed at the very end
                 runner::remove_checkpoints_of_stops(folder);
             if (!options.quiet)
                 std::cerr << scenario.name << ": the run in " << folder.string()

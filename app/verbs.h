@@ -1,4 +1,4 @@
-// The verbs of the command: one function and one file each. command_line.h fills in the options.
+// The verbs of the program: each has a function and a file. command_line.cpp fills in the options.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,8 +9,9 @@
 
 namespace incise::app {
 
-/// Exit statuses; the verbs return done or missed_expectation, everything else comes from
-/// exceptions (see main.cpp).
+/// Exit statuses. Errors that verbs throw become statuses in main.cpp. Verbs return done,
+/// missed_expectation (run), input_at_fault and out_of_memory (check). run() returns 128 + signal
+/// if a signal stops it.
 enum Status {
     done = 0,
     missed_expectation = 1,
@@ -25,8 +26,8 @@ struct RunOptions {
     std::filesystem::path scenario;
     std::optional<std::filesystem::path> out;
     std::optional<double> end_time;
-    std::vector<std::string> overrides;  ///< "key.path=value", for scenario::read_scenario
-    int num_threads = 0;                 ///< 0: as many as the machine has cores
+    std::vector<std::string> overrides;  ///< KEY.PATH=VALUE; see scenario::read_scenario()
+    int num_threads = 0;                 ///< 0: one for each core
     bool resume = false;
     bool dry_run = false;
     bool quiet = false;
@@ -34,14 +35,15 @@ struct RunOptions {
 int run(const RunOptions& options);
 
 struct BenchOptions {
-    std::optional<std::filesystem::path> json;  ///< "-": standard output
+    std::optional<std::filesystem::path> json;  ///< "-" for standard output
 };
 int bench(const BenchOptions& options);
 
 struct CheckOptions {
     std::vector<std::filesystem::path> files;
 };
-/// input_at_fault if any file has a problem; all are looked at.
+/// Checks all files. Returns the highest status of a file: input_at_fault if it has a problem,
+/// out_of_memory if it is too large for the machine.
 int check(const CheckOptions& options);
 
 struct InfoOptions {
@@ -61,35 +63,35 @@ int convert(const ConvertOptions& options);
 struct MeshOptions {
     std::filesystem::path in, out;
     bool hex = false;
-    std::string size;   ///< empty: one cell a voxel
-    std::string scale;  ///< empty: 1
+    std::string size;   ///< edge of the cells; if empty, one cell for each voxel
+    std::string scale;  ///< factor of all coordinates; if empty, 1
 };
 int mesh(const MeshOptions& options);
 
-/// An option that adds a tool, as it was given.
+/// An option that adds a tool, with its value as given.
 struct CutToolArgument {
     std::string option, text;
 };
 struct CutOptions {
     std::filesystem::path mesh, out;
     std::vector<CutToolArgument> tools;         ///< in the order of the command line
-    std::optional<std::filesystem::path> json;  ///< "-": standard output
-    std::string mode;                           ///< empty: the mesh's usual one
-    std::string snap;                           ///< empty: cutting::default_snap
+    std::optional<std::filesystem::path> json;  ///< "-" for standard output
+    std::string mode;                           ///< if empty, scenario::usual_mode() of the mesh
+    std::string snap;                           ///< if empty, cutting::default_snap
     std::string region_array = "region";
 };
 int cut(const CutOptions& options);
 
 struct MaterialsOptions {
-    std::string name;  ///< empty: all
+    std::string name;  ///< a law, a method or a tissue; if empty, all
     bool json = false;
 };
 int materials(const MaterialsOptions& options);
 
 struct RenderOptions {
-    std::vector<std::string> arguments;  ///< for incise-render, as they are
+    std::vector<std::string> arguments;  ///< passed to incise-render without change
 };
-/// Becomes incise-render; returns only by an exception.
+/// Replaces the process by incise-render. Throws InputError if that fails, and never returns.
 int render(const RenderOptions& options);
 
 }  // namespace incise::app

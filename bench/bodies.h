@@ -1,4 +1,4 @@
-// The bodies that are measured: irregular cubes of about a given number of tetrahedra.
+// The bodies of the benchmarks: irregular cubes of about a given number of tetrahedra.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 

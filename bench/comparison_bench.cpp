@@ -1,5 +1,5 @@
-// HEML beside the methods that its papers compare with, on the same meshes: time of one evaluation
-// of the forces, and of a step of implicit finite elements. docs/comparison.md has the results.
+// Benchmarks of HEML and of the methods that its papers compare with, on the same meshes: one
+// evaluation of the forces, and a step of implicit finite elements. Results: docs/comparison.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
@@ -25,7 +25,7 @@ constexpr physics::NeoHookean nh{2000.0, 6000.0};
 constexpr physics::MooneyRivlin mr{1200.0, 800.0, 2800.0};
 constexpr double density = 1000.0;  // kg/m3
 
-/// A mesh, and a state of it that is stretched, sheared and shaken, no element inverted.
+/// A mesh, and a stretched and sheared state of it without inverted elements.
 struct Body {
     topology::Mesh mesh;
     std::vector<Nodes> tetrahedra;
@@ -61,7 +61,7 @@ void report(benchmark::State& state, const Body& body) {
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// Times add(positions, forces), with the forces set to zero first.
+/// Times add(positions, forces), and setting the forces to zero before it.
 template <class Add>
 void time_forces(benchmark::State& state, const Body& body, Add add) {
     std::vector<Vec3> forces(body.positions.size());
@@ -97,7 +97,7 @@ void mass_springs(benchmark::State& state) {
     time_forces(state, body, [&](auto x, auto f) { springs.add_forces<double>(x, f); });
 }
 
-/// What the program does in a run: blocks, the memory of its element rows.
+/// The forces as a run computes them: by blocks of elements, with the fast kernels.
 void program(benchmark::State& state, const physics::Law& law) {
     const Body& body = body_of(state.range(0));
     physics::Model model(body.mesh, make_material(law));
@@ -109,7 +109,7 @@ void program(benchmark::State& state, const physics::Law& law) {
     report(state, body);
 }
 
-/// An explicit step of the program, with its stable size.
+/// An explicit step of Incise. Also reports its stable step.
 void explicit_step(benchmark::State& state) {
     const Body& body = body_of(state.range(0));
     physics::Model model(body.mesh, make_material(stvk),

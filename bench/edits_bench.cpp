@@ -1,5 +1,5 @@
-// Time of edits with physics following, per element or face; elements next to each other, as a
-// tool takes them.
+// Benchmarks of edits and of the updates of physics that follow, per element or face. The edited
+// elements have consecutive ids, so they are close to each other, as with a tool.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@ void set_rate(benchmark::State& state) {
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// Runs `edit` on a batch of elements from the middle of the body and takes it back untimed.
+/// Times `edit` on a batch of elements with consecutive ids, and undoes it untimed.
 template <class Edit>
 void measure(benchmark::State& state, Edit edit) {
     topology::Mesh mesh = make_cube(state.range(0));
@@ -54,7 +54,7 @@ void remove(benchmark::State& state) {
 }
 BENCHMARK(remove)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
-/// The first of the element's that are closed.
+/// Opens the first face of the element that is not on the boundary.
 void open_a_face(const topology::Mesh& mesh, topology::MeshEdit& edit, ElementId e) {
     for (int f = 0; f < mesh.num_faces(e); ++f)
         if (mesh.neighbor({e, f}).is_valid()) return edit.open({e, f});
@@ -63,8 +63,8 @@ void open_a_face(const topology::Mesh& mesh, topology::MeshEdit& edit, ElementId
 void open(benchmark::State& state) { measure(state, open_a_face); }
 BENCHMARK(open)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
-/// A step in which a face is opened, with what the books of a run and their row in history.csv ask
-/// for before and after; in all per element of the body.
+/// Times a step in which a face is opened, with the body totals that the ledger and history.csv
+/// need before and after the edit. The time is per element of the body.
 void recorded_step(benchmark::State& state, topology::Mesh mesh,
                    const physics::Material& material) {
     physics::Model model(mesh, {{material}, {{0, 0}}});
@@ -102,8 +102,8 @@ void recorded_step_of_hexahedra(benchmark::State& state) {
 }
 BENCHMARK(recorded_step_of_hexahedra)->Arg(27'000)->Arg(125'000);
 
-/// A blade goes half way through the body in 20 steps, across no ready-made plane; per element that
-/// it crosses, with the search for them, and body and boxes following.
+/// Times a blade that moves halfway through the body in 20 steps, and not along planes of the mesh.
+/// The time is per crossed element, with the search and the updates of body and boxes.
 void split(benchmark::State& state) {
     constexpr int num_steps = 20;
     topology::Mesh mesh = make_cube(state.range(0));

@@ -1,4 +1,4 @@
-// Time of a force evaluation and of a whole step, by law and size.
+// Benchmarks of a force evaluation and of a whole step, by law and size.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
@@ -52,7 +52,8 @@ void step(benchmark::State& state) {
 }
 BENCHMARK(step)->ArgsProduct({{0, 1, 2}, {20'000, 100'000, 500'000, 1'000'000}});
 
-/// A step of a body whose stress has a memory of so many terms, and its elastic one to compare.
+/// Times a step of a viscous body with a given number of Prony terms. 0 terms are the elastic body
+/// for comparison.
 void viscous_step(benchmark::State& state) {
     const topology::Mesh mesh = make_cube(state.range(1));
     auto table = make_material(laws[1]);

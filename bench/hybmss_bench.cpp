@@ -1,5 +1,5 @@
-// Figures 11 and 12 of HybMSS 2020: time of a step over the size of the mesh, for the paper's
-// eight meshes and its three variants; and the numbers of springs of its table 6.
+// Figures 11 and 12 of HybMSS 2020: time of a step against mesh size, for the eight meshes and
+// three variants of the paper. Also the numbers of springs of its table 6.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
@@ -27,12 +27,12 @@ struct Variant {
     double stiffness_ratio;
     double volume_modulus;  // Pa
 };
-constexpr double shear_modulus = 3571.0;  // Pa; with the volume term Poisson's ratio is 0.4
+constexpr double shear_modulus = 3571.0;  // Pa; with the volume term the Poisson ratio is 0.4
 constexpr Variant variants[] = {{"HybMSS-FD", 0.0, 3.0 * shear_modulus},
                                 {"HybMSS-CF", 1.0, 0.0},
                                 {"HybMSS", 1.0, 3.0 * shear_modulus}};
 
-/// Springs of a grid, edges and inner diagonals counted once.
+/// Numbers of springs of a grid, with edges and inner diagonals counted once.
 struct SpringCounts {
     double edges, inner, faces_shared, faces_by_cell;
 

@@ -29,7 +29,7 @@ Loops loops_for(Processor processor) {
             INCISE_CHOOSE(processor, WorkOutLinks, work_out_links)};
 }
 
-/// Seconds, the best of several times.
+/// Returns the shortest time of ten calls, s.
 template <class Work>
 double best_time(Work work) {
     double best = std::numeric_limits<double>::infinity();
@@ -42,8 +42,8 @@ double best_time(Work work) {
     return best;
 }
 
-/// Billions a second, of the amount that all threads work off at the same time: work(i) is the
-/// share of thread i. To be of some milliseconds, beside which starting the threads is nothing.
+/// Returns the rate, in 1e9 per second, at which all threads together do `amount`. Thread i calls
+/// work(i). A call should take some milliseconds, so that starting the threads does not matter.
 template <class Work>
 double best_rate(double amount, int num_threads, Work work) {
     return amount * 1e-9 / best_time([&] {
@@ -84,7 +84,7 @@ double measure_arithmetic(const Law& law) {
     lanes.assign(num_elements, kernel);
     std::vector<LinkGroupVectors> vectors(num_groups);
     for (std::size_t i = 0; i < num_elements; ++i) {
-        // A corner of a cube, stretched in another way each.
+        // Each element is a corner of a cube, with a stretch of its own.
         constexpr double edge = 0.01;
         const std::array<Vec3, 4> X{Vec3::Zero(), edge * Vec3::UnitX(), edge * Vec3::UnitY(),
                                     edge * Vec3::UnitZ()};

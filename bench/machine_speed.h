@@ -1,4 +1,4 @@
-// The limits of the machine that fast kernels are measured against.
+// The limits of the machine, for comparison with the speed of the fast kernels.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace incise::bench {
 
-/// Of as many threads as were asked for, together.
+/// The limits of several threads together.
 struct MachinePeak {
     double gigaflops = 0.0;  ///< additions and multiplications of doubles, fused, in lanes
-    double gigabytes_per_second = 0.0;  ///< read from memory one after the other
+    double gigabytes_per_second = 0.0;  ///< of sequential reading from memory
 };
 
-/// Takes about a second and 256 MiB, of which each thread reads a part. Throws std::system_error if
-/// the system allows no more threads.
+/// Measures the limits. This takes about a second and 256 MiB, of which each thread reads a part.
+/// Throws std::system_error if the system cannot start so many threads.
 MachinePeak measure_peak(int num_threads);
 
-/// Seconds that an element's forces take by themselves, without fetching positions or adding up:
-/// the arithmetic of some elements that the nearest cache holds, on one core. Of
-/// SaintVenantKirchhoff, NeoHookean and MooneyRivlin.
+/// Returns the seconds per element that the arithmetic of forces takes on one core, without
+/// fetching positions and adding up forces. The measured elements fit into the nearest cache.
+/// @pre the law is SaintVenantKirchhoff, NeoHookean or MooneyRivlin
 double measure_arithmetic(const physics::Law& law);
 
 std::string_view name_of(physics::Processor processor);

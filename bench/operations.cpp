@@ -1,4 +1,4 @@
-// Prints the operations of one force evaluation on the papers' two regular cubes, by method.
+// Prints the operations of one force evaluation on the two regular cubes of the papers, by method.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstdio>
 

@@ -1,4 +1,5 @@
-// What machine_speed.cpp times. Compiled for each kind of processor: see lanes.h.
+// The loops that machine_speed.cpp times. Compiled for each kind of processor: see
+// physics/simd/lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/bench/peak_loops.h"
 
@@ -15,7 +16,7 @@ double multiply_and_add(std::size_t num_operations) {
     constexpr std::size_t num_chains = 12;
     Lanes<double> chains[num_chains];
     for (std::size_t c = 0; c < num_chains; ++c) chains[c] = 1.0 + 0.1 * static_cast<double>(c);
-    // The factor is such that chains neither grow nor vanish.
+    // With these numbers the chains neither grow without bound nor vanish.
     const Lanes<double> factor = 0.999999, addend = 1e-6;
     for (std::size_t done = 0; done < num_operations; done += 2 * num_chains * num_lanes<double>)
         for (Lanes<double>& chain : chains) chain = chain * factor + addend;

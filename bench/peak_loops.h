@@ -1,4 +1,4 @@
-// What machine_speed.cpp times, once for each kind of processor.
+// The loops that machine_speed.cpp times, compiled once for each kind of processor.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,16 +9,18 @@
 
 namespace incise::bench {
 
-/// Edges of the elements of a group from corner 0, and the forces on their other corners.
+/// The edges from corner 0 of the elements of a group, and the forces on the other corners.
 struct alignas(64) LinkGroupVectors {
     double edges[3][3][physics::LinkGroup<double>::size];   ///< m
     double forces[3][3][physics::LinkGroup<double>::size];  ///< N
 };
 
-/// So many operations at least, in chains that do not wait for each other.
+/// Executes at least `num_operations` additions and multiplications, in independent chains.
 using MultiplyAndAdd = double(std::size_t num_operations);
+/// Reads `n` numbers and adds them up by lane. Returns the sum of the first lane.
 using SumUp = double(const double* numbers, std::size_t n);
-/// The forces of each group, so many times. Of the three laws that are timed.
+/// Computes the forces of each group `num_passes` times. Does nothing for laws other than
+/// SaintVenantKirchhoff, NeoHookean and MooneyRivlin.
 using WorkOutLinks = void(const physics::Law& law,
                           std::span<const physics::LinkGroup<double>> groups,
                           std::span<LinkGroupVectors> vectors, std::size_t num_passes);

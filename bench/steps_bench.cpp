@@ -1,4 +1,4 @@
-// Time of whole steps of a body that is held, pushed and pulled, by size and number of threads.
+// Benchmarks of whole steps of a body with constraints and loads, by size and number of threads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <benchmark/benchmark.h>
 
@@ -35,7 +35,7 @@ std::vector<ElementId> elements_of(const Mesh& mesh) {
 }
 
 physics::BoundaryConditions held(const Mesh& mesh) {
-    // So little that the tissue does not fold, however long it is measured.
+    // So little gravity that the tissue does not fold, however long the measurement is.
     physics::BoundaryConditions s{
         .gravity = {0, 0, -0.1}, .damping = 1.0, .constraints = {}, .loads = {}};
     s.constraints.push_back({.name = "floor",
@@ -45,7 +45,7 @@ physics::BoundaryConditions held(const Mesh& mesh) {
     return s;
 }
 
-/// The floor still, the lid turned; wind and gas on the surface, a field inside.
+/// The bottom fixed and the top rotated; a traction and a pressure on the surface, a body force.
 physics::BoundaryConditions turned_and_loaded(const Mesh& mesh) {
     physics::BoundaryConditions s = held(mesh);
     s.constraints.push_back({.name = "lid",

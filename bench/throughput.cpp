@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double cube_size = 0.1;  // of the cubes, m
 constexpr std::string_view tissue_name = "liver";
 
-/// Best time of one call, s, of as many as take so many seconds in all.
+/// Returns the shortest time of a call, s. Calls are repeated for `seconds` in all, at least once.
 template <class Work>
 double best_time(double seconds, Work work) {
     double best = std::numeric_limits<double>::infinity();
@@ -42,7 +42,7 @@ double best_time(double seconds, Work work) {
     return best;
 }
 
-/// A cube of about so many elements, of tetrahedra an irregular one.
+/// Returns a cube of about `num_elements` elements; for tetrahedra an irregular one.
 topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {
     const bool are_tetrahedra = kind == topology::CellKind::tetrahedron;
     const double num_bricks = static_cast<double>(num_elements) / (are_tetrahedra ? 6.0 : 1.0);
@@ -61,8 +61,8 @@ topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {
 struct Measured {
     std::string_view method, law;
     physics::Material material;
-    double operations;  ///< of one element's forces, two a fused one: physics/simd/link_forces.h,
-                        ///< hybmss_forces.cpp
+    double operations;  ///< of the forces of one element in physics/simd/link_forces.h or
+                        ///< hybmss_forces.cpp; a fused operation counts as two
     double bytes;       ///< of one element in a group of lanes
 };
 
@@ -71,7 +71,7 @@ topology::CellKind kind_of(const Measured& measured) {
                                        : topology::CellKind::tetrahedron;
 }
 
-/// The three laws that the papers time, and the springs, with the stiffness of the tissue.
+/// Returns the three laws that the papers time, and HybMSS, with the stiffness of the tissue.
 std::vector<Measured> measured_materials() {
     const scenario::Tissue& tissue = *scenario::find_tissue(tissue_name);
     const auto [lambda, mu] =
@@ -111,7 +111,7 @@ struct MovingBody {
     MovingBody(const topology::Mesh& mesh, const Measured& measured, physics::Precision precision,
                int num_threads)
         : model(mesh, table_of(measured.material, precision),
-                // Damped, as a body that falls freely would at last be too fast for its steps.
+                // Damped, since a body in free fall would become too fast for its steps.
                 {.gravity = Vec3(0, 0, -9.81), .damping = 10.0, .constraints = {}, .loads = {}}),
           dt(0.9 * model.stable_step()) {
         model.set_num_threads(num_threads);
@@ -124,7 +124,7 @@ struct StepTimes {
 };
 
 StepTimes time_steps(MovingBody& body, double seconds) {
-    // Fused loops of a whole step, so that each finds in the caches what the other left there.
+    // Forces are timed within whole steps, so that the caches are in the state of a run.
     double forces = std::numeric_limits<double>::infinity();
     const double step = best_time(seconds, [&] {
         body.model.integrate(0.0, body.dt);
@@ -172,7 +172,7 @@ StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int
     return rate;
 }
 
-/// Seconds of processor time.
+/// Returns the processor time, s.
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A cube that tools cut.
@@ -198,14 +198,15 @@ struct CutCube {
 
 constexpr int num_cut_steps = 20;
 
-/// The edge of a blade that goes half way through the cube, across no ready-made plane.
+/// Returns the edge of a blade that moves halfway through the cube, and not along planes of the
+/// mesh.
 std::vector<Vec3> edge_of_blade(int step) {
     const double x = -0.01 + 0.51 * step / num_cut_steps;
     return {cube_size * Vec3(x, -0.1, 0.41 + 0.21 * x), cube_size * Vec3(x, 1.1, 0.52 + 0.21 * x)};
 }
 
-/// A tool that does cut(cube, step), which returns how many items it took, in every step. Between
-/// these forces are evaluated, as in a run: the caches are full of other things.
+/// Times a tool that calls cut(cube, step) in every step, which returns the number of items. Forces
+/// are evaluated between the steps, so that the caches hold other data, as in a run.
 template <class Cut>
 EditRate time_tool(std::string_view kind, std::string_view item, CutCube& cube, Cut cut) {
     EditRate rate{cube.method, kind, item, cube.mesh.num_elements()};
@@ -241,7 +242,7 @@ EditRate measure_separation(CutCube& cube) {
     });
 }
 
-/// A ball that goes half way through the cube.
+/// Times a ball that moves halfway through the cube.
 EditRate measure_carving(CutCube& cube) {
     const auto at = [](int step) {
         Pose pose;
@@ -257,7 +258,7 @@ EditRate measure_carving(CutCube& cube) {
     });
 }
 
-/// In each step elements that follow one another, so that they lie together.
+/// Times the removal of elements with consecutive ids, which are close to each other.
 EditRate measure_removal(CutCube& cube) {
     const std::size_t stride = cube.mesh.element_capacity() / (num_cut_steps + 1);
     const std::size_t batch = std::min<std::size_t>(50, stride);
@@ -347,7 +348,7 @@ Throughput measure_throughput(const ThroughputPlan& plan,
     if (const int most = plan.num_threads > 0 ? plan.num_threads : num_cores; most > 1)
         threads.push_back(most);
     const auto materials = measured_materials();
-    // Large meshes take longest to make, all others about as long as each other.
+    // The measurements of a mesh take about the same time for any size; building it does not.
     double work = 1.0, finished = 0.0;
     const auto work_of = [](std::size_t n, double num_meshes) {
         return num_meshes * (1.0 + static_cast<double>(n) * 1e-5);

@@ -18,7 +18,7 @@ static_assert(topology::Follower<Cutter>);
 
 namespace {
 
-/// Carries the plan out. Faces of removed elements are not counted as opened.
+/// Carries out a plan. Faces of removed elements do not count as opened.
 Split carry_out(const CutPlan& plan, Mesh& mesh) {
     if (plan.is_empty()) return {};
     Split done{execute(plan, mesh), {}};
@@ -134,8 +134,8 @@ Split Cutter::carve(Mesh& mesh, std::span<const Vec3> positions, const CarverSha
 void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
     const OwnEdit own = changes.epoch_after == own_edit_.epoch ? own_edit_ : OwnEdit{};
+    before_.apply(mesh, changes);  // throws, before any change, for an edit out of turn
     own_edit_ = {};
-    before_.apply(mesh, changes);
     if (!own.history_followed) snap_history_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (i != own.cut) cuts_[i].front.apply(mesh, changes);

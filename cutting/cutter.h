@@ -1,4 +1,4 @@
-// All cuts of one body: the cuts in progress, and what earlier ones have left.
+// All cuts of one body: the cuts in progress and the snap history of earlier ones.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -19,83 +19,87 @@
 
 namespace incise::cutting {
 
-/// A cut of a blade, as Cutter::begin_cut() numbers it.
+/// The number of the cut of a blade, from Cutter::begin_cut().
 struct CutId {
     std::size_t index = 0;
     bool operator==(const CutId&) const = default;
     static void archive(auto& ar, auto& self) { ar(self.index); }
 };
 
-/// Cuts a body. Holds what cuts need to know besides the mesh: boxes for the search of elements,
-/// the cuts in progress, and where earlier cuts passed. One cutter belongs to one body.
+/// Holds what the cuts of one body need besides the mesh: boxes for the search of elements, the
+/// cuts in progress, and the snap history.
 ///
-/// Each function that cuts makes one edit of the mesh and returns it. The caller lets everything
-/// follow that keeps values of the body, and calls apply() last:
+/// Each function that cuts makes one edit of the mesh and returns it. The caller passes the edit to
+/// all parts that keep values of the body, and calls apply() of the cutter last:
 ///
-///     cutter.begin_motion(positions);                   // where the tissue is
+///     cutter.begin_motion(positions);                   // the tissue before its motion
 ///     ...                                               // the tissue moves
 ///     cutter.end_motion(mesh, positions, largest_move);
 ///     const Split done = cutter.split(cut, mesh, positions, edge_before, edge_after);
 ///     model.apply(mesh, done.changes);
 ///     cutter.apply(mesh, done.changes);
 ///
-/// Positions are current ones, by node id, m. They are those of before an edit while that edit is
-/// made, and have the new nodes when apply() is called.
+/// Positions are current ones by node id, m. Functions that cut take the positions before their
+/// edit. apply() takes the positions after the edit, with those of the new nodes.
 class Cutter {
   public:
-    /// @param uncut  of the body before the first cut; see SplitOptions
+    /// Starts without cuts. `uncut` describes the body before its first cut: see SplitOptions.
     /// Cost: O(n).
     Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions, UncutBody uncut = {});
 
-    /// Keeps the present positions as those from which the tissue moves. Without this call the
-    /// tissue counts as moving from where it was at the call before. Cost: O(n).
+    /// Begins a motion of the tissue from `positions`. Without this call, the next motion begins
+    /// where the previous one began. Cost: O(n).
     void begin_motion(std::span<const Vec3> positions);
-    /// The tissue has moved to `positions`, no node by more than `largest_move`, m.
-    /// Cost: now and then O(n).
+    /// Ends a motion of the tissue at `positions`.
+    /// @pre  no node has moved by more than `largest_move`, m
+    /// Cost: O(n) when boxes are rebuilt, else O(1).
     void end_motion(const topology::Mesh& mesh, std::span<const Vec3> positions,
                     double largest_move);
 
-    /// Begins a cut of a blade, which goes on from call to call of split().
+    /// Begins a cut of a blade. Calls of split() continue the cut. For `snap`, see SplitOptions.
     CutId begin_cut(double snap);
-    /// Cuts along what the edge of a blade sweeps in the last motion of the tissue. Returns what
-    /// was done, which may be nothing.
-    /// Throws InputError for an unknown cut, UndividableElement for an element that is no
-    /// tetrahedron; the mesh is then as it was. Cost: see cutting::split.
+    /// Cuts along what the edge of a blade sweeps during the last motion of the tissue. Returns the
+    /// edit, which may be empty.
+    /// Throws InputError for an unknown cut, and UndividableElement for an element that is no
+    /// tetrahedron. In both cases the mesh is unchanged. Cost: see cutting::split.
     Split split(CutId cut, topology::Mesh& mesh, std::span<const Vec3> positions,
                 const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after);
-    /// True if the cut has divided elements and ends within one of them: end_cut() has work to do.
+    /// True if the cut ends inside the body. If false, end_cut() does nothing.
     bool is_in_tissue(CutId cut) const { return !cut_of(cut).front.is_empty(); }
-    /// Ends a cut where its blade is. The tissue is at rest. The cut can begin again.
-    /// Throws as split(). Cost: see cutting::finish.
+    /// Ends a cut at the present edge of its blade, in tissue at rest. split() can begin the same
+    /// cut again.
+    /// Throws InputError for an unknown cut. Cost: see cutting::finish.
     Split end_cut(CutId cut, topology::Mesh& mesh, std::span<const Vec3> positions,
                   const BladeEnd& blade);
-    /// Forgets a cut. Its number may be given to a later one.
+    /// Removes a cut. Its number may be given to a later cut. Throws InputError for an unknown cut.
     void remove_cut(CutId cut) { cut_of(cut) = {}; }
 
-    /// Cuts along a whole surface at once. Throws as split().
+    /// Cuts along a whole surface at once.
+    /// Throws UndividableElement, and leaves the mesh unchanged, for an element that is no
+    /// tetrahedron.
     Split split(topology::Mesh& mesh, std::span<const Vec3> positions, const CutSurface& surface,
                 double snap);
-    /// Opens the faces that lie nearest to what the edge of a blade sweeps: faces_to_open.
+    /// Opens the faces that lie nearest to what the edge of a blade sweeps: see faces_to_open().
     Split separate(topology::Mesh& mesh, std::span<const Vec3> positions,
                    const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after);
-    /// Removes the elements that a shape covers while it goes from one pose to another:
-    /// covered_elements.
+    /// Removes the elements that a shape covers on its way from one pose to another: see
+    /// covered_elements().
     Split carve(topology::Mesh& mesh, std::span<const Vec3> positions, const CarverShape& shape,
                 const Pose& pose_before, const Pose& pose_after);
 
-    /// Follows an edit, of this cutter or of anybody else.
+    /// Follows an edit of the mesh, whoever has made it.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    /// What earlier cuts have left at nodes.
+    /// Returns the records that earlier cuts have left at nodes.
     const SnapHistory& snap_history() const { return snap_history_; }
 
-    /// True if the mesh has all nodes and elements that the cutter remembers.
+    /// True if the mesh has all nodes and elements of the boxes and of the cuts in progress.
     bool is_on(const topology::Mesh& mesh) const;
-    /// True for a cut that begin_cut() has numbered and that is not removed.
+    /// True if begin_cut() has returned this number and the cut has not been removed.
     bool has_cut(CutId id) const { return id.index < cuts_.size() && cuts_[id.index].is_in_use; }
-    /// All but the present motion.
+    /// Archives everything except the present motion.
     static void archive(auto& ar, auto& self) {
         ar(self.uncut_, self.cuts_, self.boxes_, self.snap_history_);
     }
@@ -105,22 +109,22 @@ class Cutter {
         bool is_in_use = false;
         double snap = 0.0;
         CutFront front;
-        std::vector<Vec3> edge;  // of the blade, where it is now
-        bool has_moved = false;  // in the present motion
+        std::vector<Vec3> edge;  // of the blade, after its last motion
+        bool has_moved = false;  // true after split() in the present motion
         static void archive(auto& ar, auto& self) {
             ar(self.is_in_use, self.snap, self.front, self.edge, self.has_moved);
         }
     };
     /// An edit that this cutter has made and that apply() has not followed yet.
     struct OwnEdit {
-        std::uint64_t epoch = 0;         // after it
-        std::optional<std::size_t> cut;  // whose front has followed already
-        bool history_followed = false;
+        std::uint64_t epoch = 0;         // after the edit
+        std::optional<std::size_t> cut;  // the cut whose front has already followed
+        bool history_followed = false;   // true if the snap history has already followed
     };
 
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
-    /// The other cuts in progress: fronts that an edit by `worker` may touch.
+    /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     std::vector<SuspendedCut> suspended_cuts(std::optional<std::size_t> worker);
     TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) {
         boxes_.refresh(mesh, positions);

@@ -32,7 +32,7 @@ struct CheckpointName {
     std::uint64_t step;
 
     std::string text() const {
-        constexpr std::size_t num_digits = 12;  // at least
+        constexpr std::size_t num_digits = 12;  // minimum
         std::string digits = std::to_string(step);
         digits.insert(0, num_digits - std::min(num_digits, digits.size()), '0');
         return std::string(prefix_of(kind)) + digits + std::string(suffix);
@@ -44,7 +44,7 @@ struct CheckpointFile {
     CheckpointName name;
 };
 
-/// What the name of the file says, if it is that of a checkpoint.
+/// Parses the name of a file. Returns nothing if it is not the name of a checkpoint.
 std::optional<CheckpointName> checkpoint_name(const std::string& text) {
     for (const auto kind : {CheckpointKind::regular, CheckpointKind::of_a_stop}) {
         std::string_view digits = text;
@@ -57,7 +57,7 @@ std::optional<CheckpointName> checkpoint_name(const std::string& text) {
     return std::nullopt;
 }
 
-/// In the order of their steps.
+/// Returns the checkpoints in the order of their steps.
 std::vector<CheckpointFile> checkpoints(const fs::path& folder) {
     std::vector<CheckpointFile> found;
     std::error_code error;
@@ -76,7 +76,7 @@ void remove_checkpoints_if(const fs::path& folder, const Condition& condition) {
         if (condition(name)) io::remove_output_file(path);
 }
 
-/// "KEY was A and is B" of the first few values that are not the same.
+/// Returns "KEY was A and is B" for the first three values that differ.
 std::string differences(const std::vector<std::pair<std::string, std::string>>& before,
                         const std::vector<std::pair<std::string, std::string>>& now) {
     constexpr std::size_t most_named = 3;
@@ -127,7 +127,7 @@ void remove_checkpoints(const fs::path& folder) {
 
 void tidy_checkpoints(const fs::path& folder, std::uint64_t step) {
     io::remove_unfinished_files(folder_of_checkpoints(folder));
-    std::size_t num_regular = 0;  // from here on
+    std::size_t num_regular = 0;  // that are left
     for (const auto& [path, name] : checkpoints(folder))
         if (name.kind == CheckpointKind::regular && name.step <= step) ++num_regular;
     constexpr std::size_t num_kept = 2;
@@ -224,7 +224,7 @@ void Checkpoint::restore(Simulation& simulation) const {
     });
 }
 
-// The checksum is right: so it was forged, or has been renamed.
+// The checksum is correct, so that a fault means a forged or renamed file.
 void Checkpoint::name_location(const std::function<void()>& read) const {
     try {
         read();

@@ -1,4 +1,4 @@
-// Moments of a run from which it can be resumed: FOLDER/checkpoints.
+// Checkpoints of a run, from which it can be resumed: files in FOLDER/checkpoints.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -16,29 +16,33 @@
 
 namespace incise::runner {
 
-/// What a run has written when a checkpoint is taken, and where it goes on writing.
+/// What a run has written to its files when a checkpoint is taken.
 struct Written {
     io::BytesWritten history, edits;
     std::vector<io::FrameWritten> frames;
-    std::vector<double> last_row;  ///< of the history
+    std::vector<double> last_row;  ///< of history.csv
     static void archive(auto& ar, auto& self) {
         ar(self.history, self.edits, self.frames, self.last_row);
     }
 };
 
-/// A run that was stopped leaves those of its rhythm and one of the moment of the stop, which goes
-/// when the run has gone on: in the end there is what a run without the stop leaves.
+/// The kind of a checkpoint. A regular one is taken at the checkpoint interval. One of a stop is
+/// taken when a signal stops the run. It is removed when a later checkpoint is written or the run
+/// ends, so that a resumed run leaves the same files as a run without the stop.
 enum class CheckpointKind { regular, of_a_stop };
 
-/// A simulation at one moment, which another thread can write while it goes on; its scenario, which
-/// does not change, must outlive it.
+/// A copy of the state of a simulation at one time.
+/// @thread  another thread can write the copy while the simulation continues
+/// @lifetime  the simulation, which owns the scenario, must outlive the copy
 class SavedMoment {
   public:
-    /// Between two steps. Cost: see Simulation::save.
+    /// Copies the state. Cost: see Simulation::save().
+    /// @pre  the simulation is between two steps
     explicit SavedMoment(const Simulation& simulation);
 
-    /// Writes the checkpoint, which is whole or not there (io/files/checked_file.h), and tidies up.
-    /// Everything that `written` speaks of must be on the disk. Throws OutputError.
+    /// Writes the checkpoint completely or not at all (io/files/checked_file.h), then calls
+    /// tidy_checkpoints(). Throws OutputError.
+    /// @pre  all bytes and frames that `written` lists are on the disk
     void write(const std::filesystem::path& folder, const Written& written,
                CheckpointKind kind) const;
 
@@ -48,29 +52,33 @@ class SavedMoment {
     ArchiveWriter state_;
 };
 
-/// Throws OutputError.
+/// Removes all checkpoints of a run. Throws OutputError.
 void remove_checkpoints(const std::filesystem::path& folder);
-/// For a run that has a whole checkpoint of this step: it stays, and the last two regular ones up
-/// to then. Those of later steps are damaged, or will be written again. Throws OutputError.
+/// Removes the checkpoints that are no longer needed. The last two regular ones up to `step` stay,
+/// and one of a stop at `step`. Checkpoints of later steps are removed: they are damaged, or the
+/// run will write them again. Throws OutputError.
+/// @pre  there is an undamaged checkpoint of `step`
 void tidy_checkpoints(const std::filesystem::path& folder, std::uint64_t step);
-/// For a run that has ended. Throws OutputError.
+/// Removes the checkpoints of stops, at the end of a run. Throws OutputError.
 void remove_checkpoints_of_stops(const std::filesystem::path& folder);
 
-/// A checkpoint that has been read: whole, and of this version of the program.
+/// A checkpoint that was read from its file. It is undamaged, and this version of the program has
+/// written it.
 class Checkpoint {
   public:
-    /// The newest of the run in `folder` that is whole; for each that is not, and is newer, a
-    /// warning. Changes nothing. Throws InputError if there is none, if a folder is in the location
-    /// of one, or if another version of the program, which might not go on to the same bits, has
-    /// written it.
+    /// Returns the newest undamaged checkpoint of the run in `folder`. Adds a warning for each
+    /// newer one that is damaged. Changes no files. Throws InputError if there is none, or if a
+    /// folder has the name of a checkpoint. Throws InputError too if another version of the program
+    /// has written it, because a resumed run might then differ in its bits.
     static Checkpoint newest(const std::filesystem::path& folder,
                              std::vector<std::string>& warnings);
 
-    /// Throws InputError, naming what differs, if the scenario is not the one of the run.
+    /// Throws InputError if the scenario is not that of the run. The message lists the differences.
     void require_same(const scenario::Scenario& scenario) const;
-    /// Takes a simulation of that scenario, just built, to the moment of the checkpoint.
-    /// Throws InputError, naming file, fault and remedy, if its body began as another, or if what
-    /// is in it is not of this run; the simulation is of no use then.
+    /// Restores the state of the checkpoint.
+    /// Throws InputError if the scenario, the body at the start or the data are not those of the
+    /// run. The message has file, problem and remedy. The simulation is then unusable.
+    /// @pre  the simulation has not made a step
     void restore(Simulation& simulation) const;
 
     const Written& written() const { return written_; }

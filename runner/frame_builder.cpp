@@ -9,7 +9,8 @@ namespace incise::runner {
 
 namespace {
 
-/// One value a row, from a function of the row that returns a vector or a number.
+/// Returns a field with one value for each row. `value` is a function that returns a vector or a
+/// number for a row.
 template <class Number, class Row, class Value>
 io::Field field(std::string name, int components, const std::vector<Row>& rows, Value value) {
     std::vector<Number> values;

@@ -1,4 +1,4 @@
-// The body as a frame for viewers.
+// Builds frames for viewers from the state of the body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,17 +13,24 @@
 
 namespace incise::runner {
 
-/// Points at their current positions; always rest_position, node_id, element_id and region, the
-/// direction of the fibres at rest if a material has any, and the fields asked for. Ids are labels:
-/// the numbers of the source, later ones for later nodes.
-/// In two parts: the first copies what the model has, which takes little; the second computes what
-/// elements do, on any thread, while the model goes on.
+/// A builder of one frame. The points of the frame are the current positions. It has the fields
+/// rest_position, node_id, element_id and region, and the requested fields. If a material has
+/// fibres, it has their directions at rest. node_id and element_id are labels: numbers in the
+/// source, and ids for nodes and elements that cuts have added.
+///
+/// The constructor copies the state of the model, which is fast. finish() then computes the fields
+/// of elements.
+/// @thread  finish() may run on any thread while the model changes. The object must be created and
+///          destroyed on the thread of the model, as physics::ElementSnapshot.
 class FrameBuilder {
   public:
-    /// As physics::ElementSnapshot is destroyed on the thread of the model.
+    /// @param model   the body
+    /// @param time    time of the frame, s
+    /// @param fields  the requested fields
     FrameBuilder(const physics::Model& model, double time, std::span<const scenario::Field> fields);
 
-    /// Hands the frame over: once. Cost: O(#nodes + #elements), like that of the first part.
+    /// Returns the frame. Cost: O(#nodes + #elements), as the constructor.
+    /// @pre  finish() was not called before
     io::Frame finish();
 
   private:
@@ -31,11 +38,11 @@ class FrameBuilder {
 
     std::vector<scenario::Field> fields_;
     std::vector<ElementId> elements_;                   // by row
-    std::optional<physics::ElementSnapshot> snapshot_;  // if a field asks for it
+    std::optional<physics::ElementSnapshot> snapshot_;  // if a field needs it
     io::Frame frame_;
 };
 
-/// Both at once.
+/// Builds a frame in one call.
 inline io::Frame build_frame(const physics::Model& model, double time,
                              std::span<const scenario::Field> fields) {
     return FrameBuilder(model, time, fields).finish();

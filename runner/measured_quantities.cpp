@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// As many names as values: one array cannot grow without the other.
+/// Appends quantities. The common `size` makes the compiler check that the arrays fit each other.
 template <class Name, std::size_t size>
 void append(std::vector<std::pair<std::string, double>>& quantities,
             const std::array<Name, size>& names, const std::array<double, size>& values) {
@@ -92,14 +92,14 @@ std::vector<std::string> failed_expectations(const scenario::Scenario& scenario,
         const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) {
             return q.first == expected.quantity;
         });
-        if (found == quantities.end())  // the scenario reader knows them all
+        if (found == quantities.end())  // the scenario reader has checked the names
             throw std::logic_error("no quantity '" + expected.quantity + "'");
         const double value = found->second;
         const auto fail = [&](const char* side, double limit) {
             failures.push_back("expected " + expected.quantity + " " + side + " " +
                                io::format_number(limit) + ", it is " + io::format_number(value));
         };
-        // Written so that a value that is no number fails.
+        // With `!`, a value that is not a number fails.
         if (expected.min && !(value >= *expected.min)) fail("of at least", *expected.min);
         if (expected.max && !(value <= *expected.max)) fail("of at most", *expected.max);
     }
@@ -142,7 +142,7 @@ std::optional<Quantities> finished_quantities(const std::filesystem::path& folde
     if (text("status") != "finished" || text("scenario_hash") != scenario.hash) return std::nullopt;
     Quantities quantities;
     for (const auto& [name, value] : summary.items())
-        // What is not finite is null in JSON.
+        // JSON has null for values that are not finite.
         if (value.is_number() || value.is_null())
             quantities.emplace_back(name, value.is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                           : value.get<double>());

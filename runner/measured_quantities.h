@@ -1,5 +1,4 @@
-// Values of the quantities that quantities.h names: of a simulation, of a run that is finished; and
-// what a scenario expects of them.
+// Values of the quantities in scenario/quantities.h, and the check of expectations against them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,27 +13,29 @@
 
 namespace incise::runner {
 
-/// Values by their names.
+/// Names and values of quantities.
 using Quantities = std::vector<std::pair<std::string, double>>;
 
-/// The quantities of a moment by their names in history.csv, in its order.
-/// @param body_totals  of this moment
+/// Returns the values of a row of history.csv, with the names of its columns.
+/// @param simulation   the simulation
+/// @param body_totals  the body totals at the time of the row
 Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals);
 inline Quantities history_row(const Simulation& simulation) {
     return history_row(simulation, simulation.ledger().body_totals());
 }
 
-/// The quantities of summary.json that an [expect] can name: the last history row and totals over
-/// the run.
+/// Returns the quantities of summary.json that [expect] can name: the present history row, and
+/// totals over the run.
 Quantities summary_quantities(const Simulation& simulation);
 
-/// What is not as the scenario's [expect] says; each a sentence. Its quantities must exist, which
-/// the scenario reader sees to.
+/// Returns a sentence for each expectation of the scenario that is not met.
+/// @pre  `quantities` has all quantities of [expect], which the scenario reader checks
 std::vector<std::string> failed_expectations(const scenario::Scenario& scenario,
                                              const Quantities& quantities);
 
-/// The quantities of summary.json, if the run of this scenario in `folder` is finished.
-/// Throws InputError, naming file, entry and remedy, if there is a summary that no run has written.
+/// Returns the quantities of summary.json if the run of this scenario in `folder` is finished,
+/// otherwise nothing. Throws InputError with file, entry and remedy if summary.json is not the
+/// summary of a run.
 std::optional<Quantities> finished_quantities(const std::filesystem::path& folder,
                                               const scenario::Scenario& scenario);
 

@@ -54,17 +54,17 @@ Json to_json(const sim::EditRecord& edit) {
             {"after", to_json(edit.after)}};
 }
 
-/// What is no UTF-8 in it, as names in files can be, is replaced.
+/// Returns JSON as text. Bytes that are not UTF-8, for example in file names, are replaced.
 std::string text_of(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string line_of(const sim::EditRecord& edit) {
-    // A name that is no text can only come from a checkpoint that somebody has made up.
+    // Names are UTF-8, except in a forged checkpoint.
     return text_of(to_json(edit), -1);
 }
 
-/// Throws InputError unless the files of the run are those that it had written.
+/// Throws InputError unless the files of the run begin with what the run had written.
 void require_files(const std::filesystem::path& folder, const Simulation& simulation,
                    const Written& written) {
     const auto edits = folder / "edits.jsonl";
@@ -79,7 +79,7 @@ void require_files(const std::filesystem::path& folder, const Simulation& simula
                          "--resume");
 }
 
-/// The folder, prepared for a new run or to go on with one.
+/// Prepares the folder for a new run, or, if `written` is not null, for resuming a run. Returns it.
 io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
                           const Written* written) {
     if (written) {
@@ -88,7 +88,7 @@ io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
     } else {
         remove_checkpoints(folder.path());
     }
-    // A summary speaks of a whole run: that of a former one must not outlive its frames.
+    // A summary belongs to a complete run. That of a former run must not outlive its frames.
     io::remove_output_file(folder.path() / "summary.json");
     return folder;
 }
@@ -129,7 +129,7 @@ void RunWriter::append_history(const Simulation& simulation, const sim::BodyTota
     history_.append(line);
 }
 
-// A run without frames still tells how it began and ended.
+// In a run without frames, the history still has rows for the start and the end.
 void RunWriter::on_start(const Simulation& simulation) {
     if (simulation.scenario().output.interval == 0.0)
         append_history(simulation, simulation.ledger().body_totals());
@@ -155,27 +155,27 @@ void RunWriter::on_frame(const Simulation& simulation) {
 
 void RunWriter::on_step(const Simulation&) {
     if (is_frame_built_) drop_builder();
-    // What has failed is told at once, and what was written lets go of its memory.
+    // Reports a failed job early, and releases the memory of a finished one.
     constexpr std::chrono::seconds no_time(0);
     if (pending_.valid() && pending_.wait_for(no_time) == std::future_status::ready) wait();
 }
 
-/// On the simulation's thread, as physics::ElementSnapshot is; as soon as it can be, since edits
-/// copy the elements that it shares.
+/// Destroys the builder of the frame, on the thread of the simulation as physics::ElementSnapshot
+/// requires. It is called early, because edits must copy the elements that the snapshot shares.
 void RunWriter::drop_builder() {
     frame_builder_.reset();
     is_frame_built_ = false;
 }
 
-/// Begins when the job before is done, on whose failure it is left out.
+/// Runs the job on another thread after the previous job. If that failed, the job is not run.
 template <class Job>
 void RunWriter::write_later(Job job) {
     const auto after_the_last = [before = std::exchange(pending_, {}), job = std::move(job)] {
         if (before.valid()) before.get();
         job();
     };
-    // By this policy it is done by whoever waits for it if no thread can be had. Handed over as a
-    // copy, since the standard library would move it to the thread and have none left for that.
+    // If no thread can be created, `deferred` lets the waiting thread run the job. The job is
+    // passed as a copy: the standard library moves its argument to the thread, even if that fails.
     pending_ = std::async(std::launch::async | std::launch::deferred, after_the_last);
 }
 
@@ -198,11 +198,11 @@ void RunWriter::take_checkpoint(const Simulation& simulation, CheckpointKind kin
 
 void RunWriter::begin_checkpoint(const Simulation& simulation, CheckpointKind kind) {
     if (last_checkpoint_ == simulation.num_steps()) return;
-    if (is_checkpoint_pending_) wait();  // or they could pile up
+    if (is_checkpoint_pending_) wait();  // otherwise waiting checkpoints could accumulate
     Written written{history_.written(), edits_.written(), {}, {}};
     for (const auto& [name, value] : last_row_) written.last_row.push_back(value);
     const auto moment = std::make_shared<const SavedMoment>(simulation);
-    // What it speaks of goes to the disk before it; the frames of before are there by then.
+    // What the checkpoint lists must be on the disk first. The jobs before have written the frames.
     write_later([this, kind, moment, written] {
         history_.sync();
         edits_.sync();
@@ -219,18 +219,19 @@ bool RunWriter::has_checkpoint() {
     try {
         wait();
     } catch (...) {
-        // Who asks has an error to tell already.
+        // The caller already has an error to report.
     }
     return has_checkpoint_;
 }
 
-/// The next is due after the interval that has begun, wherever in it this one was taken.
+/// Sets the time of the next checkpoint: the end of the present interval, even if the last
+/// checkpoint was taken within it.
 void RunWriter::note_checkpoint(const Simulation& simulation) {
     last_checkpoint_ = simulation.num_steps();
     const double interval = simulation.scenario().output.checkpoint_interval;
     if (interval == 0.0) return;
-    // By the products that on_pause() compares with, or the quotient's rounding could let a resumed
-    // run leave out a checkpoint.
+    // Compares the same products as on_pause(). With the rounded quotient alone, a resumed run
+    // could omit a checkpoint.
     next_checkpoint_ = std::floor(simulation.time() / interval);
     for (int i = 0; i < 2 && next_checkpoint_ * interval <= simulation.time(); ++i)
         next_checkpoint_ += 1.0;
@@ -238,7 +239,7 @@ void RunWriter::note_checkpoint(const Simulation& simulation) {
 
 void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     wait();
-    // The state that a run failed in is not one to keep: the last row written stands.
+    // The state of a failed run is not valid. The summary then has the last row of the history.
     const bool has_failed = outcome.status == "failed";
     if (!has_failed && simulation.scenario().output.interval == 0.0)
         append_history(simulation, simulation.ledger().body_totals());
@@ -269,7 +270,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     }
     summary["warnings"] = simulation.warnings();
     io::write_file(folder() / "summary.json", text_of(summary, 2) + "\n");
-    // Last, as what a kill just before would have to go on from.
+    // Last, so that a process that is killed before can be resumed.
     if (outcome.status != "interrupted") remove_checkpoints_of_stops(folder());
 }
 

@@ -19,26 +19,33 @@
 
 namespace incise::runner {
 
-/// How a run ended.
+/// The end of a run.
 struct Outcome {
     std::string status = "finished";  ///< or "failed", "interrupted"
-    std::string message;              ///< what went wrong
+    std::string message;              ///< the error, if any
     double wall_time = 0.0;           ///< s
 };
 
-/// Frames and checkpoints are written on a thread of their own while the simulation goes on, in
-/// their order; the next frame waits for those before it, as does the end. Everything else is on
-/// disk, readable, when a function returns; a kill at any moment leaves whole files and whole
-/// lines, and a checkpoint to resume from. All functions but has_checkpoint() throw OutputError,
-/// that of a frame or a checkpoint the first that is called when it is known.
+/// An observer that writes the files of a run.
+///
+/// Another thread writes frames and checkpoints, in order, while the simulation continues. Before a
+/// new frame and at the end, the writer waits for them. All other output is in its file when a
+/// function returns. If the process is killed, files and lines are complete, and the run can be
+/// resumed from its last checkpoint.
+///
+/// All functions except has_checkpoint() throw OutputError. An error of a frame or a checkpoint is
+/// thrown by the next function that finds it.
 class RunWriter : public Observer {
   public:
-    /// Makes the folder; a former run there is replaced. InputError: see io::OutputFolder.
+    /// Creates the folder. The files of a former run in it are replaced. Throws InputError as
+    /// io::OutputFolder.
     RunWriter(const Simulation& simulation, const std::filesystem::path& folder)
         : RunWriter(simulation, io::OutputFolder(folder), nullptr) {}
-    /// Goes on where a checkpoint was taken: what was written after it is removed. The simulation
-    /// is restored from it already. Throws InputError, and has changed nothing, if files of before
-    /// are no longer what they were.
+    /// Continues a run from a checkpoint. What was written after the checkpoint is removed. Throws
+    /// InputError, and changes nothing, if the files of the run have been changed since.
+    /// @param simulation  a simulation that was restored from the checkpoint
+    /// @param folder      the folder of the run
+    /// @param written     see Checkpoint::written()
     RunWriter(const Simulation& simulation, io::OutputFolder folder, const Written& written)
         : RunWriter(simulation, std::move(folder), &written) {}
 
@@ -46,17 +53,19 @@ class RunWriter : public Observer {
     void on_edit(const Simulation& simulation, const sim::EditRecord& edit) override;
     void on_frame(const Simulation& simulation) override;
     void on_step(const Simulation& simulation) override;
-    void on_pause(const Simulation& simulation) override;  ///< begins a checkpoint if one is due
-    /// Unless one has been taken after this step. It is on the disk when this returns.
+    void on_pause(const Simulation& simulation) override;  ///< starts a checkpoint if due
+    /// Takes a checkpoint, unless there is one of this step. It is on the disk on return.
     void take_checkpoint(const Simulation& simulation, CheckpointKind kind);
-    /// Whether there is one to go on from when a run has failed, after all that is being written.
+    /// Waits for the writing thread, then returns true if the run has a checkpoint to resume from.
+    /// Does not throw.
     bool has_checkpoint();
+    /// Writes the end of the run and summary.json.
     void finish(const Simulation& simulation, const Outcome& outcome);
 
     std::filesystem::path pvd_path() const { return series_.pvd_path(); }
-    /// The run's index, or its folder if it has no frames.
+    /// Returns the path of the .pvd index, or of the folder if the run has no frames.
     std::filesystem::path main_result() const { return num_frames_ > 0 ? pvd_path() : folder(); }
-    /// With the one that is being written.
+    /// Returns the number of frames, with the one that is being written.
     std::size_t num_frames() const { return num_frames_; }
 
   private:
@@ -74,17 +83,17 @@ class RunWriter : public Observer {
     io::OutputFolder folder_;
     io::Series series_;
     io::LineFile history_, edits_;
-    Quantities last_row_;  // of the history
-    double first_time_;    // s, where this process took up the run, which its wall time is of
+    Quantities last_row_;  // of history.csv
+    double first_time_;    // s, at which this process started or resumed the run
     std::uint64_t first_step_;
-    double next_checkpoint_;                        // in intervals
-    std::optional<std::uint64_t> last_checkpoint_;  // its step
+    double next_checkpoint_;                        // in checkpoint intervals
+    std::optional<std::uint64_t> last_checkpoint_;  // step of the last one
     std::size_t num_frames_;
-    bool has_checkpoint_ = false;                // for whoever has waited
-    std::optional<FrameBuilder> frame_builder_;  // of the frame that is being built
+    bool has_checkpoint_ = false;                // read only after wait()
+    std::optional<FrameBuilder> frame_builder_;  // of the frame in progress
     std::atomic<bool> is_frame_built_ = false;
     bool is_checkpoint_pending_ = false;
-    std::shared_future<void> pending_;  // the last job; the last member: its thread uses others
+    std::shared_future<void> pending_;  // the last job; last member, as its thread uses the others
 };
 
 }  // namespace incise::runner

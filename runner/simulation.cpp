@@ -18,7 +18,7 @@ namespace incise::runner {
 
 namespace {
 
-/// Of what the body is made of at the start, and of the files of tools.
+/// Returns a checksum of mesh and fibres at the start, and of the files of surfaces.
 std::uint64_t fingerprint_of(const physics::Model& model,
                              const std::vector<scenario::ToolSpec>& tools) {
     const topology::Mesh& mesh = model.mesh();
@@ -54,7 +54,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body)
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
         paths_.push_back(std::move(tool.path));
     }
-    step_limit();  // a fixed step that is too large is refused before anything is written
+    step_limit();  // refuses a fixed step that is too large before anything is written
 }
 
 void Simulation::start() {
@@ -87,7 +87,7 @@ void Simulation::step() {
     tell_pause();
 }
 
-/// Brings in the tools that act in the step, and takes out those whose path ends in it.
+/// Places the tools that act in the step, and withdraws those whose path ends in it.
 void Simulation::move_tools(Interval step) {
     for (std::size_t i = 0; i < paths_.size(); ++i) {
         const scenario::ToolPath& path = paths_[i];
@@ -119,14 +119,16 @@ void Simulation::restore(ArchiveReader& ar) {
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
     if (world_.num_tools() != paths_.size()) throw InputError("its tools are not those of the run");
-    if (edits_.size() != ledger().num_edits()) throw InputError("its ledger is not that of its edits");
+    if (edits_.size() != ledger().num_edits())
+        throw InputError("its ledger is not that of its edits");
     for (const sim::EditRecord& edit : edits_) warn_of_short_steps(edit);
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
 }
 
-/// Of edits after which steps are ten times as short as at the start, or as at the warning before.
+/// Warns if the stable step after the edit is below a tenth of that at the start or at the last
+/// such warning.
 void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
     constexpr double much_shorter = 0.1;
     const scenario::DynamicsSpec& dynamics = scenario_.dynamics;
@@ -152,7 +154,8 @@ void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
 }
 
 void Simulation::warn_of_lost_elements() {
-    // Tissue keeps its volume: with less it has been crushed, whatever the law thinks of it.
+    // Tissue keeps its volume. An element below this volume ratio is crushed, even if its law has
+    // finite energy there.
     constexpr double least_volume_ratio = 0.01;
     std::size_t num_crushed = 0;
     if (model().min_volume_ratio() < least_volume_ratio)
@@ -187,11 +190,11 @@ double Simulation::time_step() const {
     return to - from;
 }
 
-// Frames fall on exact multiples of their interval, and the run ends exactly at its end: the way
-// to the next of these moments is divided evenly in steps below the limit.
+// Frames are at exact multiples of their interval, and the run ends exactly at its end time. The
+// time to the next of these is divided evenly into steps below the limit.
 Simulation::Interval Simulation::next_step() const {
-    // A hair's breadth over a whole number of steps is rounding, not another step; so is one
-    // between the last frame and the end, as after 3 * 0.3 < 0.9.
+    // A tiny excess over a whole number of steps is due to rounding and needs no further step. The
+    // same holds for a tiny time between the last frame and the end, as 3 * 0.3 < 0.9.
     constexpr double rounding = 1e-9;
     const double interval = scenario_.output.interval;
     double stop = scenario_.dynamics.end_time;

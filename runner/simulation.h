@@ -1,4 +1,4 @@
-// The run of a scenario: a script that drives a world.
+// The run of a scenario: it steps a world and moves its tools as the scenario says.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -21,49 +21,57 @@ namespace incise::runner {
 
 class Simulation;
 
-/// Watches a run. All functions may throw, which ends the run.
+/// An interface for classes that observe a run. An exception from any function ends the run.
 class Observer {
   public:
     virtual ~Observer() = default;
-    virtual void on_start(const Simulation&) {}  ///< at time 0, before the first frame
-    /// After the step in which the edit was made, in the order of the edits.
+    virtual void on_start(const Simulation&) {}  ///< called at time 0, before the first frame
+    /// Called for each edit after the step that made it, in the order of the edits.
     virtual void on_edit(const Simulation&, const sim::EditRecord&) {}
-    virtual void on_frame(const Simulation&) {}  ///< when a frame is due, the first at time 0
-    virtual void on_step(const Simulation&) {}
-    /// Between two steps: all of the one before, its frame too, is done.
+    virtual void on_frame(const Simulation&) {}  ///< called when a frame is due, first at time 0
+    virtual void on_step(const Simulation&) {}   ///< called after each step
+    /// Called between two steps, after on_frame(). The step is then complete.
     virtual void on_pause(const Simulation&) {}
 };
 
-/// Plays a scenario: chooses the steps, moves the tools along their paths, and tells the observers.
+/// The run of a scenario. It chooses the steps, moves the tools along their paths and calls the
+/// observers.
 class Simulation {
   public:
-    /// Builds what the scenario describes, at time 0.
-    /// Throws as build_body, World and step_limit: BodyError with all that is at fault;
-    /// PhysicsError if that is nothing but a fixed step above the bound.
+    /// Builds the world of the scenario at time 0.
+    /// Throws as build_body(), World and step_limit(): BodyError with all problems, or PhysicsError
+    /// if the only problem is a fixed step above the stable step.
     explicit Simulation(const scenario::Scenario& scenario);
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// Observers must outlive the simulation's last step.
+    /// Adds an observer.
+    /// @lifetime  the observer must live until the last step
     void add_observer(Observer& observer) { observers_.push_back(&observer); }
 
-    /// See Model::set_num_threads.
+    /// Sets the number of threads; see Model::set_num_threads().
     void set_num_threads(int n) { world_.set_num_threads(n); }
 
-    /// One time step: World::step_to has its phases.
+    /// Makes one time step, then calls the observers.
+    /// Throws PhysicsError if the motion is lost, and InputError if a tool meets something that it
+    /// cannot cut. The edits of the failed step are then passed to the observers first.
     void step();
     bool is_finished() const;
-    /// Tells the observers of the state at time 0, before the first step.
+    /// Calls the observers for the state at time 0.
+    /// @pre  no step was made
     void start();
 
-    /// Everything that a simulation of the same scenario needs to go on from here to the same bits,
-    /// called between two steps. Cost: that of World::save.
+    /// Saves the state. A simulation of the same scenario that restores it gives the same results
+    /// bit for bit. Cost: as World::save().
+    /// @pre  the simulation is between two steps
     void save(ArchiveWriter& ar) const;
-    /// Goes on from what another simulation of this scenario saved; on one that has not moved yet.
-    /// Throws InputError, saying what is wrong, for data that are not of this body or are damaged;
-    /// the simulation is of no use then. Cost: that of World::restore.
+    /// Restores a state that a simulation of the same scenario has saved.
+    /// Throws InputError if the data are damaged or not of this body. The simulation is then
+    /// unusable. Cost: as World::restore().
+    /// @pre  no step was made
     void restore(ArchiveReader& ar);
-    /// Equal for simulations that begin with the same body: mesh, fibres, surfaces that cut.
+    /// Returns a checksum of the body at the start: mesh, fibres, and the files of surfaces of
+    /// cuts.
     std::uint64_t fingerprint() const { return fingerprint_; }
 
     const scenario::Scenario& scenario() const { return scenario_; }
@@ -71,13 +79,13 @@ class Simulation {
     const topology::Mesh& mesh() const { return world_.mesh(); }
     const physics::Model& model() const { return world_.model(); }
     const sim::Ledger& ledger() const { return world_.ledger(); }
-    /// Of all edits so far.
+    /// Returns the records of all edits so far.
     const std::vector<sim::EditRecord>& edits() const { return edits_; }
     double time() const { return world_.time(); }  ///< s
-    double time_step() const;                      ///< s, of the last step, or of the first
+    double time_step() const;  ///< s, of the last step; before it, of the first step
     std::uint64_t num_steps() const { return world_.num_steps(); }
     std::uint64_t num_frames() const { return num_frames_; }
-    /// Those of before the start, and what the run has added up to now.
+    /// Returns the warnings of the body, then those that the run has added so far.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
@@ -98,12 +106,12 @@ class Simulation {
     scenario::Scenario scenario_;
     std::vector<std::string> warnings_;
     sim::World world_;
-    std::vector<scenario::ToolPath> paths_;  // of the world's tools
+    std::vector<scenario::ToolPath> paths_;  // by the number of the tool in the world
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;
     double last_step_ = 0.0;
-    double warned_step_;  // s, the stable step of the last warning of it, or of the start
+    double warned_step_;  // s, stable step at the last warning about it, or at the start
     std::uint64_t num_frames_ = 0;
 };
 

@@ -50,7 +50,8 @@ physics::TimeCurve<Value> curve(const std::vector<TimeKey<Value>>& keys) {
     return physics::TimeCurve<Value>(std::move(pairs));
 }
 
-/// What `select` finds, at least one of `things`. Errors begin with `what`, the owner of `where`.
+/// Returns what `select` finds, at least one of `things`. Messages of errors begin with `what`, the
+/// owner of `where`.
 template <class Id>
 std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const sim::Selection&),
                        const topology::Mesh& mesh, const sim::Selection& where,
@@ -100,8 +101,8 @@ physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
     return load;
 }
 
-/// Of unit length; one that is so to rounding keeps its bits, so that a frame read back as a mesh
-/// goes on alike. Zero if it has no direction.
+/// Returns the vector scaled to unit length, or zero if it has no direction. A vector of unit
+/// length to rounding keeps its bits, so that a frame read as a mesh gives the same results.
 Vec3 unit(const Vec3& v) {
     constexpr double rounding = 1e-15;
     const double norm = v.stableNorm();
@@ -109,7 +110,7 @@ Vec3 unit(const Vec3& v) {
     return std::abs(norm - 1.0) <= rounding ? v : Vec3(v / norm);
 }
 
-/// Directions by element id; none if no material has fibres.
+/// Returns the directions of fibres by element id. Empty if no material has fibres.
 std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
                                const physics::MaterialTable& table, const topology::Mesh& mesh,
                                const CellVectors& cell_vectors) {
@@ -148,7 +149,7 @@ std::set<int> regions_of(const topology::Mesh& mesh) {
     return regions;
 }
 
-/// The first few by number.
+/// Lists the regions as text, at most 20 by number.
 std::string list(const std::set<int>& regions) {
     constexpr std::size_t max_listed = 20;
     std::string text;
@@ -203,7 +204,8 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
 
 namespace {
 
-/// The first few of them: many constraints may hold the same nodes.
+/// Reports the conflicts, at most ten in full, because many constraints can prescribe the same
+/// nodes.
 void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
                     std::span<const physics::Constraint> supports, BodyProblems& problems) {
     constexpr std::size_t max_told = 10;
@@ -222,7 +224,8 @@ void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
     }
 }
 
-/// Selections of no region of the mesh at all are errors, of which more is told.
+/// Warns of selected regions that the mesh does not have. If it has none of the selected regions,
+/// the empty selection is an error that is reported elsewhere.
 void warn_of_missing_regions(const Scenario& scenario, const topology::Mesh& mesh,
                              std::vector<std::string>& warnings) {
     const std::set<int> present = regions_of(mesh);
@@ -267,7 +270,7 @@ physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
 
 namespace {
 
-/// The material that the region has or would have; without any, of none.
+/// Returns the location of the material of a region, or an empty text if there is none.
 std::string location_of_material(const Scenario& scenario, int region) {
     const MaterialSpec* found = nullptr;
     for (const MaterialSpec& spec : scenario.materials) {
@@ -278,7 +281,8 @@ std::string location_of_material(const Scenario& scenario, int region) {
     return found ? found->location : "";
 }
 
-/// Nearly always a slip in a coordinate or a unit, which else only the finished run would show.
+/// Returns the warning about a tool that touches nothing at rest. The usual cause is a wrong
+/// coordinate or unit, which would otherwise be noticed only after the run.
 std::string out_of_reach(const ScriptedTool& tool, const Box& body) {
     const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
     std::ostringstream text;
@@ -288,13 +292,13 @@ std::string out_of_reach(const ScriptedTool& tool, const Box& body) {
     return text.str();
 }
 
-/// @param mesh  without one, only what needs none is checked: the files of surfaces
+/// Builds the tools. If `mesh` is null, only the files of surfaces are checked.
 std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::Mesh* mesh,
                                       BodyProblems& problems, std::vector<std::string>& warnings) {
     Box body;
     if (mesh)
         for (const Vec3& x : mesh->rest_positions()) body.extend(x);
-    // An end that is not known yet hides nothing.
+    // If the end is not known, all keys are checked.
     const double end_time = scenario.dynamics.end_time > 0.0
                                 ? scenario.dynamics.end_time
                                 : std::numeric_limits<double>::infinity();
@@ -323,7 +327,7 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
     return tools;
 }
 
-/// What of a body can be built, and what is at fault with the rest.
+/// The parts of a body that can be built, and the problems of the others.
 struct Parts {
     std::optional<SourceMesh> source;
     std::optional<physics::MaterialTable> materials;
@@ -363,8 +367,8 @@ Parts build_parts(const Scenario& scenario) {
     return parts;
 }
 
-/// Notes what is at fault with the model and its step, so far as there can be one: neither depends
-/// on supports and loads.
+/// Adds the problems of the model and of the time step, if there are mesh and materials. Neither
+/// depends on constraints and loads.
 void check_model(const Scenario& scenario, Parts& parts) {
     if (!parts.source || !parts.materials) return;
     parts.problems.try_to("", [&] {

@@ -1,4 +1,4 @@
-// Builds what a scenario describes: the mesh, its materials, what holds and loads it.
+// Builds the body of a scenario: mesh, materials, constraints, loads and tools.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,49 +15,51 @@
 
 namespace incise::scenario {
 
-/// Which region has which material, which element fibres of which direction, and the precision of
-/// the forces. Warns of regions that the mesh does not have.
-/// Throws InputError for a region of the mesh without material, BodyError for an element whose
-/// material has fibres and whose vector in the file has no direction.
+/// Returns the materials, the material of each region, the direction of the fibres of each element,
+/// and the precision of the forces. Warns of regions that the mesh does not have.
+/// Throws InputError if a region of the mesh has no material. Throws BodyError if the material of
+/// an element has fibres and the vector of the element in the file has no direction.
 physics::MaterialTable build_materials(const Scenario& scenario, const topology::Mesh& mesh,
                                        const CellVectors& cell_vectors,
                                        std::vector<std::string>& warnings);
 
-/// Gravity, damping, supports and loads. Throws BodyError with all empty selections and supports
-/// that hold the same.
+/// Returns gravity, damping, constraints and loads. Throws BodyError with all empty selections, and
+/// with all constraints that prescribe the same component of a node.
 physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
                                                       const topology::Mesh& mesh);
 
-/// The model of it. Throws BodyError if a material does not suit its elements.
+/// Builds the model of the body. Throws BodyError if a material does not suit its elements.
 physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
                           physics::BoundaryConditions boundary_conditions);
 
-/// The world of it, without tools. Throws as make_model.
+/// Builds the world of the body, without tools. Throws as make_model().
 sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
                       physics::MaterialTable materials,
                       physics::BoundaryConditions boundary_conditions);
 
-/// What a scenario describes, at rest.
+/// The body of a scenario at rest, with the tools.
 struct Body {
     topology::Mesh mesh;
     physics::MaterialTable materials;
     physics::BoundaryConditions boundary_conditions;
     std::vector<ScriptedTool> tools;
-    std::vector<std::string> warnings;  ///< with the location or file in front
+    std::vector<std::string> warnings;  ///< each begins with its location or file
 };
 
-/// Throws BodyError with all that is at fault: mesh, materials, selections, tools, the time step;
-/// MemoryError if the mesh is a box that this machine cannot hold, and so do those below and above.
+/// Builds the body of a scenario. Throws BodyError with all problems of mesh, materials, selections
+/// and tools. If there are any, the model and the time step are checked too. Throws InputError if
+/// the scenario has no mesh or no material, MemoryError as build_mesh().
 Body build_body(const Scenario& scenario);
 
-/// What build_body refuses and warns of, a line each.
+/// The problems of a body, one a line.
 struct BodyFindings {
     std::vector<std::string> errors, warnings;
 };
 
-/// Finds also what make_model and step_limit refuse. Without mesh, materials or dynamics in the
-/// scenario (see ScenarioReport) what depends on these is left out.
+/// Returns what build_body(), make_model() and step_limit() refuse and warn of. If the scenario has
+/// no mesh, materials or dynamics (see ScenarioReport), what depends on these is not checked.
+/// Throws MemoryError as build_mesh().
 BodyFindings check_body(const Scenario& scenario);
 
 }  // namespace incise::scenario

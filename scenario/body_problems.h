@@ -1,4 +1,4 @@
-// What is at fault with the body that a scenario describes, collected so that all is told at once.
+// The problems of the body that a scenario describes, collected so that all are reported at once.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,26 +9,28 @@
 
 namespace incise::scenario {
 
-/// `prefix` before each line of the text, whose indents are left out.
+/// Returns the lines of the text without indentation, each with `prefix` before it.
 std::vector<std::string> prefixed_lines(const std::string& prefix, const std::string& text);
 
-/// The same as one text. Without prefix the text itself.
+/// Returns the text with "LOCATION: " before each line. Without location returns the text itself.
 std::string located(const std::string& location, const std::string& text);
 
-/// A line for each problem, complete in itself: "FILE:line:column: text".
+/// Problems of a body, one a line. Each line is complete in itself: "FILE:line:column: text".
 struct BodyError : InputError {
     using InputError::InputError;
-    /// @param location  "FILE:line:column", or empty for a scenario that comes from no file
+    /// @param location  "FILE:line:column", or empty for a scenario without file
+    /// @param text      the problems, one a line
     BodyError(const std::string& location, const std::string& text)
         : InputError(located(location, text)) {}
 
-    std::vector<std::string> warnings;  ///< what was found odd besides
+    std::vector<std::string> warnings;  ///< warnings found beside the problems
 };
 
+/// A collection of the problems of a body.
 class BodyProblems {
   public:
-    /// Returns build(). If it throws InputError, notes that what stands at `location` is at fault,
-    /// and returns an empty value; a BodyError and a PhysicsError know their own location.
+    /// Returns build(). If build() throws InputError, adds the problem with `location` and returns
+    /// an empty value. A BodyError or PhysicsError is added as it is: its text has the location.
     template <class Build>
     auto try_to(const std::string& location, Build build) -> decltype(build()) {
         try {
@@ -48,7 +50,7 @@ class BodyProblems {
     bool are_there() const { return !lines_.empty(); }
     const std::vector<std::string>& lines() const { return lines_; }
 
-    /// Throws BodyError if there are any.
+    /// Throws BodyError if there are problems.
     void throw_if_any(std::vector<std::string> warnings = {}) const;
 
   private:

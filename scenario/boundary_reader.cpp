@@ -1,4 +1,4 @@
-// The [[constraint]] and [[load]] sections, and the selections in them.
+// Reads the [[constraint]] and [[load]] sections of a scenario, and their selections.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 

@@ -9,7 +9,8 @@ namespace incise::scenario {
 
 namespace {
 
-/// Edits between two names; a swap of neighbours counts as one, capitals as small letters.
+/// Returns the edit distance of two names. A swap of neighbours counts as one edit; case is
+/// ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     const auto same = [](char x, char y) {
         const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };

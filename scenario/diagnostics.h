@@ -1,4 +1,4 @@
-// Problems found while reading a scenario: collected, so that all are told at once.
+// The problems of a scenario, collected during reading so that all are reported at once.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,35 +11,38 @@
 
 namespace incise::scenario {
 
+/// A collection of errors and warnings with their locations.
 class Diagnostics {
   public:
-    /// @param overrides  those of the command line, which messages about them quote; copied
+    /// @param file       name of the file, for messages
+    /// @param overrides  overrides of the command line, for messages
     Diagnostics(std::string file, std::span<const std::string> overrides)
         : file_(std::move(file)), overrides_(overrides.begin(), overrides.end()) {}
 
     void error(const SourceLocation& location, std::string text) {
         errors_.push_back({location, std::move(text), {}});
     }
-    /// "key 'PATH': TEXT"
+    /// Adds the error "key 'PATH': TEXT".
     void key_error(const SourceLocation& location, std::string_view path, std::string_view text);
-    /// The same of a key that is not known, and so says nothing of the rest: has_errors_at() does
-    /// not count it.
+    /// Adds the error "key 'PATH': TEXT" for an unknown key. has_errors_at() does not count it.
     void unknown_key_error(const SourceLocation& location, std::string_view path,
                            std::string_view text);
-    /// Tells nothing, but has_errors_at() counts it.
+    /// Adds an error that has_errors_at() counts but errors() does not list.
     void untold_error(std::string path) { untold_.push_back(std::move(path)); }
     void warning(const SourceLocation& location, std::string text) {
         warnings_.push_back({location, std::move(text), {}});
     }
 
-    /// "FILE:line:column", or "--set OVERRIDE".
+    /// Returns a location as "FILE:line:column" or "--set OVERRIDE".
     std::string text_of(const SourceLocation& location) const;
 
     bool has_errors() const { return !errors_.empty(); }
-    /// Whether the key of any error is `path` or below it, or is of an element of it.
+    /// True if an error is about the key `path`, about a key below it, or about one of its
+    /// elements.
     bool has_errors_at(std::string_view path) const;
 
-    /// In the order of the file, then of the overrides, each as "FILE:line:column: text".
+    /// Returns the errors as "FILE:line:column: text", in the order of the file, then in that of
+    /// the overrides.
     std::vector<std::string> errors() const { return formatted(errors_); }
     std::vector<std::string> warnings() const { return formatted(warnings_); }
 
@@ -47,7 +50,7 @@ class Diagnostics {
     struct Finding {
         SourceLocation location;
         std::string text;
-        std::string path;  // of the key, if it is about one
+        std::string path;  // of the key; empty if the finding is about no key
     };
     std::vector<std::string> formatted(std::vector<Finding> findings) const;
 
@@ -57,21 +60,22 @@ class Diagnostics {
     std::vector<std::string> untold_;
 };
 
-/// Whether the path of a key is `owner` or below it, or is of an element of it.
+/// True if `path` is `owner`, a key below it, or one of its elements.
 bool is_at_or_below(std::string_view path, std::string_view owner);
 
-/// The candidate that takes the fewest insertions, deletions, replacements and swaps of
-/// neighbours to make of `name`; the first of equals. Empty without candidates.
+/// Returns the candidate with the smallest edit distance from `name`. The distance counts
+/// insertions, deletions, replacements and swaps of neighbours, and ignores case. Of equal
+/// candidates the first one is returned. Without candidates the result is empty.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);
 
-/// Whether `name` is most likely the candidate misspelt: by one slip in three letters at most, or
-/// one of the two is the beginning of the other, of three letters at least.
+/// True if `name` is likely a misspelling of `candidate`: the edit distance is at most a third of
+/// the longer length, or the shorter word has at least three letters and begins the other word.
 bool is_misspelt(std::string_view name, std::string_view candidate);
 
-/// The text between single quotes.
+/// Returns the text between single quotes.
 std::string in_quotes(std::string_view text);
 
-/// "a, b, c".
+/// Returns the names as "a, b, c".
 std::string list_of(std::span<const std::string_view> names);
 
 }  // namespace incise::scenario

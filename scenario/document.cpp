@@ -18,13 +18,15 @@ namespace incise::scenario {
 
 namespace {
 
-constexpr std::size_t max_file_size = 16u << 20;  // a mesh given by mistake, not a scenario
+constexpr std::size_t max_file_size = 16u << 20;  // larger files are meshes, given by mistake
 
-/// Parts of a dotted key: each makes a table within a table, of which many would overrun the stack.
-/// The TOML library has no limit for them, and one of 256 for tables that are written as such.
+/// The largest number of parts of a dotted key. Each part makes a nested table, and too many nested
+/// tables would overflow the stack. The TOML library limits the nesting of explicit tables to 256,
+/// but not that of dotted keys.
 constexpr std::size_t max_key_parts = 16;
 
-/// Behind the quoted text that begins at `i`; on its line unless it is a multi-line one.
+/// Returns the position after the quoted text that begins at `i`. Quoted text ends at the end of
+/// the line, unless it is multi-line text.
 std::size_t end_of_quoted(std::string_view text, std::size_t i) {
     const char quote = text[i];
     const std::string triple(3, quote);
@@ -38,8 +40,8 @@ std::size_t end_of_quoted(std::string_view text, std::size_t i) {
     return std::min(i + (i < text.size() && text[i] == quote ? 1 : 0), text.size());
 }
 
-/// Throws DocumentError for a key of more than max_key_parts parts. The location is that of an
-/// override, or else the line.
+/// Throws DocumentError for a key of more than max_key_parts parts. The location is the override,
+/// or the line if `override_number` is -1.
 void require_flat_keys(std::string_view text, int override_number) {
     constexpr std::string_view parts_of_keys =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_- \t";
@@ -107,7 +109,7 @@ Value convert(const toml::node& node, int override_number) {
     return value;
 }
 
-/// A step of an override's path: a key or the number of an array element.
+/// A step in the path of an override: a key, or the index of an array element.
 struct Step {
     std::string key;
     std::optional<std::size_t> index;
@@ -121,7 +123,7 @@ std::optional<std::size_t> as_index(std::string_view text) {
     return index;
 }
 
-/// Splits at dots and brackets: "material[0].young" and "material.0.young" are the same.
+/// Splits a path at dots and brackets: "material[0].young" and "material.0.young" are equivalent.
 std::vector<Step> split_path(std::string_view path, const SourceLocation& location) {
     const auto malformed = [&] {
         return DocumentError{location, in_quotes(path) +
@@ -150,7 +152,7 @@ std::vector<Step> split_path(std::string_view path, const SourceLocation& locati
     return steps;
 }
 
-/// Why there is no element `index` of a key that the table lacks.
+/// Returns the message that a key is missing, and with it the array element `index`.
 std::string why_no_element(const Table& table, const std::string& key, std::size_t index,
                            const std::string& path) {
     std::vector<std::string_view> keys;
@@ -162,8 +164,8 @@ std::string why_no_element(const Table& table, const std::string& key, std::size
     return text;
 }
 
-/// The value that `step` leads to; a table that lacks the key gets it, unless an element of it is
-/// `next`, the step that follows if any.
+/// Returns the value to which `step` leads. A missing key is added to its table, unless the next
+/// step is the index of an array element. `next` is null for the last step.
 Value& descend(Value& value, const Step& step, const Step* next, const std::string& path,
                const SourceLocation& location) {
     if (auto* array = std::get_if<Array>(&value.data)) {
@@ -209,7 +211,7 @@ Value parse_override_value(std::string_view text, int number) {
                                       "[0, 0, -9.81] or \"text\""};
 }
 
-/// FNV-1a, 64 bits.
+/// The hash FNV-1a with 64 bits.
 struct Hash {
     std::uint64_t state = 14695981039346656037u;
 
@@ -221,7 +223,8 @@ struct Hash {
     }
 };
 
-/// Each value with its length or an end mark, so that different contents differ in text.
+/// Adds a value to the hash. Each value has its length or an end mark, so that different contents
+/// give different bytes.
 void add_value(Hash& hash, const Value& value) {
     if (const auto* table = value.get<Table>()) {
         std::vector<const Entry*> sorted;
@@ -313,7 +316,7 @@ Value read_document(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string text;
     std::array<char, 65536> block;
-    do {  // a pipe or a device has no size to ask for
+    do {  // pipes and devices have no size to check before
         stream.read(block.data(), block.size());
         text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
     } while (stream && text.size() <= max_file_size);

@@ -6,23 +6,27 @@
 
 namespace incise::scenario {
 
-/// All given moduli are those at rest, also where a law adds to its own lambda there.
-/// For mass-spring the constants are those of springs in all directions alike: Poisson's ratio is
-/// 1/4, lambda = mu = 2/5 young; a given mesh deviates from them.
-/// Throws InputError if the parameters are not exactly one of the sets that the model takes, or
-/// the constants are not admissible.
+/// Returns the moduli at rest of a material. All given moduli are moduli at rest, even if other
+/// terms of the law contribute to lambda at rest.
+///
+/// For the mass-spring model the moduli are those of springs in all directions alike. Poisson's
+/// ratio is then 1/4, and lambda = mu = 2/5 young. The moduli of a mesh differ from these.
+///
+/// Throws InputError if the parameters are not exactly one of the sets that the model takes, or if
+/// the moduli are not admissible.
 ElasticConstants resolve(Method method, std::string_view law, const ElasticParameters& given);
 
-/// Whether the parameters are exactly one of the sets that the model takes, besides optional ones.
+/// True if the parameters, without the optional ones, are exactly one of the sets of the model.
 bool is_complete(const MaterialModel& model, const ElasticParameters& given);
 
-/// Throws InputError that says what is given and what the model takes, if that is not so.
+/// Throws InputError unless is_complete(). The message lists what is given and what the model
+/// takes.
 void require_complete(const MaterialModel& model, const ElasticParameters& given);
 
-/// Such as "young + poisson"; empty if there are none.
+/// Returns the names of the given parameters, such as "young + poisson". Empty if none is given.
 std::string list_of(const ElasticParameters& given);
 
-/// The law of HEML itself. Throws as resolve().
+/// Returns a law of HEML with the given parameters. Throws as resolve().
 physics::Law make_law(std::string_view law, const ElasticParameters& given);
 
 }  // namespace incise::scenario

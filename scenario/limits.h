@@ -1,4 +1,4 @@
-// What a number may be.
+// Limits of the numbers in a scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace incise::scenario {
 
-/// An interval of allowed values, with or without its ends; infinity only if it is an end that is
-/// included.
+/// An interval of allowed values, with or without its ends. Infinity is allowed only if it is an
+/// included end.
 struct Limits {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -20,13 +20,14 @@ struct Limits {
                (includes_high ? value <= high : value < high);
     }
 
-    /// Whether it has an end, and infinity is none.
+    /// True if the interval has a finite end and does not contain infinity.
     constexpr bool excludes_infinity() const {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         return (low > -infinity || high < infinity) && !contains(infinity);
     }
 
-    /// Such as "above 0 and at most 1"; "a finite number" without ends.
+    /// Returns the limits as text, such as "above 0 and at most 1". Returns "a finite number" for
+    /// an interval without ends.
     std::string text() const;
 };
 

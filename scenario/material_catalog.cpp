@@ -84,7 +84,7 @@ physics::Law make_ogden(const ElasticConstants& k, const ElasticParameters& p) {
     return law;
 }
 
-/// Also neo-Hookean: c2 is 0 then.
+/// Makes the isochoric laws of Mooney-Rivlin and, without c2, neo-Hookean.
 physics::Law make_isochoric_mooney_rivlin(const ElasticConstants& k, const ElasticParameters& p) {
     const double second = p[c2].value_or(0.0);
     return physics::IsochoricMooneyRivlin{p[c1].value_or(k.mu / 2.0), second, k.bulk_modulus()};

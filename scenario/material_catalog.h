@@ -1,6 +1,6 @@
-// Methods, laws and elastic parameters that a scenario can name: the one location that lists them.
-// The reader checks scenarios against it and `incise materials` prints it.
-// Source of laws and methods: HEML 2015, HybMSS 2020, derived in docs/theory.md.
+// The list of methods, laws and elastic parameters that a scenario can name. The reader checks
+// scenarios against this list, and `incise materials` prints it.
+// Source of laws and methods: HEML 2015, HybMSS 2020; docs/theory.md derives them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -46,10 +46,10 @@ struct ParameterInfo {
     Limits limits;
 };
 
-/// What a scenario gives of a material's elastic parameters.
+/// The elastic parameters that a scenario gives for a material.
 struct ElasticParameters {
-    std::array<std::optional<double>, num_parameters> values;  ///< of `terms`: how many
-    std::vector<physics::Ogden::Term> terms;                   ///< of Ogden's law
+    std::array<std::optional<double>, num_parameters> values;  ///< for `terms`: their number
+    std::vector<physics::Ogden::Term> terms;                   ///< for the law of Ogden
 
     std::optional<double>& operator[](Parameter p) { return values[static_cast<std::size_t>(p)]; }
     const std::optional<double>& operator[](Parameter p) const {
@@ -60,9 +60,9 @@ struct ElasticParameters {
 /// Parameters that together determine a material.
 using ParameterSet = std::vector<Parameter>;
 
-/// Moduli of small strain about rest, Pa.
+/// Moduli at small strain, Pa.
 struct ElasticConstants {
-    double lambda = 0.0;  ///< Lame's first parameter
+    double lambda = 0.0;  ///< first Lame parameter
     double mu = 0.0;      ///< shear modulus
 
     double bulk_modulus() const { return lambda + 2.0 * mu / 3.0; }
@@ -70,22 +70,22 @@ struct ElasticConstants {
     double poisson() const { return lambda / (2.0 * (lambda + mu)); }
 };
 
-/// What takes parameters: a law of HEML, or a method without laws.
+/// A law of HEML, or a method without laws, with the parameters that it takes.
 struct MaterialModel {
     std::string_view key;
     std::string_view title;
-    std::string_view energy;  ///< w: per unit rest volume; W: in all
+    std::string_view energy;  ///< w: per rest volume; W: total
     std::vector<ParameterSet> parameter_sets;
-    ParameterSet optional = {};  ///< may be given besides one of the sets
+    ParameterSet optional = {};  ///< may be given in addition to one of the sets
     std::string_view admissible;
     std::string_view use;
     std::string_view limits;
-    bool has_fibres = false;  ///< asks for their direction
-    /// The shear modulus at rest by the constants of one of the sets; null if all sets have young,
-    /// shear_modulus or lame_mu.
+    bool has_fibres = false;  ///< needs the direction of the fibres
+    /// Returns the shear modulus at rest, Pa, from the constants of one of the sets. Null if every
+    /// set has young, shear_modulus or lame_mu.
     double (*shear_modulus)(const ElasticParameters& given) = nullptr;
-    /// Of a law of HEML: the law with these moduli at rest and what else was given of one of its
-    /// sets. Throws InputError, without the law's name, if there is none.
+    /// For a law of HEML: makes the law from its moduli at rest and the other parameters of the
+    /// set. Throws InputError, without the name of the law, if no such law exists.
     physics::Law (*make)(const ElasticConstants& at_rest, const ElasticParameters& given) = nullptr;
 };
 
@@ -98,15 +98,16 @@ const MaterialModel& law_named(std::string_view key);
 const MaterialModel& mass_spring_model();
 const MaterialModel& hybmss_model();
 
-/// The model that a material of this method and law follows.
+/// Returns the model of a material. Only HEML uses `law`.
 const MaterialModel& model(Method method, std::string_view law);
 
-/// Indexed by Method.
+/// Returns the names of the methods in a scenario, indexed by Method.
 std::span<const std::string_view> method_names();
 
-/// Such as "young + poisson, or shear_modulus + bulk_modulus".
+/// Returns the sets as text, such as "young + poisson, or shear_modulus + bulk_modulus".
 std::string list_of_sets(std::span<const ParameterSet> sets);
-/// All that a model takes, such as "c1 + bulk_modulus + k1 + k2; dispersion may be added".
+/// Returns the parameters of a model as text, such as "c1 + bulk_modulus + k1 + k2; dispersion may
+/// be added".
 std::string list_of_parameters(const MaterialModel& model);
 
 }  // namespace incise::scenario

@@ -1,4 +1,4 @@
-// The [[material]] sections.
+// Reads the [[material]] sections of a scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ void refuse_keys_of_others(const TableReader& material, Method method) {
             material.error(row.key, reason);
 }
 
-/// Where HybMSS is on shaky ground: it runs all the same.
+/// Warns of parameters for which HybMSS is unreliable. A run is possible.
 void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
                     const ElasticConstants& constants) {
     if (spec.stiffness_ratio == 0.0)
@@ -76,15 +76,15 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
     }
 }
 
-/// All that springs take.
+/// Returns only the parameter `young`, the only one that the mass-spring model takes.
 ElasticParameters only_young(const ElasticParameters& parameters) {
     ElasticParameters young;
     young[Parameter::young] = parameters[Parameter::young];
     return young;
 }
 
-/// Reports what of the method, law and parameters does not go together.
-/// @param values_are_sound  else only which parameters there are is looked at
+/// Reports method, law and parameters that do not suit each other. If `values_are_sound` is false,
+/// checks only which parameters are given.
 void check_elasticity(const TableReader& material, const MaterialSpec& spec,
                       bool values_are_sound) {
     ElasticParameters parameters = spec.parameters;
@@ -108,7 +108,8 @@ void check_elasticity(const TableReader& material, const MaterialSpec& spec,
     }
 }
 
-/// Of Ogden's law. Whether they are as they should be, or not there; terms at fault count as one.
+/// Reads the terms of the law of Ogden. Returns true if they are sound or missing. Faulty terms
+/// count as one term, so that no error about missing terms follows.
 bool read_terms(const TableReader& material, ElasticParameters& parameters) {
     if (!material.has("terms")) return true;
     bool is_readable = !material.is_empty_array("terms");
@@ -129,8 +130,8 @@ bool read_terms(const TableReader& material, ElasticParameters& parameters) {
     return is_readable && !rows.empty();
 }
 
-/// Takes from the preset what the scenario does not give of the elastic parameters: those of
-/// other names or, if the scenario has a set of its own, none. Whether there is a whole set now.
+/// Adds the elastic parameters of the preset that the scenario does not give. If the scenario gives
+/// a complete set of its own, none are added. Returns true if there is a complete set then.
 bool complete_parameters(const TableReader& material, const Tissue& preset, MaterialSpec& spec) {
     const MaterialModel& model = scenario::model(spec.method, spec.law);
     ElasticParameters both = preset.parameters;
@@ -154,9 +155,9 @@ bool complete_parameters(const TableReader& material, const Tissue& preset, Mate
     return false;
 }
 
-/// The terms of viscosity. What is wrong with them does not hinder the checks of elasticity.
+/// Reads the Prony series. Its errors do not prevent the checks of elasticity.
 std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
-    if (material.is_empty_array("prony") && !material.has("preset"))  // there it means: elastic
+    if (material.is_empty_array("prony") && !material.has("preset"))  // there empty means elastic
         material.error("prony",
                        "is empty: give at least one term, as in [{ alpha = 0.3, tau = 0.5 }], or "
                        "leave it out");
@@ -176,7 +177,7 @@ std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
     return terms;
 }
 
-/// The direction of the fibres.
+/// Reads the direction of the fibres.
 void read_fibre(const TableReader& material, MaterialSpec& spec) {
     if (material.has("fibre")) spec.fibre = material.direction("fibre", Vec3::UnitX());
     if (!material.has("fibre_array")) return;
@@ -186,11 +187,11 @@ void read_fibre(const TableReader& material, MaterialSpec& spec) {
     spec.fibre = name;
 }
 
-/// Reports a law with fibres without direction, a direction without such a law, and one of a file
-/// without file.
+/// Reports a law with fibres that has no direction, a direction for a law without fibres, and a
+/// cell array if the mesh is no file.
 void check_fibre(const TableReader& material, const MeshSpec& mesh, const MaterialSpec& spec) {
     const bool given = material.has("fibre") || material.has("fibre_array");
-    if (spec.method != Method::heml) return;  // refused as keys of another method
+    if (spec.method != Method::heml) return;  // reported as keys of another method
     if (!law_named(spec.law).has_fibres) {
         for (const std::string_view key : {"fibre", "fibre_array"})
             if (material.has(key))

@@ -1,5 +1,5 @@
-// The names of what a run is measured by: the columns of history.csv, the entries of summary.json
-// and the keys of [expect]. Writer and scenario reader take them from here.
+// The names of the quantities of a run: columns of history.csv, entries of summary.json and keys of
+// [expect]. The writer of runs and the reader of scenarios both use this list.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace incise::scenario {
 
-/// The first columns of history.csv, in order; the reactions of the constraints follow them.
+/// The first columns of history.csv, in order. The reactions of the constraints follow them.
 inline constexpr std::array<std::string_view, 20> history_quantities = {"time",
                                                                         "step",
                                                                         "nodes",
@@ -33,17 +33,19 @@ inline constexpr std::array<std::string_view, 20> history_quantities = {"time",
                                                                         "time_step",
                                                                         "stable_step"};
 
-/// What summary.json has besides the columns of history.csv.
+/// The quantities of summary.json that are not columns of history.csv.
 inline constexpr std::array<std::string_view, 12> run_quantities = {
     "gravity_energy", "edits",        "elements_removed", "elements_split",
     "elements_added", "faces_opened", "cut_area",         "mass_removed",
     "mass_error",     "energy_error", "volume_change",    "max_displacement"};
 
-/// The columns of a constraint's reaction, along x, y and z, then those of its moment.
+/// Returns the names of the columns for the reaction of a constraint: force along x, y and z, then
+/// moment about x, y and z.
 std::array<std::string, 6> reaction_quantities(std::string_view constraint);
 
-/// All that an [expect] can name, in the order of summary.json.
-/// @param constraints  their names
+/// Returns all quantities that [expect] can name: those of history.csv, the reactions of the
+/// constraints, and those of the run, in this order.
+/// @param constraints  the names of the constraints
 std::vector<std::string> all_quantities(std::span<const std::string> constraints);
 
 }  // namespace incise::scenario

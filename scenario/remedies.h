@@ -1,4 +1,4 @@
-// What to do about what the library reports, in terms of a scenario.
+// Advice for users on failures of a run, in terms of the scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace incise::scenario {
 
-/// What the scenario of a run may change: the end of the failure's message.
+/// Returns the end of the message of a failure: what the user can change in the scenario.
 std::string remedy_for(const physics::MotionFailure& failure);
 
 }  // namespace incise::scenario

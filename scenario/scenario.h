@@ -1,5 +1,5 @@
 // A scenario as plain data: what to simulate, how long, and what to write.
-// docs/scenario.md describes the file that it is read from; scenario_reader.h reads it.
+// docs/scenario.md describes the file; scenario_reader.h reads it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -25,7 +25,7 @@
 
 namespace incise::scenario {
 
-/// A box meshed by topology::box_mesh.
+/// A box that topology::box_mesh divides into elements.
 struct BoxMeshSpec {
     Vec3 size;
     std::array<int, 3> cells{1, 1, 1};
@@ -33,34 +33,37 @@ struct BoxMeshSpec {
     Vec3 origin = Vec3::Zero();
 };
 
+/// The [mesh] section.
 struct MeshSpec {
-    /// A file (already relative to the scenario's folder, or absolute), or a box. An empty path:
-    /// not known.
+    /// A file, with the folder of the scenario in its path, or a box. The path is empty if the mesh
+    /// is not known.
     std::variant<std::filesystem::path, BoxMeshSpec> source;
-    double scale = 1.0;  ///< all coordinates of the source are multiplied by it
+    double scale = 1.0;  ///< factor of all coordinates of the source
     std::string region_array = "region";
-    /// Of a file: whether its points at one position are joined. False says besides that they are
-    /// meant to be apart; without, they are told of.
+    /// For a file: true if points at the same position are joined. False states that such points
+    /// are separate on purpose. Without a value they are not joined, and a warning reports them.
     std::optional<bool> weld = std::nullopt;
-    /// For messages: those of the source and of the others.
+    /// FILE:line:column for messages, of the source and of two keys.
     std::string location = {}, scale_location = {}, region_array_location = {};
 };
 
+/// A [[material]] section.
 struct MaterialSpec {
-    /// Without: all regions that no other material names. At most one material is without.
+    /// If not set, the material takes all regions that no other material names. At most one
+    /// material has no regions.
     std::optional<std::vector<int>> regions;
     Method method = Method::heml;
-    std::string_view law = "neo-hookean";  ///< of HEML: the key of its row in laws()
-    double density = 0.0;
-    ElasticParameters parameters;           ///< as given; resolve() makes constants of them
-    double inversion_threshold = 0.4;       ///< J0, in (0, 1); of HEML
-    std::vector<physics::PronyTerm> prony;  ///< of HEML; empty: elastic
+    std::string_view law = "neo-hookean";   ///< HEML: the key of the law in laws()
+    double density = 0.0;                   ///< kg/m3
+    ElasticParameters parameters;           ///< as given; resolve() turns them into moduli
+    double inversion_threshold = 0.4;       ///< HEML: J0, in (0, 1)
+    std::vector<physics::PronyTerm> prony;  ///< HEML: empty for an elastic material
     physics::PronyRule prony_rule = physics::PronyRule::stress;
-    /// Of laws with fibres: their direction at rest, of unit length, or the cell array of the mesh
-    /// file that has it.
+    /// For laws with fibres: the direction of the fibres at rest, of unit length, or the name of
+    /// the cell array in the mesh file that holds the directions.
     std::variant<std::monostate, Vec3, std::string> fibre;
-    double stiffness_ratio = 1.0;   ///< A of HybMSS, 0 to infinity
-    bool correction_forces = true;  ///< of HybMSS: without, Poisson's ratio is 1/4
+    double stiffness_ratio = 1.0;   ///< HybMSS: A, from 0 to infinity
+    bool correction_forces = true;  ///< HybMSS: if false, Poisson's ratio is 1/4
     std::string location = {};      ///< for messages: FILE:line:column
     std::string regions_location = {};
 };
@@ -68,67 +71,73 @@ struct MaterialSpec {
 enum class Mode { dynamic, statics };
 enum class TimeIntegrator { semi_implicit_euler, implicit_euler };
 
+/// The [dynamics] section.
 struct DynamicsSpec {
     Mode mode = Mode::dynamic;
-    TimeIntegrator integrator = TimeIntegrator::semi_implicit_euler;  ///< of dynamics
-    double end_time = 0.0;
-    /// Without: the stable step times `safety`. Implicit Euler has one.
+    TimeIntegrator integrator = TimeIntegrator::semi_implicit_euler;  ///< for Mode::dynamic
+    double end_time = 0.0;                                            ///< s; 0 if not known
+    /// The fixed time step, s. If not set, the step is the stable step times `safety`. Implicit
+    /// Euler needs a fixed step.
     std::optional<double> time_step;
-    /// Of statics: load steps to the end. Without: one for each frame.
+    /// For Mode::statics: the number of load steps of the run. If not set, there is one load step
+    /// for each frame.
     std::optional<int> steps;
-    double safety = 0.8;   ///< in (0, 1]
-    double damping = 0.0;  ///< mass-proportional, 1/s
-    Vec3 gravity = Vec3::Zero();
-    /// Of the forces of semi-implicit Euler's steps; single for heml and hybmss alone.
+    double safety = 0.8;          ///< in (0, 1]
+    double damping = 0.0;         ///< mass-proportional, 1/s
+    Vec3 gravity = Vec3::Zero();  ///< m/s2
+    /// Precision of the forces in explicit steps. Single precision exists for HEML and HybMSS only.
     physics::Precision precision = physics::Precision::double_precision;
     std::string end_time_location = {}, time_step_location = {},
                 precision_location = {};  ///< for messages
 };
 
-/// Nodes that are held or led: their positions along the fixed axes are those of
-/// x = about + R(angle) (X - about) + by, which without keys is the rest position X.
+/// A [[constraint]] section. The constraint prescribes the components of the positions of nodes
+/// along the fixed axes: x = about + R(angle) (X - about) + by, with the rest position X. Without
+/// keys in `move` and `rotate`, x = X.
 struct ConstraintSpec {
     std::string name;
     sim::Selection where;
-    /// At least one, unless not known; of a led node all, unless some are named.
+    /// The fixed axes. At least one is true, unless the axes are not known. If the scenario moves
+    /// or rotates nodes and names no axes, all three are true.
     std::array<bool, 3> fixed{};
-    std::vector<TimeKey<Vec3>> move;
-    std::vector<TimeKey<double>> rotate;  ///< radians
-    Vec3 about_point = Vec3::Zero();
-    Vec3 about_axis = Vec3::UnitZ();  ///< of unit length
-    std::string location = {};        ///< for messages: FILE:line:column
+    std::vector<TimeKey<Vec3>> move;      ///< `by`, m
+    std::vector<TimeKey<double>> rotate;  ///< `angle`, radians
+    Vec3 about_point = Vec3::Zero();      ///< `about`, m
+    Vec3 about_axis = Vec3::UnitZ();      ///< of unit length
+    std::string location = {};            ///< for messages: FILE:line:column
 };
 
 struct NodalForce {
-    Vec3 force;  ///< newtons, on each selected node
+    Vec3 force;  ///< N, on each selected node
 };
 struct Traction {
-    Vec3 stress;  ///< newtons a square metre of rest area, in a fixed direction
+    Vec3 stress;  ///< force per area at rest, N/m2, in a fixed direction
 };
 struct Pressure {
-    double pressure = 0.0;  ///< pascal; follows the surface, positive pushes inwards
+    double pressure = 0.0;  ///< Pa, per current area; a positive pressure pushes inwards
 };
 struct BodyForce {
-    Vec3 density;  ///< newtons a cubic metre of rest volume
+    Vec3 density;  ///< force per rest volume, N/m3
 };
 
-/// A force on the selected nodes, boundary faces or elements, times a factor of time.
+/// A [[load]] section: a force on the selected nodes, boundary faces or elements, multiplied by a
+/// factor that depends on time.
 struct LoadSpec {
     std::string name;
     sim::Selection where;
     std::variant<NodalForce, Traction, Pressure, BodyForce> load;
-    std::vector<TimeKey<double>> factor;  ///< empty: 1
+    std::vector<TimeKey<double>> factor;  ///< if empty, the factor is 1
     std::string location = {};            ///< for messages: FILE:line:column
 };
 
 using cutting::Carver;
 using cutting::CutMode;
 
-/// Cuts along what its edge sweeps.
+/// A blade, which cuts what its edge sweeps through.
 struct BladeSpec {
-    std::vector<Vec3> edge;       ///< polyline in the tool's frame, at least two points
-    std::optional<CutMode> mode;  ///< without: usual_mode of the mesh (tool_build.h)
-    std::optional<double> snap;   ///< of splitting: see cutting::SplitOptions
+    std::vector<Vec3> edge;       ///< polyline in the frame of the tool, m, at least two points
+    std::optional<CutMode> mode;  ///< if not set, usual_mode() of the mesh (tool_build.h)
+    std::optional<double> snap;   ///< for CutMode::split; see cutting::SplitOptions
 };
 
 /// The points x with (x - point) . normal = 0.
@@ -136,42 +145,47 @@ struct PlaneSpec {
     Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
 };
 
-/// Splits all at once, when its time comes, along a plane or the triangulated surface of a file.
+/// A cut at one time along a plane or along the triangulated surface of a file.
 struct CutSpec {
     std::variant<PlaneSpec, std::filesystem::path> along;
-    double scale = 1.0;  ///< all coordinates of the surface are multiplied by it
-    std::optional<double> snap;
-    std::string location = {};  ///< for messages, of the file's name
+    double scale = 1.0;          ///< factor of all coordinates of the surface
+    std::optional<double> snap;  ///< see cutting::SplitOptions
+    std::string location = {};   ///< for messages: FILE:line:column of the key `surface`
 };
 
-/// A tool is there from the first to the last key of its path; a cut has one key, its time.
+/// A [[tool]] section. The tool is present from the first to the last key of its path. A cut has
+/// one key, the time of the cut.
 struct ToolSpec {
     std::string name;
     std::variant<Carver, BladeSpec, CutSpec> kind;
-    /// At least one key, for a blade two. Empty: not known.
+    /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path;
     std::string location = {};  ///< for messages: FILE:line:column
 };
 
-/// What a frame can hold besides points, rest positions, ids and regions.
+/// The fields that a frame can hold in addition to points, rest positions, ids and regions.
 enum class Field { displacement, velocity, mass, force, stress, von_mises, J, energy_density };
 
+/// The [output] section.
 struct OutputSpec {
-    double interval = 0.01;            ///< simulated seconds between frames; 0: none
-    std::vector<Field> fields;         ///< each once
-    double checkpoint_interval = 0.0;  ///< simulated seconds; 0: only where a signal stops the run
+    double interval = 0.01;     ///< simulated time between frames, s; 0 for no frames
+    std::vector<Field> fields;  ///< without repetitions
+    /// Simulated time between checkpoints, s. If 0, there is a checkpoint only when a signal stops
+    /// the run.
+    double checkpoint_interval = 0.0;
     io::Compression compression = io::Compression::zlib;
 };
 
-/// A quantity of the finished run, and what it must be.
+/// Bounds on a quantity of the finished run.
 struct Expectation {
     std::string quantity;
-    std::optional<double> min, max;  ///< at least one; both allowed values themselves
+    std::optional<double> min, max;  ///< at least one is set; the bounds themselves are allowed
 };
 
+/// A whole scenario.
 struct Scenario {
-    std::string name;              ///< the file's name without folder and ending
-    std::filesystem::path folder;  ///< where the file lies
+    std::string name;              ///< name of the file without folder and extension
+    std::filesystem::path folder;  ///< folder of the file
     std::string title;
     MeshSpec mesh;
     std::vector<MaterialSpec> materials;
@@ -181,14 +195,15 @@ struct Scenario {
     std::vector<ToolSpec> tools;
     OutputSpec output;
     std::vector<Expectation> expect;
-    /// 16 hexadecimal digits that change with anything the scenario says (overrides included),
-    /// not with layout or comments, nor with the contents of the mesh file.
+    /// 16 hexadecimal digits that depend on all values of the scenario, with overrides. They do not
+    /// depend on layout, comments or the contents of the mesh file.
     std::string hash;
-    /// What the hash is of: each value as text with its path, in the order of the paths.
+    /// The values from which the hash is computed: path and text of each, in ascending order.
     std::vector<std::pair<std::string, std::string>> contents;
 };
 
-/// The names by which scenarios and frames know fields and compressions, indexed by them.
+/// The names of fields and compressions in scenarios and frames, indexed by Field and
+/// io::Compression.
 inline constexpr std::array<std::string_view, 8> field_names = {
     "displacement", "velocity", "mass", "force", "stress", "von_mises", "J", "energy_density"};
 inline constexpr std::array<std::string_view, 4> compression_names = {"none", "lz4", "zlib",

@@ -33,13 +33,13 @@ constexpr Keys precision_names[] = {"double", "single"};
 constexpr Keys output_keys[] = {"interval", "fields", "compression", "checkpoint_interval"};
 constexpr Keys expectation_keys[] = {"min", "max"};
 
-/// More than memory can hold on any machine that this program is made for.
+/// Boxes with more elements do not fit into the memory of usual machines.
 constexpr double max_box_elements = 1e8;
-/// More would take days on any mesh.
+/// More load steps would take days on any mesh.
 constexpr int most_load_steps = 1000000;
-/// More frames than this are more likely a slip than a wish.
+/// More frames give a warning, because they are likely a mistake.
 constexpr double many_frames = 1e5;
-/// More would fill any disk: the names of so many files alone take a gigabyte.
+/// More frames are refused: the names of so many files alone take a gigabyte.
 constexpr double max_frames = 1e7;
 
 BoxMeshSpec read_box_mesh(const TableReader& box) {
@@ -73,7 +73,7 @@ bool is_name_character(char c) {
            c == '-';
 }
 
-/// Keys that do not go together.
+/// Reports keys that do not suit the mode or the integrator.
 void check_solver(const TableReader& dynamics, const DynamicsSpec& spec) {
     if (!dynamics.is_sound("mode")) return;
     if (spec.mode == Mode::statics) {
@@ -101,7 +101,8 @@ void check_solver(const TableReader& dynamics, const DynamicsSpec& spec) {
                          "'dynamics.safety' has no effect with integrator = \"implicit-euler\"");
 }
 
-/// Single precision is for the forces of explicit steps, of the methods that have such.
+/// Reports single precision where it does not exist: it is for the forces of explicit steps with
+/// HEML and HybMSS.
 void check_precision(const TableReader& dynamics, const DynamicsSpec& spec,
                      std::span<const MaterialSpec> materials) {
     if (spec.precision != physics::Precision::single_precision) return;
@@ -123,7 +124,7 @@ void check_precision(const TableReader& dynamics, const DynamicsSpec& spec,
                                "out, or use method = \"heml\"");
 }
 
-/// @param key  to blame
+/// Reports at `key` that there are too many frames, or warns of many. Times are in s.
 void check_number_of_frames(const TableReader& table, std::string_view key, double interval,
                             double end_time) {
     const double frames = interval > 0.0 ? std::floor(end_time / interval) : 0.0;
@@ -138,8 +139,8 @@ void check_number_of_frames(const TableReader& table, std::string_view key, doub
                                format_number(frames) + " frames");
 }
 
-/// Leaves of dynamics at fault what still can be judged: without end nothing is said of the number
-/// of steps, without time step nothing of their stability.
+/// Keeps only those parts of faulty dynamics that can be checked further. Without end time the
+/// number of steps is not checked, and without time step their stability is not.
 void keep_sound(const TableReader& root, DynamicsSpec& spec) {
     if (root.is_sound("dynamics")) return;
     const auto is_sound = [&](std::string_view key) {
@@ -249,7 +250,7 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
 
 OutputSpec read_output(const TableReader& root, double end_time) {
     OutputSpec spec;
-    // Ten in a short run; so that little of a long one is lost.
+    // A short run has ten. In a long run an interruption loses at most 0.5 s of simulated time.
     spec.checkpoint_interval = std::min(0.5, end_time / 10.0);
     const auto all_fields = [&] {
         for (std::size_t i = 0; i < field_names.size(); ++i)

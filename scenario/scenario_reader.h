@@ -1,4 +1,4 @@
-// Reads a scenario from its TOML file and checks all of it.
+// Reads a scenario from a TOML file and checks it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,21 +11,23 @@
 
 namespace incise::scenario {
 
+/// The result of read_scenario().
 struct ScenarioReport {
-    /// If there are errors, only what of it check_body can still judge, not to be simulated: of
-    /// constraints, loads, tools and dynamics what is sound; the mesh and the materials as a whole
-    /// or not at all.
+    /// If there are errors, the scenario has only the parts that check_body() can check, and must
+    /// not be simulated. It then has the sound parts of constraints, loads, tools and dynamics.
+    /// Mesh and materials are complete or empty.
     Scenario scenario;
-    /// Each complete in itself: "FILE:line:column: key 'material[1].poisson': 0.6 is not allowed:
-    /// must be above -1 and below 0.5". In the order of the file.
+    /// In the order of the file. Each message is complete in itself: "FILE:line:column: key
+    /// 'material[1].poisson': 0.6 is not allowed: must be above -1 and below 0.5".
     std::vector<std::string> errors, warnings;
 };
 
-/// Finds every problem at once; a syntax error is the only one found. What can only be told with
-/// the mesh at hand is not checked: whether selections are empty, regions exist, steps are stable.
-/// The mesh file is only looked for, not read.
-/// @param overrides  such as "dynamics.end_time=0.2" or "material[0].young=2000" (see
-///                   apply_override), applied in order before anything is checked
+/// Reads a scenario and finds all its problems at once. After a syntax error nothing else is
+/// checked. The mesh file must be readable, but is not read. Problems that depend on the mesh are
+/// found by check_body(): empty selections, missing regions, unstable steps.
+/// @param file       the TOML file
+/// @param overrides  values to change before the checks, in this order; see apply_override(), such
+///                   as "dynamics.end_time=0.2" or "material[0].young=2000"
 ScenarioReport read_scenario(const std::filesystem::path& file,
                              std::span<const std::string> overrides = {});
 

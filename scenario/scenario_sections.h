@@ -1,5 +1,5 @@
-// The parts of the scenario reader, one a group of sections; used by scenario_reader.cpp alone.
-// Each reads its sections from the root table and reports what is wrong with them.
+// The parts of the scenario reader, each for one group of sections. Each part reads its sections
+// from the root table and reports what is wrong with them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -18,47 +18,66 @@ inline constexpr IntegerLimits region_limits{std::numeric_limits<int>::min(),
                                              std::numeric_limits<int>::max()};
 
 MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& folder);
-/// @param mesh  that is made of them
+/// Reads the [[material]] sections.
+/// @param root  the root table
+/// @param mesh  the mesh that consists of these materials
 std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh);
-/// @param materials  of the body, as not all methods have forces of every precision
+/// Reads the [dynamics] section.
+/// @param root       the root table
+/// @param materials  the materials of the body; not all methods have forces in single precision
 DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials);
-/// Those that select something sound, as loads too; what else is at fault with them is left out.
-/// @param end_time  later keys are warned of; not above 0 if it is not known
-/// @param names  gets those of all
+/// Reads the [[constraint]] sections. The result has only constraints whose selection is sound. Of
+/// these, faulty parts are left out.
+/// @param root      the root table
+/// @param end_time  end of the run, s: later keys give a warning; not above 0 if not known
+/// @param names     receives the names of all constraints
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
                                              std::vector<std::string>& names);
+/// Reads the [[load]] sections. The result has only loads of one kind whose selection is sound.
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
-/// Those of a known kind; without path if it is not known where they are.
-/// @param folder  what the names of surface files are relative to
+/// Reads the [[tool]] sections. The result has only tools of a known kind, and tools that name the
+/// file of a surface. A tool with a faulty path or shape has an empty path.
+/// @param root      the root table
+/// @param folder    folder of the scenario, to which names of surface files are relative
+/// @param end_time  end of the run, s: later keys give a warning; not above 0 if not known
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
                                  double end_time);
 OutputSpec read_output(const TableReader& root, double end_time);
-/// @param constraints  names of those whose reactions are among the quantities
+/// Reads the [expect] section.
+/// @param root         the root table
+/// @param constraints  names of the constraints, whose reactions are quantities
 std::vector<Expectation> read_expectations(const TableReader& root,
                                            const std::vector<std::string>& constraints);
 
-/// The name that a constraint, load or tool gives itself, or `fallback`. Reports one that is used
-/// already or has other characters than letters, digits, _ and -: it becomes part of the names of
-/// columns. Adds it to `used`, once.
+/// Returns the name of a constraint, load or tool, or `fallback` if it has none, and adds the name
+/// to `used`. Reports a name that is in `used` already. Reports characters other than letters,
+/// digits, _ and -, because names become parts of column names.
 std::string read_name(const TableReader& table, const std::string& fallback,
                       std::vector<std::string>& used);
 
-/// A file named relative to the scenario's folder. Reports a name that is empty, and a file that is
-/// not there or cannot be read.
-/// @param kind  such as "mesh file"
+/// Returns the path of a file whose name is relative to the folder of the scenario. Reports an
+/// empty name, and a file that is missing or cannot be read.
+/// @param table   the table with the key
+/// @param key     the key that holds the name
+/// @param folder  folder of the scenario
+/// @param kind    kind of file for messages, such as "mesh file"
 std::filesystem::path read_file_name(const TableReader& table, std::string_view key,
                                      const std::filesystem::path& folder, const std::string& kind);
 
-/// Reads an array of tables that each have a time and something else, in ascending order of time.
-/// Reports an empty array, and times that are negative, do not ascend or come after `end_time`.
-/// None if any is at fault.
-/// @param read_value  makes the value of one table
+/// Reads an array of tables, each with a time and a value, in ascending order of time. Reports an
+/// empty array, and times that are negative or do not ascend. Warns of times after `end_time`.
+/// Returns no keys if one of them is faulty.
+/// @param table       the table with the array
+/// @param key         the key of the array
+/// @param names       allowed keys of the tables in the array
+/// @param end_time    end of the run, s; not above 0 if not known
+/// @param read_value  function that reads the value of one table
 template <class T, class ReadValue>
 std::vector<TimeKey<T>> read_time_keys(const TableReader& table, std::string_view key,
                                        const Names& names, double end_time,
                                        const ReadValue& read_value);
 
-/// What read_time_keys does with the times. One that is not a number is not judged.
+/// Checks the times for read_time_keys(). A time that is not a number is not checked.
 void check_times(const TableReader& table, std::string_view key, std::span<const TableReader> rows,
                  std::span<const double> times, double end_time);
 

@@ -28,7 +28,8 @@ std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
     return {names.begin(), names.end()};
 }
 
-/// Throws MemoryError for a box that this machine cannot hold, before it tries and is killed.
+/// Throws MemoryError if the machine has too little memory for the box. Without this check the
+/// system would kill the process.
 void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
     const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
     const double bytes_per_element = is_tetrahedra ? 1200.0 : 2500.0;  // map, arrays, elements
@@ -40,7 +41,7 @@ void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
                                                 *lack + "; use fewer cells"));
 }
 
-/// The points and cells that the scenario names, welded if it says so, and scaled.
+/// Returns the points and cells of the mesh, welded if the scenario says so, and scaled.
 io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials,
                        double scale) {
     if (const auto* path = std::get_if<std::filesystem::path>(&spec.source)) {
@@ -66,8 +67,8 @@ bool can_load(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) 
     }
 }
 
-/// The same at the scale of the scenario. Throws BodyError if the file is sound but for the array
-/// that the regions are to be taken from.
+/// Returns the points and cells at the scale of the scenario. Throws BodyError if only the array of
+/// the regions is faulty.
 io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials) {
     try {
         return load_mesh(spec, materials, spec.scale);
@@ -79,12 +80,12 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
     }
 }
 
-/// Why a box is refused, whose cells are sound but for rounding.
+/// Returns the reason why a box is refused: rounding, or cells with too large or too small volumes.
 std::string what_is_wrong_with(const BoxMeshSpec& box, double scale) {
     const Vec3 size = scale * box.size, origin = scale * box.origin;
     const Vec3 brick = size.cwiseQuotient(Vec3(box.cells[0], box.cells[1], box.cells[2]));
     const Vec3 reach = origin.cwiseAbs().cwiseMax((origin + size).cwiseAbs());
-    constexpr double least_ratio = 1e-10;  // well above rounding, well below any box within limits
+    constexpr double least_ratio = 1e-10;  // far above rounding, far below that of usual boxes
     const std::string bricks = "key 'mesh.box': its bricks of " + vector_text(brick);
     if ((brick.array() < least_ratio * reach.array()).any())
         return bricks + " are lost to rounding so far from [0, 0, 0]: bring 'origin', now " +

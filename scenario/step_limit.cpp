@@ -31,7 +31,7 @@ namespace {
         text << ", or check shape and material of element "
              << model.mesh().label(model.limiting_element())
              << ", which is the smallest or stiffest for its mass";
-    if (num_steps > 0) throw PhysicsError(text.str());  // edits have left such an element
+    if (num_steps > 0) throw PhysicsError(text.str());  // the cause is an edit, not the scenario
     throw BodyError(dynamics.time_step ? dynamics.time_step_location : dynamics.end_time_location,
                     text.str());
 }
@@ -49,7 +49,7 @@ double step_limit(const Scenario& scenario, const physics::Model& model, std::ui
     const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
     if (is_explicit && dynamics.time_step && !(limit <= stable))
         refuse_unstable(dynamics, stable, num_steps);
-    // So many steps would take years, and at last would not move the time on at all.
+    // More steps would take years. In the end, rounding would keep the time from increasing.
     constexpr double max_steps = 1e10;
     if (!(limit * max_steps >= dynamics.end_time))
         refuse_endless(dynamics, limit, model, num_steps);

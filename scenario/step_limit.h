@@ -1,4 +1,4 @@
-// How long a time step may be.
+// The upper limit of the time step of a scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,11 +9,13 @@
 
 namespace incise::scenario {
 
-/// The longest step that the scenario allows its body, s.
-/// @param num_steps  done already
-/// Throws PhysicsError for a fixed step above the stable one, and BodyError for steps so short that
-/// the run would never end, PhysicsError if only the edits of a run have made them so. Before the
-/// first step both begin with the location of what is at fault.
+/// Returns the longest step that the scenario allows for its body, s.
+/// @param scenario   the scenario
+/// @param model      the body in its present state
+/// @param num_steps  number of steps that the run has made
+/// Throws PhysicsError if an explicit step of fixed length is above the stable step. Throws
+/// BodyError if the run would need more than 1e10 steps, but PhysicsError if `num_steps` is not 0.
+/// If `num_steps` is 0, the messages begin with the location of the faulty key.
 double step_limit(const Scenario& scenario, const physics::Model& model,
                   std::uint64_t num_steps = 0);
 

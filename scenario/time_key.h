@@ -1,11 +1,11 @@
-// Keys of what changes with time.
+// Keys of a value that depends on time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 namespace incise::scenario {
 
-/// Key of something that is linear between keys and constant before the first and after the last.
-/// Times ascend strictly.
+/// A key of a piecewise linear function of time. The function is constant before the first key and
+/// after the last. The times of its keys ascend strictly.
 template <class Value>
 struct TimeKey {
     double time = 0.0;  ///< s

@@ -214,7 +214,7 @@ const std::vector<Tissue>& tissue_table() {
     return table;
 }
 
-/// Such as "{ a = 1, b = 2 }, { a = 3, b = 4 }".
+/// Returns rows as text, such as "{ a = 1, b = 2 }, { a = 3, b = 4 }".
 template <class Row>
 std::string inline_tables(const std::vector<Row>& rows, const std::string& first_key,
                           double Row::*first, const std::string& second_key, double Row::*second) {

@@ -17,8 +17,8 @@ namespace incise::scenario {
 
 namespace {
 
-/// Points in the tool's frame and a distance from them, so that the tool is within that distance of
-/// their hull.
+/// The extent of a tool: the tool is within `radius` of the convex hull of `points`, in the frame
+/// of the tool.
 struct Extent {
     std::vector<Vec3> points;
     double radius = 0.0;
@@ -42,9 +42,10 @@ Extent extent_of(const cutting::ToolShape& shape) {
     return {std::get<cutting::Blade>(shape).edge};
 }
 
-/// Holds the points of the tool's frame all along the path. A point at the distance r from the
-/// frame's origin that turns by an angle leaves the straight way between its ends by at most
-/// r angle^2 / 8: its acceleration over a path of length 1 is r angle^2.
+/// Returns a box that contains the points, given in the frame of the tool, along the whole path. If
+/// the frame turns by an angle, a point at the distance r from its origin moves on a curve. The
+/// curve leaves the straight line between its ends by at most r angle^2 / 8, because in a motion of
+/// the duration 1 the acceleration is r angle^2.
 Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
     Box swept;
     Pose before = path.keys().front().value;
@@ -113,21 +114,21 @@ bool may_meet(const ScriptedTool& tool, const Box& box) {
     if (tool.surface) return tool.surface->may_meet(box);
     const Extent extent = extent_of(tool.shape);
     const Box swept = swept_box(tool.path, extent.points);
-    // With room for what rounding takes.
+    // The second term is a margin for rounding.
     const Vec3 margin = Vec3::Constant(extent.radius + 1e-12 * swept.diagonal().norm());
     return box.intersects(Box(swept.min() - margin, swept.max() + margin));
 }
 
 namespace {
 
-/// Calls look(surface) for each surface that the tool divides elements along up to `end_time`, s.
+/// Calls look(surface) for each surface along which the tool divides elements until `end_time`, s.
 void for_each_surface(const ScriptedTool& tool, double end_time,
                       const std::function<void(const cutting::CutSurface&)>& look) {
     const auto& keys = tool.path.keys();
     if (keys.empty() || keys.front().time > end_time || !divides(tool.shape)) return;
     if (tool.surface) return look(*tool.surface);
     const auto& blade = std::get<cutting::Blade>(tool.shape);
-    // Between keys that turn the edge, its points go on arcs: in short pieces.
+    // Where the edge turns, its points move on arcs. Short parts approximate these.
     constexpr double longest_turn = 0.05;
     for (std::size_t key = 1; key < keys.size(); ++key) {
         const auto &from = keys[key - 1], &to = keys[key];
@@ -163,7 +164,7 @@ void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, dou
 
 std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
                                                   const topology::Mesh& mesh, double end_time) {
-    constexpr double margin = 0.05;  // of an element's mean edge: it takes little motion
+    constexpr double margin = 0.05;  // share of the mean edge of an element; a small distance
     cutting::NearMisses found;
     for_each_surface(tool, end_time, [&](const cutting::CutSurface& surface) {
         cutting::add_near_misses(mesh, surface, margin, found);

@@ -1,4 +1,4 @@
-// Tools of a scenario: what they are made of, and what is at fault with them before they run.
+// Builds the tools of a scenario, and finds their problems before a run.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,45 +15,47 @@
 
 namespace incise::scenario {
 
-/// How blades cut if they are not told: they split, unless the mesh has other elements than
-/// tetrahedra. Cost: O(#elements).
+/// Returns the default mode of blades: CutMode::split, or CutMode::separate if the mesh has
+/// elements other than tetrahedra. Cost: O(#elements).
 CutMode usual_mode(const topology::Mesh& mesh);
 
-/// Blades get a mode that suits the mesh, unless they have one.
-/// Throws InputError for what is to split a mesh without tetrahedra.
+/// Returns the tool with a mode. A blade without a mode gets usual_mode() of the mesh.
+/// Throws InputError if the tool divides elements and the mesh has no tetrahedra.
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh);
 
-/// A tool and its way.
+/// A tool with its path.
 struct ScriptedTool {
     std::string name;
     cutting::ToolShape shape;
     ToolPath path;
-    std::shared_ptr<const cutting::CutSurface> surface;  ///< of a cut at once, else null
+    std::shared_ptr<const cutting::CutSurface> surface;  ///< of a CutSpec; null for other tools
 };
 
-/// Reads the file of its surface. A blade without a mode splits. A tool of which no path is known
-/// gets one without keys. Warnings name the file.
+/// Builds a tool, and reads the file of its surface if it has one. A blade without a mode splits.
+/// If the path is not known, the tool has a path without keys. Warnings name the file.
 /// Throws InputError if the file cannot be read.
 ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings);
 
-/// False only if nothing of the tool is ever in the box. Cost: that of its path, or of its surface.
+/// Returns false only if no part of the tool is ever in the box.
+/// Cost: proportional to the size of its path or of its surface.
+/// @pre  the tool has a surface, or a path with a key
 bool may_meet(const ScriptedTool& tool, const Box& box);
 
-/// Throws InputError if the tool is to divide elements and meets one on its path that it cannot
-/// divide, where the body rests: a run would stop there. Its path after `end_time`, s, is not
-/// looked at. Cost: O(#elements) for each key.
+/// Throws InputError if the tool divides elements and its path meets an element of the body at rest
+/// that it cannot divide. A run would stop there. The path after `end_time`, s, is not checked.
+/// Cost: O(#elements) for each key.
 void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time);
-/// A warning of elements that it cannot divide and comes near to at rest, if it is to divide and
-/// there are any: tissue that moves may come into its way.
+/// Returns a warning if the tool divides elements and its path passes near elements, at rest, that
+/// it cannot divide. Such elements can move into the path. The path after `end_time`, s, is not
+/// checked. Cost: as require_divisible().
 /// @pre  require_divisible() throws nothing
-/// Cost: as there.
 std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
                                                   const topology::Mesh& mesh, double end_time);
-/// True if the tool divides elements: a cut, or a blade in the mode "split".
+/// True if the tool divides elements: it is a cut, or a blade with the mode "split".
 bool divides(const cutting::ToolShape& shape);
-/// What to do where the edits of a tool leave a stable step that is too short.
+/// Returns advice for messages: how to change the tool if its edits make the stable step too short.
 std::string for_longer_steps(const cutting::ToolShape& shape);
-/// What to do about such an element.
+/// Returns advice for messages: what to do if the tool meets an element that it cannot divide.
 std::string instead_of_dividing(const cutting::ToolShape& shape);
 
 }  // namespace incise::scenario

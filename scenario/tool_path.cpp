@@ -23,8 +23,8 @@ bool ToolPath::is_present(double from, double to) const {
 }
 
 std::optional<Pose> ToolPath::pose_before_end() const {
-    // It may have rested before the end. The way between two keys is curved if it turns: a short
-    // part of it before its end tells the direction.
+    // The tool may be at rest before the end. With rotation, the path between two keys is curved,
+    // so that only a short part before its end has the direction of the end.
     constexpr double part = 1e-3;
     for (std::size_t key = keys_.size() - 1; key > 0; --key) {
         const auto &before = keys_[key - 1], &after = keys_[key];

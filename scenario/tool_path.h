@@ -1,4 +1,4 @@
-// Where a tool is when: the path of a scenario's tool.
+// The path of a tool of a scenario: its poses as a function of time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,25 +10,29 @@
 
 namespace incise::scenario {
 
-/// Keys of a pose. Between two keys the position is linear in time, and the orientation goes along
-/// the shortest turn.
+/// A sequence of poses at given times. Between two of them the position is interpolated linearly,
+/// the orientation along the shortest rotation.
+///
+/// Without keys, only keys() may be called.
 class ToolPath {
   public:
-    /// @pre There is a key, and times ascend strictly.
+    /// @pre  the times ascend strictly
     explicit ToolPath(std::vector<TimeKey<Pose>> keys) : keys_(std::move(keys)) {}
 
-    /// The pose at `time`, s; that of the first key before it, and of the last after it.
+    /// Returns the pose at `time`, s. Before the first key it is the pose of the first key, after
+    /// the last key that of the last.
     Pose pose(double time) const;
 
-    /// True if the tool acts in the step (from, to], s: it is there from its first to its last key,
-    /// a tool with one key in the step that contains the key. The first step contains its start.
+    /// True if the tool acts in the step (from, to], s. A tool acts in the steps that overlap the
+    /// time between its first and its last key. A tool with one key acts in the step that contains
+    /// the time of the key. The first step contains the time 0.
     bool is_present(double from, double to) const;
 
     double first_time() const { return keys_.front().time; }  ///< s
     double last_time() const { return keys_.back().time; }    ///< s
 
-    /// The pose a moment before the tool came to where it ends, which tells the direction in which
-    /// it moved; nothing if it never moved.
+    /// Returns a pose shortly before the tool reaches its last pose. The two poses give the
+    /// direction in which the tool moved. Returns nothing if the tool never moves.
     std::optional<Pose> pose_before_end() const;
 
     const std::vector<TimeKey<Pose>>& keys() const { return keys_; }

@@ -1,4 +1,4 @@
-// The [[tool]] sections.
+// Reads the [[tool]] sections of a scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
@@ -68,7 +68,7 @@ Carver read_carver(const TableReader& tool) {
 BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
     BladeSpec blade;
     blade.edge = tool.vectors("edge");
-    const bool knows_edge = tool.is_sound("edge");  // else points are left out
+    const bool knows_edge = tool.is_sound("edge");  // otherwise some points are missing
     if (tool.has("edge") && knows_edge && blade.edge.size() < 2)
         tool.error("edge", "must have at least 2 points");
     for (std::size_t i = 1; i < blade.edge.size() && knows_edge; ++i)
@@ -109,7 +109,7 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
         if (tool.has(key)) tool.error(key, "belongs to " + owner + ": leave it out");
 }
 
-/// Reports the keys that a tool of the kind lacks, and those that belong to other kinds.
+/// Reports keys that a tool of this kind needs but does not have, and keys of other kinds.
 void check_keys(const TableReader& tool, Keys kind) {
     if (kind == "carver")
         tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
@@ -157,7 +157,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
     for (const auto& tool : root.tables("tool", {tool_keys})) {
         tool.require("kind", "must be one of " + list_of(kinds));
         const auto index = tool.choice("kind", {kinds});
-        const Keys kind = index ? kinds[*index] : Keys();  // empty: not known
+        const Keys kind = index ? kinds[*index] : Keys();  // empty if not known
         const auto may_be = [&](Keys one) { return kind.empty() || kind == one; };
         ToolSpec spec;
         spec.location = tool.location_text();
@@ -176,7 +176,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         }
         if (kind != "cut")
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
-        // Without a kind what is left to judge is the file of a surface.
+        // Without a known kind, only the file of a surface can be checked further.
         if (!index && !tool.has("surface")) continue;
         if (index) check_path(tool, spec, end_time);
         if (!index || !knows_where(tool, kind)) spec.path.clear();

@@ -29,8 +29,8 @@ constexpr Rgb rgb(std::uint32_t hex) {
     return {((hex >> 16) & 0xff) / 255.0, ((hex >> 8) & 0xff) / 255.0, (hex & 0xff) / 255.0};
 }
 
-// Viridis (S. van der Walt, N. Smith; CC0) at even steps, without its near-black end, on which
-// lighting would not show.
+// Viridis (S. van der Walt, N. Smith; CC0) at even steps, without the nearly black end, where
+// lighting is not visible.
 constexpr std::array sequential = {rgb(0x46327e), rgb(0x3f4a8a), rgb(0x365c8d), rgb(0x2e6e8e),
                                    rgb(0x277f8e), rgb(0x21918c), rgb(0x1fa187), rgb(0x2db27d),
                                    rgb(0x4ac16d), rgb(0x73d056), rgb(0xa0da39), rgb(0xd0e11c),
@@ -39,7 +39,8 @@ constexpr std::array sequential = {rgb(0x46327e), rgb(0x3f4a8a), rgb(0x365c8d), 
 constexpr std::array diverging = {rgb(0x2166ac), rgb(0x4393c3), rgb(0x92c5de),
                                   rgb(0xd1e5f0), rgb(0xf7f7f7), rgb(0xfddbc7),
                                   rgb(0xf4a582), rgb(0xd6604d), rgb(0xb2182b)};
-// Twelve that differ also for the colour-blind, as far as twelve can (after Tableau and Paul Tol).
+// Twelve colours that colour-blind people can distinguish as far as possible (after Tableau and
+// Paul Tol).
 constexpr std::array qualitative = {rgb(0xd98880), rgb(0x5b8db8), rgb(0xe3b505), rgb(0x6aa84f),
                                     rgb(0x9467bd), rgb(0x4fb3a9), rgb(0xe08e45), rgb(0xb07aa1),
                                     rgb(0x8c6d5a), rgb(0x9aa0a6), rgb(0xbcbd22), rgb(0x2f4b7c)};
@@ -77,7 +78,7 @@ std::optional<ColorField> find_field(vtkDataSet& data, const std::string& name) 
     return std::nullopt;
 }
 
-/// "name_x", "name_y" or "name_z".
+/// Finds a component of a vector by its name: "name_x", "name_y" or "name_z".
 std::optional<ColorField> find_component(vtkDataSet& data, const std::string& wanted) {
     constexpr std::string_view letters = "xyz";
     if (wanted.size() < 3 || wanted[wanted.size() - 2] != '_') return std::nullopt;
@@ -92,7 +93,8 @@ std::optional<ColorField> find_component(vtkDataSet& data, const std::string& wa
     return field;
 }
 
-/// Of a stress with components in rows (9), or in the order xx, yy, zz, xy, yz, xz (6).
+/// Returns the von Mises stress. `s` has 9 components by rows, or 6 in the order xx, yy, zz, xy,
+/// yz, xz.
 double von_mises(const std::vector<double>& s) {
     const bool is_full = s.size() == 9;
     const double xx = s[0], yy = is_full ? s[4] : s[1], zz = is_full ? s[8] : s[2];
@@ -196,7 +198,7 @@ void ColorRange::include(vtkDataSet& data, const ColorField& field) {
     auto& arrays = attributes(data, field.place);
     const auto type = arrays.GetArray(field.array.c_str())->GetDataType();
     is_integer_ = is_integer_ && type != VTK_FLOAT && type != VTK_DOUBLE;
-    // Vectors and stresses grow from zero, and their colours with them.
+    // Scales of lengths and von Mises stresses begin at zero.
     if (field.measure == Measure::magnitude || field.measure == Measure::von_mises) lowest_ = 0;
     auto* values = vtkDoubleArray::SafeDownCast(arrays.GetArray(color_array));
     for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i) {
@@ -222,7 +224,7 @@ vtkSmartPointer<vtkScalarsToColors> make_colors(const ColorRange& range,
                                                 std::pair<double, double> limits) {
     if (range.is_categorical()) return make_category_colors(range.categories());
     const auto [lowest, highest] = limits;
-    // A few negative values of a positive field do not make it one of two signs.
+    // Small negative values do not give a positive field the scale for two signs.
     const bool has_two_signs =
         lowest < 0 && highest > 0 && -lowest > 0.1 * highest && highest > 0.1 * -lowest;
     if (!has_two_signs) return make_scale(sequential, lowest, highest);

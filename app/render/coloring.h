@@ -1,4 +1,4 @@
-// Which field colours the picture, its values, and the colours.
+// The field that colours a picture, its values, and the colours.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,42 +14,46 @@
 
 namespace incise::render {
 
-/// A field, and how a number is made of its components.
+/// A field, and the measure that turns its components into one number.
 struct ColorField {
     enum class Place { none, points, cells };
     enum class Measure { value, component, magnitude, von_mises };
 
-    Place place = Place::none;  ///< none: one colour for all
+    Place place = Place::none;  ///< none: one colour for the whole body
     std::string array;
     Measure measure = Measure::value;
-    int component = 0;  ///< where the measure is one
+    int component = 0;  ///< for Measure::component
     std::string title;
 };
 
-/// The field that a user calls `wanted`: the name of an array of points or cells, one component
-/// of it ("displacement_z"), or "none". Vectors give their length; tensors (9 components, or 6
-/// in VTK's order) the von Mises stress. Without a wish: displacement, else region, else none.
-/// Throws InputError that names the fields there are.
+/// Returns the field with the name `wanted`: an array of points or cells, a component of an array
+/// ("displacement_z"), or "none". The measure of vectors is their length. That of tensors (9
+/// components, or 6 in the order of VTK) is the von Mises stress. Without `wanted`, the field is
+/// "displacement" if present, else "region" if present, else none.
+/// Throws InputError if there is no such field. The message lists the fields.
 ColorField choose_color_field(vtkDataSet& data, const std::optional<std::string>& wanted);
 
-/// The name of the array that add_color_values() makes.
+/// The name of the array that add_color_values() adds.
 inline constexpr const char* color_array = "incise color";
 
-/// Adds the values of the field to the points or cells. Throws InputError if the field is not
-/// there.
+/// Adds an array with the measure of the field to the points or cells. Adds nothing for
+/// Place::none. Throws InputError if the data do not have the field.
 void add_color_values(vtkDataSet& data, const ColorField& field);
 
-/// What the colours must span, gathered over frames.
+/// The range of values over all frames, for the scale of colours.
 class ColorRange {
   public:
-    /// @pre add_color_values() was called on the data
+    /// Extends the range by the values of a frame.
+    /// @pre  add_color_values() was called on the data
     void include(vtkDataSet& data, const ColorField& field);
 
-    /// Few whole numbers, such as regions, which get a colour each.
+    /// True if the values are at most 12 different whole numbers, such as regions. Each then has
+    /// its own colour.
     bool is_categorical() const { return is_integer_ && !categories_.empty(); }
     const std::set<int>& categories() const { return categories_; }
 
-    /// Lowest and highest finite value; (0, 1) if there is none, never of no extent.
+    /// Returns the lowest and the highest finite value, or (0, 1) if there is none. The second is
+    /// always above the first.
     std::pair<double, double> limits() const;
 
   private:
@@ -61,8 +65,9 @@ class ColorRange {
     std::set<int> categories_;
 };
 
-/// Colours for categories if the range has them; else a scale that is even to the eye, with white
-/// at zero where values of both signs are of interest.
+/// Returns a colour for each category if the range is categorical, otherwise a perceptually uniform
+/// scale. If the limits have both signs and neither is small against the other, the scale is white
+/// at zero.
 vtkSmartPointer<vtkScalarsToColors> make_colors(const ColorRange& range,
                                                 std::pair<double, double> limits);
 

@@ -22,9 +22,9 @@ namespace incise::render {
 
 namespace {
 
-constexpr int exit_not_found = 127;  // as shells have it
+constexpr int exit_not_found = 127;  // the same as in shells
 
-/// Whether $DISPLAY can be opened and knows OpenGL: a forwarded display may not.
+/// True if $DISPLAY can be opened and has OpenGL, which a forwarded display may lack.
 bool has_usable_display() {
     ::Display* const display = XOpenDisplay(nullptr);
     if (!display) return false;
@@ -34,12 +34,13 @@ bool has_usable_display() {
     return has_opengl;
 }
 
-/// In the child: becomes an Xvfb on a free display, whose number it writes to `number_pipe`.
-/// `pipe_text` is that descriptor in digits: between fork and exec nothing may allocate.
+/// Replaces the child process by an Xvfb on a free display. Xvfb writes the number of the display
+/// to `number_pipe`. `pipe_text` is this descriptor as text, because nothing may be allocated
+/// between fork and exec.
 [[noreturn]] void become_server(int number_pipe, const char* pipe_text, pid_t parent) {
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // also where the parent is killed
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // ends also if the parent is killed
     if (::getppid() != parent) ::_exit(1);
-    ::setsid();  // Ctrl+C is for the parent, which then ends us in order
+    ::setsid();  // Ctrl+C reaches only the parent, which ends the child
     const int nowhere = ::open("/dev/null", O_RDWR);
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         ::dup2(nowhere, descriptor);
@@ -49,7 +50,7 @@ bool has_usable_display() {
     ::_exit(exit_not_found);
 }
 
-/// The first line that comes through the pipe within the time, if any.
+/// Returns the first line from the pipe, or nothing if none comes within `patience`.
 std::optional<std::string> read_line(int pipe, std::chrono::milliseconds patience) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
     std::string line;
@@ -67,7 +68,7 @@ std::optional<std::string> read_line(int pipe, std::chrono::milliseconds patienc
     }
 }
 
-/// Ends a server and returns what waitpid() tells of it.
+/// Ends a server and returns its status from waitpid().
 int stop_server(pid_t server) {
     int status = 0;
     ::kill(server, SIGTERM);
@@ -85,7 +86,8 @@ int stop_server(pid_t server) {
 DisplayGuard::DisplayGuard() {
     if (has_usable_display()) return;
 
-    // Two servers that start at once may want the same number: the loser tries again.
+    // Two servers that start at the same time may choose the same number. One then fails, and its
+    // start is repeated.
     constexpr int attempts = 3;
     constexpr std::chrono::seconds patience{20};
     for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -102,7 +104,7 @@ DisplayGuard::DisplayGuard() {
         ::close(ends[0]);
         if (number && !number->empty()) {
             ::setenv("DISPLAY", (":" + *number).c_str(), 1);
-            ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);  // there is no other, and no search for it
+            ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);  // Xvfb has no other; avoids a search
             if (has_usable_display()) return;
         }
         const int status = stop_server(server_);

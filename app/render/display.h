@@ -1,4 +1,4 @@
-// An X display to draw on: VTK's windows, hidden ones too, abort the program where there is none.
+// An X display for VTK. Without one, VTK windows abort the program, even for off-screen rendering.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,10 +6,13 @@
 
 namespace incise::render {
 
-/// Makes sure that $DISPLAY names a display with OpenGL while this lives: the user's own if it can
-/// be opened, else a virtual one (Xvfb), which ends with this object or with the program, however
-/// that ends. To be made before any window, by the main thread.
-/// Throws InputError that says what to install if there can be none.
+/// A guard that makes $DISPLAY name a display with OpenGL during its lifetime. This is the display
+/// of the user if it can be opened, otherwise a virtual one (Xvfb). The virtual display ends with
+/// the guard or with the program, even if the program is killed.
+///
+/// The constructor throws InputError if no display can be opened. The message says what to install.
+/// @pre  no window exists when the guard is created
+/// @thread  create it on the main thread
 class DisplayGuard {
   public:
     DisplayGuard();

@@ -22,16 +22,16 @@ namespace incise::render {
 
 namespace {
 
-/// VTK's reader believes what a file says of itself: one cut short, and counts that the file
-/// cannot hold, are found here.
+/// Throws InputError if the file is truncated, or if its counts are larger than the file can hold.
+/// The reader of VTK does not check this.
 void check_whole(const io::InputFile& file) {
     const std::string_view text = file.bytes;
-    constexpr std::size_t longest_tail = 64;  // blanks and line ends included
+    constexpr std::size_t longest_tail = 64;  // with blanks and line ends
     const auto tail = text.substr(text.size() - std::min(text.size(), longest_tail));
     if (tail.find("</VTKFile>") == tail.npos)
         throw InputError(file.name() + ": is cut short, or no .vtu file");
 
-    // No compressor makes less than a thousandth of a mesh.
+    // No method compresses a mesh to less than a thousandth.
     const auto most = static_cast<std::int64_t>(1000 * text.size());
     for (const std::string_view attribute : {"NumberOfPoints=\"", "NumberOfCells=\""})
         for (auto at = text.find(attribute); at != text.npos; at = text.find(attribute, at)) {

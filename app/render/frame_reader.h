@@ -1,4 +1,4 @@
-// One frame with all its fields, read by VTK's reader but not trusted.
+// Reads a frame with all its fields by the reader of VTK, and checks the file and the result.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace incise::render {
 
-/// Throws InputError if the file is missing, cut short, or not a sound unstructured grid.
+/// Reads a frame. Throws InputError if the file is missing, truncated, or not a sound unstructured
+/// grid.
 vtkSmartPointer<vtkUnstructuredGrid> read_frame(const std::filesystem::path& path);
 
-/// The time that the grid's field data hold, if any.
+/// Returns the time in the field data of the grid, s, if there is one.
 std::optional<double> time_of(vtkUnstructuredGrid& grid);
 
 }  // namespace incise::render

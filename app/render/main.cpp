@@ -1,5 +1,5 @@
-// incise-render: pictures of a finished run, off screen. A program of its own, so that the
-// solver needs neither a display nor VTK's rendering.
+// incise-render: draws pictures of a finished run, off screen. It is a separate program: the solver
+// needs neither a display nor the rendering of VTK.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <signal.h>
 #include <unistd.h>
@@ -36,7 +36,8 @@ void stop_if_asked() {
     if (stop_signal != 0) throw Stopped{};
 }
 
-/// One line on a terminal that is written over; elsewhere a line now and then.
+/// A display of progress on stderr: one line that is overwritten on a terminal, otherwise a line
+/// after each tenth.
 class Progress {
   public:
     Progress(const char* doing, std::size_t total) : doing_(doing), total_(total) {}
@@ -64,7 +65,7 @@ class Progress {
     bool is_shown_ = false;
 };
 
-/// The numbers of the frames to draw.
+/// Returns the numbers of the frames to draw.
 std::vector<std::size_t> choose_frames(const FrameList& list, const Options& options) {
     const auto count = list.frames.size();
     if (options.is_all) {
@@ -85,9 +86,9 @@ std::string six_digits(std::size_t number) {
     return digits.insert(0, digits.size() < 6 ? 6 - digits.size() : 0, '0');
 }
 
-/// Where the pictures go: one file, or a folder and names in it.
+/// The destination of the pictures: one file, or a folder with numbered files.
 struct Destination {
-    fs::path file;  ///< empty: by number in the folder
+    fs::path file;  ///< if empty, numbered files in the folder
     fs::path folder;
     std::string name;
 
@@ -107,7 +108,7 @@ Destination choose_destination(const FrameList& list, const Options& options) {
     return {{}, list.folder / "pictures", list.name};
 }
 
-/// Digits after the point that tell the frames' times apart.
+/// Returns the number of decimals that is needed to distinguish the times of the frames.
 int time_digits(const FrameList& list) {
     double shortest = 1;
     for (std::size_t i = 1; i < list.frames.size(); ++i) {
@@ -126,7 +127,8 @@ std::string caption_of(const FrameFile& file, vtkUnstructuredGrid& grid, int dig
     return text;
 }
 
-/// A frame with the values of the field, which `field` holds or, if it does not yet, is set to.
+/// Reads a frame and adds the values of `field`. If `field` is not set, chooses it first by
+/// `wanted`.
 vtkSmartPointer<vtkUnstructuredGrid> read_colored(const fs::path& path,
                                                   const std::optional<std::string>& wanted,
                                                   std::optional<ColorField>& field) {
@@ -140,7 +142,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_colored(const fs::path& path,
     return grid;
 }
 
-/// What the pictures have in common: found by a look through all frames to be drawn.
+/// Reads all frames to be drawn and returns the settings that their pictures share.
 SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& frames,
                      const Options& options) {
     SceneSettings settings;
@@ -196,10 +198,10 @@ int main(int argc, char** argv) {
 
     struct sigaction action {};
     action.sa_handler = [](int number) { render::stop_signal = number; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second one stops at once
+    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second signal ends the process at once
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
-    vtkObject::GlobalWarningDisplayOff();  // failures are told once, in our words
+    vtkObject::GlobalWarningDisplayOff();  // errors are reported once, with our messages
 
     const auto fail = [](int status, const char* text) {
         std::cerr << "incise-render: " << text << "\n";

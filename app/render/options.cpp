@@ -24,7 +24,7 @@ constexpr int exit_usage = 2;
     throw CLI::ValidationError(std::string(option) + " " + std::string(text) + ": " + why);
 }
 
-/// The `count` finite numbers that `text` lists.
+/// Parses `count` finite numbers with separators between them.
 template <class T>
 std::vector<T> parse_list(const char* option, std::string_view text, char separator,
                           std::size_t count, const char* form) {

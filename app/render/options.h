@@ -1,4 +1,4 @@
-// What the user asked incise-render to do.
+// The command line of incise-render.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,20 +13,21 @@
 
 namespace incise::render {
 
+/// The options of incise-render.
 struct Options {
     std::filesystem::path input;
-    std::filesystem::path out;         ///< empty: beside the input
-    std::optional<std::size_t> frame;  ///< none: the last
+    std::filesystem::path out;         ///< if empty, DIR/pictures, or beside a .vtu file
+    std::optional<std::size_t> frame;  ///< if not set, the last frame
     bool is_all = false;
     std::optional<std::string> color;
     std::optional<std::pair<double, double>> range;
-    std::array<int, 2> size = {1280, 960};
-    Vec3 view = {-0.55, -1.0, 0.55};
-    bool has_edges = false;
+    std::array<int, 2> size = {1280, 960};  ///< pixels
+    Vec3 view = {-0.55, -1.0, 0.55};        ///< from the body to the eye
+    bool has_edges = false;                 ///< if true, the mesh is drawn in full
 };
 
-/// The options, or the exit status where there is nothing to do: after --help, --version, or a
-/// fault, which this has told on stderr.
+/// Returns the options. Returns an exit status after --help and --version, and after an error,
+/// which is printed on stderr.
 std::variant<Options, int> parse_options(int argc, char** argv);
 
 }  // namespace incise::render

@@ -34,7 +34,7 @@ namespace incise::render {
 namespace {
 
 constexpr double text_gray = 0.15;
-constexpr double legend_part = 0.16;  ///< of the width, at the right
+constexpr double legend_part = 0.16;  ///< share of the width, at the right
 
 void style_text(vtkTextProperty& text, int pixels) {
     text.SetFontFamilyToArial();
@@ -45,8 +45,8 @@ void style_text(vtkTextProperty& text, int pixels) {
     text.ShadowOff();
 }
 
-/// Places the camera so that the whole box is seen from the direction, as large as may be, in the
-/// part of the picture that the legend and the captions leave.
+/// Places the camera so that the whole box is visible from the direction `view`. The box is as
+/// large as possible in the part of the picture beside the legend and the captions.
 void aim(vtkCamera& camera, const vtkBoundingBox& box, const Vec3& view, double aspect,
          bool has_legend) {
     const Vec3 back = view.normalized();
@@ -60,7 +60,7 @@ void aim(vtkCamera& camera, const vtkBoundingBox& box, const Vec3& view, double 
     box.GetMinPoint(low.data());
     box.GetMaxPoint(high.data());
 
-    constexpr double view_angle = 25.0;  // degrees: little perspective
+    constexpr double view_angle = 25.0;  // degrees; a small angle gives little perspective
     constexpr double fill_x = 0.90, fill_y = 0.82;
     const double tangent = std::tan(view_angle / 2 * std::numbers::pi / 180);
     const double free_part = has_legend ? 1 - legend_part : 1;
@@ -84,7 +84,8 @@ void aim(vtkCamera& camera, const vtkBoundingBox& box, const Vec3& view, double 
     camera.SetWindowCenter(1 - free_part, 0);
 }
 
-/// How dark the lines of the mesh are drawn: they fade before they would cover the surface.
+/// Returns the opacity of the lines of the mesh. Dense lines fade, so that they do not hide the
+/// surface.
 double edge_opacity(double pixels_an_edge) {
     constexpr double none = 3, full = 14, darkest = 0.35;
     return darkest * std::clamp((pixels_an_edge - none) / (full - none), 0.0, 1.0);
@@ -102,14 +103,16 @@ double mean_edge_length(vtkPolyData& edges) {
     return sum / static_cast<double>(std::max<vtkIdType>(1, edges.GetNumberOfCells()));
 }
 
-/// Pixels drawn for one of the picture, in both directions: smooth edges whatever the driver
-/// can do. Very large pictures, whose edges show little, would be too large to draw.
+/// Returns the number of drawn pixels for each pixel of the picture, in both directions. It smooths
+/// edges independently of the driver. It is 1 for very large pictures, because VTK could not draw
+/// more pixels.
 int oversampling(const std::array<int, 2>& size) {
     constexpr int largest_drawn = 8192;
     return 2 * std::max(size[0], size[1]) <= largest_drawn ? 2 : 1;
 }
 
-/// The image with each block of factor x factor pixels averaged. @pre RGB, size divisible
+/// Returns the image with each block of factor x factor pixels averaged.
+/// @pre  the image is RGB, and its size is divisible by `factor`
 vtkSmartPointer<vtkImageData> reduce(vtkImageData& image, int factor) {
     const int width = image.GetDimensions()[0] / factor;
     const int height = image.GetDimensions()[1] / factor;
@@ -136,7 +139,7 @@ vtkSmartPointer<vtkImageData> reduce(vtkImageData& image, int factor) {
 struct Scene::Parts {
     int oversampling = 1;
     bool has_edges = false;
-    double pixels_a_length = 1;  ///< at the middle of the body
+    double pixels_a_length = 1;  ///< at the centre of the body
     vtkNew<vtkDataSetSurfaceFilter> surface;
     vtkNew<vtkPolyDataNormals> normals;
     vtkNew<vtkExtractEdges> edges;
@@ -154,11 +157,11 @@ struct Scene::Parts {
 };
 
 void Scene::Parts::make_body(const SceneSettings& settings) {
-    constexpr double sharp_edge = 35;  // degrees between faces that are not shaded as one
+    constexpr double sharp_edge = 35;  // degrees; larger angles between faces are not smoothed
     normals->SetInputConnection(surface->GetOutputPort());
     normals->SetFeatureAngle(sharp_edge);
     normals->SplittingOn();
-    normals->ConsistencyOff();  // faces of cells look outwards already
+    normals->ConsistencyOff();  // normals of cell faces point outwards already
     surface_mapper->SetInputConnection(normals->GetOutputPort());
     if (settings.field.place == ColorField::Place::none) {
         surface_mapper->ScalarVisibilityOff();
@@ -187,7 +190,7 @@ void Scene::Parts::make_body(const SceneSettings& settings) {
     edges->SetInputConnection(surface->GetOutputPort());
     edge_mapper->SetInputConnection(edges->GetOutputPort());
     edge_mapper->ScalarVisibilityOff();
-    // Lines lie in the faces: pull them a little towards the eye.
+    // Lines lie in the faces, so that they must be moved a little towards the eye.
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
     surface_mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(2, 2);
     edge_mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -4);

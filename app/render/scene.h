@@ -1,4 +1,4 @@
-// The picture of a frame: the body's surface, its mesh, a legend and the time.
+// The picture of a frame: surface of the body, mesh, legend and time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,11 +15,11 @@
 
 namespace incise::render {
 
-/// What stays the same over all pictures of a series, so that they make a film.
+/// Settings that all pictures of a series share, so that the pictures can be shown as a film.
 struct SceneSettings {
     std::array<int, 2> size{};  ///< pixels
-    Vec3 view;                  ///< from the body to the eye; not zero
-    bool has_edges = false;     ///< the mesh in full, not only a hint of it
+    Vec3 view;                  ///< from the body to the eye, of any length above zero
+    bool has_edges = false;     ///< if true, mesh lines are dark and do not fade
     vtkBoundingBox bounds;      ///< of all frames
     ColorField field;
     ColorRange range;
@@ -27,7 +27,8 @@ struct SceneSettings {
     std::string title;
 };
 
-/// @pre a display can be opened (display.h)
+/// A renderer of pictures with the same settings.
+/// @pre  a display can be opened (display.h)
 class Scene {
   public:
     explicit Scene(const SceneSettings& settings);
@@ -35,8 +36,8 @@ class Scene {
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    /// The bytes of a PNG file. `grid` has its color values (coloring.h). Throws OutputError if
-    /// VTK fails.
+    /// Returns the picture of a frame as bytes of a PNG file. Throws OutputError if VTK fails.
+    /// @pre  add_color_values() was called on `grid`
     std::string png(vtkUnstructuredGrid& grid, const std::string& caption);
 
   private:

@@ -1,4 +1,4 @@
-// A number that counts what is done with it, to recount the operations of formulas.
+// A number that counts the operations on it, to count the operations of formulas.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,19 +10,19 @@
 
 namespace incise::bench {
 
-/// Operations on numbers. A change of sign is none, nor is a comparison.
+/// Numbers of operations. Changes of sign and comparisons do not count.
 struct Operations {
-    std::int64_t additions = 0;  ///< and subtractions
+    std::int64_t additions = 0;  ///< with subtractions
     std::int64_t multiplications = 0;
     std::int64_t divisions = 0;
     std::int64_t functions = 0;  ///< square roots, logarithms
 
-    /// Everything, each as one.
+    /// Returns the sum over all kinds.
     std::int64_t total() const { return additions + multiplications + divisions + functions; }
     bool operator==(const Operations&) const = default;
 };
 
-/// A double that books its operations. What it is made of and converted to is free.
+/// A double that counts its operations. Conversions do not count.
 class Counted {
   public:
     Counted() = default;
@@ -30,8 +30,9 @@ class Counted {
 
     double value() const { return value_; }
 
-    /// What has been booked since the last call, in this thread. A number has no room for a
-    /// reference to its book, so there is one for all.
+    /// Returns the operations in this thread since the last call. All numbers of a thread share one
+    /// count.
+    /// @thread Each thread has its own count.
     static Operations take() { return std::exchange(recorded_, {}); }
 
     friend Counted operator+(Counted a, Counted b) {

@@ -1,5 +1,5 @@
-// What the comparators share: the tetrahedra of a mesh as plain arrays, and one loop over them, so
-// that methods are timed with the same layout and the same gathering and scattering.
+// The tetrahedra of a mesh as plain arrays, and one loop over them, which the comparators share. So
+// all methods are timed with the same layout and the same access to nodes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -19,13 +19,13 @@ template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, 3, 1>;
 template <class Scalar>
 using Matrix = Eigen::Matrix<Scalar, 3, 3>;
-/// The four corners of a tetrahedron: positions, m, or forces, N.
+/// One vector for each corner of a tetrahedron: positions, m, or forces, N.
 template <class Scalar>
 using Corners = std::array<Vector<Scalar>, 4>;
 
 using Nodes = std::array<std::uint32_t, 4>;
 
-/// Living tetrahedra in ascending order of their ids; nodes are node ids.
+/// Returns the nodes of the living tetrahedra, as node ids, in ascending order of element ids.
 /// @pre all elements are tetrahedra
 inline std::vector<Nodes> tetrahedra_of(const topology::Mesh& mesh) {
     std::vector<Nodes> tetrahedra;
@@ -43,8 +43,8 @@ Corners<Scalar> corners_of(const Nodes& nodes, std::span<const Vector<Scalar>> p
     return {positions[nodes[0]], positions[nodes[1]], positions[nodes[2]], positions[nodes[3]]};
 }
 
-/// Linear shape functions of one tetrahedron. The gradient of the first is minus the sum of the
-/// others.
+/// The linear shape functions N_0 to N_3 of one tetrahedron. The gradient of N_0 is minus the sum
+/// of the others.
 struct ShapeFunctions {
     double volume;                                      ///< at rest, m3
     Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows;  ///< gradients of N_1, N_2, N_3, 1/m
@@ -61,8 +61,8 @@ struct ShapeFunctions {
     }
 };
 
-/// Forces of a mesh by a kernel with `Scalar`, `Element`, `precompute(rest corners)` and
-/// `forces(element, corners)`: those of this folder and physics::HemlKernel alike.
+/// The forces of a mesh by a kernel that has `Element`, `precompute(rest corners)` and
+/// `forces(element, corners)`, such as those of this folder and physics::HemlKernel.
 template <class Kernel, class Scalar = double>
 class ElementLoop {
   public:

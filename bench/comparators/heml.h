@@ -1,6 +1,5 @@
-// Hyper-elastic mass links over any scalar: as the paper prints the force of Saint Venant-Kirchhoff
-// tissue, with its matrices, and as the program computes it, link by link. For counting; the
-// program's own is physics/elements/heml_kernel.h.
+// HEML over any scalar, to count operations: as the paper prints it, with matrices and for Saint
+// Venant-Kirchhoff tissue, and link by link. Incise itself uses physics/elements/heml_kernel.h.
 // Source: HEML 2015, Table 3, (26), (B.2), (C.4), with the corrections of docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -13,8 +12,9 @@
 
 namespace incise::bench {
 
-/// The matrices DLM_1 to DLM_3 of (B.2): the squared lengths of the links 01, 02, 03, 12, 23, 31
-/// change by DLM_i v^T with corner i, v having the edge vectors from corner 0 as columns.
+/// Returns the matrices DLM_1 to DLM_3 of (B.2). DLM_i v^T is the derivative of the squared lengths
+/// of the links 01, 02, 03, 12, 23, 31 by the position of corner i. The columns of v are the edges
+/// from corner 0.
 inline const std::array<Eigen::Matrix<double, 6, 3>, 3>& link_derivatives() {
     static const auto matrices = [] {
         std::array<Eigen::Matrix<double, 6, 3>, 3> d;
@@ -32,8 +32,8 @@ Eigen::Matrix<Scalar, 6, 1> squared_links(const Corners<Scalar>& x) {
             (x[2] - x[1]).squaredNorm(), (x[3] - x[2]).squaredNorm(), (x[1] - x[3]).squaredNorm()};
 }
 
-/// Saint Venant-Kirchhoff tissue with "characteristic matrices" (HEML 2006, section 3.1): those of
-/// corners 1 to 3, -2 Vol MW DLM_i. The force on corner 0 is minus the sum of the others.
+/// Saint Venant-Kirchhoff tissue with the "characteristic matrices" of HEML 2006, section 3.1,
+/// -2 Vol MW DLM_i for corners 1 to 3. The force on corner 0 is minus the sum of the others.
 template <class Scalar>
 struct PrintedHeml {
     struct Element {
@@ -72,7 +72,8 @@ struct PrintedHeml {
     }
 };
 
-/// Derivatives of an energy density by a = tr(2E), b = tr((2E)^2) and J; physics/laws/law.h.
+/// The derivatives of an energy density by a = tr(2E), b = tr((2E)^2) and J; see
+/// physics/laws/law_response.h.
 template <class Scalar>
 struct LinkResponse {
     Scalar w_a, w_b, w_J;
@@ -93,7 +94,7 @@ LinkResponse<Scalar> respond(const physics::MooneyRivlin& law, Scalar a, Scalar 
             (law.lambda * log(J) - (2.0 * law.c1 + 4.0 * law.c2)) / J};
 }
 
-/// The program's way: tensions of the six links, and the term of volume for the laws that have one.
+/// HEML link by link: the tensions of the six links, and the volume term of laws that have one.
 /// @pre J > 0
 template <class Scalar, class Law>
 struct LinkHeml {

@@ -5,10 +5,10 @@
 
 namespace incise::bench {
 
-// Entries of the lower half are compressed by columns. The rows of a node are three in a row, and
-// so a block of two different nodes, below the diagonal, is three runs of three entries: one in
-// each of three columns, and as far from each column's first entry. Blocks on the diagonal are
-// triangles, whose entries come first in their columns.
+// The entries of the lower half are compressed by columns. The three rows of a node are adjacent.
+// So a block of two different nodes, below the diagonal, has three consecutive entries in each of
+// three columns. In column c these begin at `place` - c entries after the first entry of the
+// column. Blocks on the diagonal are triangles, whose entries come first in their columns.
 
 ImplicitStep::ImplicitStep(const physics::SaintVenantKirchhoff& law, double density,
                            std::span<const Nodes> tetrahedra, std::span<const Vec3> rest_positions,
@@ -60,14 +60,15 @@ void ImplicitStep::add_block(const Element& e, std::size_t i, std::size_t j,
         double* entries = matrix_.valuePtr() + matrix_.outerIndexPtr()[column + c];
         if (row == column)
             for (int r = c; r < 3; ++r) entries[r - c] += K(r, c);
-        else  // c entries of the column's own triangle are above
+        else  // the triangle on the diagonal has c entries fewer in column c
             for (int r = 0; r < 3; ++r) entries[e.place[i][j] - c + r] += K(r, c);
     }
 }
 
-// With g = grad N: f_i = -Vol F S g_i, and -df_i/dx_j = Vol [ (g_i . S g_j) 1 + lambda F g_i (F
-// g_j)^T
-// + mu F g_j (F g_i)^T + mu (g_i . g_j) F F^T ], the stiffness of stress and that of the law.
+// With g = grad N: f_i = -Vol F S g_i, and
+//     -df_i/dx_j = Vol [ (g_i . S g_j) 1 + lambda F g_i (F g_j)^T
+//                        + mu F g_j (F g_i)^T + mu (g_i . g_j) F F^T ].
+// The first term is the stiffness of the stress, the others are that of the law.
 void ImplicitStep::add_element(const Element& e, std::span<const Vec3> positions) {
     const Corners<double> x = corners_of(e.nodes, positions);
     Matrix<double> edges;
@@ -85,7 +86,7 @@ void ImplicitStep::add_element(const Element& e, std::span<const Vec3> positions
         if (const Eigen::Index row = row_of_[e.nodes[i]]; row >= 0)
             right_side_.segment<3>(row) += f.col(a);
         for (std::size_t j = 0; j < 4; ++j) {
-            if (row_of_[e.nodes[i]] < row_of_[e.nodes[j]]) continue;  // the upper half
+            if (row_of_[e.nodes[i]] < row_of_[e.nodes[j]]) continue;  // in the upper half
             const auto b = static_cast<Eigen::Index>(j);
             Matrix<double> K = law_.lambda * Fg.col(a) * Fg.col(b).transpose() +
                                law_.mu * Fg.col(b) * Fg.col(a).transpose() +
@@ -104,7 +105,7 @@ void ImplicitStep::assemble(double dt, std::span<const Vec3> positions,
     for (std::size_t n = 0; n < row_of_.size(); ++n) {
         if (row_of_[n] < 0) continue;
         right_side_.segment<3>(row_of_[n]) += masses_[n] / dt * velocities[n];
-        for (int c = 0; c < 3; ++c)  // the diagonal comes first
+        for (int c = 0; c < 3; ++c)  // the diagonal entry is the first of its column
             matrix_.valuePtr()[matrix_.outerIndexPtr()[row_of_[n] + c]] += masses_[n] / (dt * dt);
     }
 }

@@ -1,8 +1,8 @@
-// The step of an assembled, implicit finite element code: linear tetrahedra, a tangent stiffness
-// matrix, a sparse Cholesky factorization. It shares nothing with links.
+// The step of an implicit finite element code, which shares no code with HEML: linear tetrahedra,
+// an assembled tangent and a sparse Cholesky factorization.
 // Source: D. Baraff, A. Witkin, Large steps in cloth simulation, SIGGRAPH 1998: backward Euler,
-// linearised once a step; for the elements J. Bonet, R. Wood, Nonlinear continuum mechanics for
-// finite element analysis, 1997.
+// linearised once a step. Elements: J. Bonet, R. Wood, Nonlinear continuum mechanics for finite
+// element analysis, 1997.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,33 +14,35 @@
 
 namespace incise::bench {
 
-/// Saint Venant-Kirchhoff tissue with lumped masses. Nodes may be held where they are.
+/// Implicit steps of Saint Venant-Kirchhoff tissue with lumped masses. Nodes may be fixed.
 class ImplicitStep {
   public:
     using SparseMatrix = Eigen::SparseMatrix<double>;
 
-    /// Finds the sparsity of the matrix and a fill-reducing order for it, once.
-    /// @param held nodes that do not move; nodes without an element do not either
+    /// Finds the pattern of the matrix and a fill-reducing order for it. `held` are nodes that do
+    /// not move. Nodes without an element do not move either. `density` is in kg/m3.
     ImplicitStep(const physics::SaintVenantKirchhoff& law, double density,
                  std::span<const Nodes> tetrahedra, std::span<const Vec3> rest_positions,
                  std::span<const std::uint32_t> held = {});
 
-    /// Solves (M/dt^2 + K(x)) d = f(x) + M v/dt and goes to x + d with the velocity d/dt.
-    /// Returns whether the matrix had a factorization with positive pivots; if not, nothing moves.
+    /// Solves (M/dt^2 + K(x)) d = f(x) + M v/dt, and sets the positions to x + d and the velocities
+    /// to d/dt. Returns false, and moves nothing, if the factorization has a pivot that is not
+    /// positive.
     bool step(double dt, std::span<Vec3> positions, std::span<Vec3> velocities);
 
-    /// The parts of a step, to be timed: fills matrix and right side, factorizes, solves.
+    /// The parts of a step, to be timed one by one: assemble() fills the matrix and the right side.
     void assemble(double dt, std::span<const Vec3> positions, std::span<const Vec3> velocities);
     bool factorize();
     const Eigen::VectorXd& solve();
 
-    /// M/dt^2 + K of the last assemble(), lower half; and f + M v/dt. Three rows for each free
-    /// node.
+    /// Returns the lower half of M/dt^2 + K of the last assemble(), with three rows for each node
+    /// that moves.
     const SparseMatrix& matrix() const { return matrix_; }
+    /// Returns f + M v/dt of the last assemble(), N, with the same rows.
     const Eigen::VectorXd& right_side() const { return right_side_; }
-    /// The first of a node's rows; negative if it does not move.
+    /// Returns the first row of a node; negative if the node does not move.
     Eigen::Index row_of(std::size_t node) const { return row_of_[node]; }
-    /// Entries of the factor, after factorize().
+    /// Returns the number of entries of the factor, after factorize().
     Eigen::Index num_factor_entries() const {
         return solver_.matrixL().nestedExpression().nonZeros();
     }
@@ -49,7 +51,7 @@ class ImplicitStep {
     struct Element {
         Nodes nodes;
         ShapeFunctions N;
-        std::array<std::array<Eigen::Index, 4>, 4> place;  ///< in matrix_, of blocks; see .cpp
+        std::array<std::array<Eigen::Index, 4>, 4> place;  ///< of blocks in matrix_; see the .cpp
     };
 
     void add_block(const Element& e, std::size_t i, std::size_t j, const Matrix<double>& K);

@@ -1,5 +1,5 @@
-// The matrices of HEML as the paper has them, by which squared edge lengths give the strain. The
-// program itself needs none of them.
+// The matrices of the HEML paper that give the strain from squared edge lengths. Only comparisons
+// use them.
 // Source: HEML 2015, (A.1) to (A.6), (C.1).
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -8,14 +8,15 @@
 
 namespace incise::bench {
 
-/// Of a tetrahedron whose C is the sum of l_k C_k over its squared edge lengths l_k.
+/// The matrices of a tetrahedron with C = sum of l_k C_k over its squared edge lengths l_k.
 struct LinkTraces {
     physics::Vec6 vtr;                ///< traces of the C_k: 1/m2
     Eigen::Matrix<double, 6, 6> Mtr;  ///< traces of C_k C_l: 1/m4
 };
 
-/// D = V^T C V is linear in the links, D = sum of l_k D_k, and C_k = V^-T D_k V^-1: hence
-/// tr C_k = tr(D_k G) and tr(C_k C_l) = tr(D_k G D_l G) with G = (V^T V)^-1.
+/// Returns the matrices of a tetrahedron. D = V^T C V is linear in the squared edge lengths,
+/// D = sum of l_k D_k, and C_k = V^-T D_k V^-1. Hence tr C_k = tr(D_k G) and
+/// tr(C_k C_l) = tr(D_k G D_l G) with G = (V^T V)^-1.
 inline LinkTraces link_traces(const physics::LinkElement& element) {
     const physics::Mat3 G = element.inverse_edges * element.inverse_edges.transpose();
     std::array<physics::Mat3, 6> DG;

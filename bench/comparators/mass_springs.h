@@ -1,5 +1,5 @@
-// Classical springs, one for each edge of a mesh; and the same as degenerate HEML, element by
-// element, with the energy of springs in place of a law's.
+// The mass-spring model with one spring for each edge of a mesh; and the same as degenerate HEML,
+// element by element, with the energy of springs in place of that of a law.
 // Source: HEML 2015, section 5.3: (34) to (41), with all six edges of a tetrahedron in (38).
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -12,8 +12,8 @@
 
 namespace incise::bench {
 
-/// (34) and (35) over the edges of a mesh. An edge's stiffness is the sum of what the elements
-/// round it give, E Vol / L^2 each, as the program's own springs have it.
+/// (34) and (35) over the edges of a mesh. Each element of an edge adds E Vol / L^2 to its
+/// stiffness, as in physics::MassSpringKernel.
 class MassSprings {
   public:
     struct Spring {
@@ -46,9 +46,9 @@ class MassSprings {
     std::vector<Spring> springs_;
 };
 
-/// W = sum of k/2 (l - L)^2 over the six links, as a function of their squared lengths:
-/// dW/d(l^2) = k (l - L)/(2 l), and with (12), (13) and (B.2) the force on corner i is
-/// -dW/d(l^2) DLM_i v^T. Degenerate, since this energy is none of the strain.
+/// W = sum of k/2 (l - L)^2 over the six links, as a function of their squared lengths. Then
+/// dW/d(l^2) = k (l - L)/(2 l). With (12), (13) and (B.2), the force on corner i is
+/// -dW/d(l^2) DLM_i v^T. This HEML is degenerate, since W is not a function of strain.
 struct SpringLinks {
     using Element = physics::MassSpringKernel::Element;
 

@@ -8,7 +8,7 @@ namespace incise::bench {
 
 namespace {
 
-/// Coefficients of one node while they are summed up.
+/// Sums of the coefficients of one node.
 struct Sums {
     std::map<std::uint32_t, Matrix<double>> linear;
     std::map<std::array<std::uint32_t, 2>, std::array<Vector<double>, 2>> quadratic;
@@ -21,8 +21,8 @@ void add(Map& map, const Key& key, const Value& value) {
     if (!is_new) place->second += value;
 }
 
-/// The tensors of one element by its corners, from the gradients g of the shape functions; see
-/// docs/comparison.md.
+/// The tensors of one element, by its corners, from the gradients g of the shape functions.
+/// Equations: docs/comparison.md.
 struct Tensors {
     double volume, lambda, mu;
     std::array<Vector<double>, 4> g;

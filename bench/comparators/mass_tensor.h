@@ -1,5 +1,5 @@
-// The mass-tensor model with large deformation: forces as a cubic polynomial of displacements, its
-// coefficients summed up at nodes, edges, and triples of nodes. Saint Venant-Kirchhoff tissue only.
+// The mass-tensor model for large deformation of Saint Venant-Kirchhoff tissue. Forces are a cubic
+// polynomial of displacements, with coefficients summed at nodes, pairs and triples of nodes.
 // Source: G. Picinbono, H. Delingette, N. Ayache, Non-linear and anisotropic elastic soft tissue
 // models for medical simulation, ICRA 2001; HEML 2015, eq. (42), where F is the energy's gradient.
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -12,21 +12,21 @@
 
 namespace incise::bench {
 
-/// Coefficients of (42), those of them that are not zero: of pairs and triples of nodes that have
-/// an element in common with the node whose force it is. Factors and signs are in the coefficients.
+/// The coefficients of (42) that are not zero. These belong to nodes, pairs and triples of nodes
+/// that share an element with the node of the force. Factors and signs are included.
 class MassTensor {
   public:
-    /// Force on p, of displacement j: -B_pj, N/m.
+    /// The force on p by the displacement of j: -B_pj, N/m.
     struct Linear {
         std::uint32_t j;
         Matrix<double> B;
     };
-    /// Of displacements j and k: -2 C_jkp and -C_pjk, N/m2.
+    /// The force by the displacements of j and k: -2 C_jkp and -C_pjk, N/m2.
     struct Quadratic {
         std::uint32_t j, k;
         Vector<double> C_jkp, C_pjk;
     };
-    /// Of displacements j, k and l: -4 D_jklp, N/m3.
+    /// The force by the displacements of j, k and l: -4 D_jklp, N/m3.
     struct Cubic {
         std::uint32_t j, k, l;
         double D;
@@ -40,11 +40,11 @@ class MassTensor {
     MassTensor(const physics::SaintVenantKirchhoff& law, std::span<const Nodes> tetrahedra,
                std::span<const Vec3> rest_positions);
 
-    /// By node id.
+    /// Returns the coefficients by node id.
     std::span<const Node> nodes() const { return nodes_; }
 
-    /// Adds the forces at `positions` (m) to `forces` (N), both by node id. The displacements from
-    /// rest count, however far the body has gone.
+    /// Adds the forces at `positions` (m) to `forces` (N), both by node id. Sets `displacements`
+    /// (m) to those from the rest positions.
     template <class Scalar>
     void add_forces(std::span<const Vector<Scalar>> positions, std::span<Vector<Scalar>> forces,
                     std::vector<Vector<Scalar>>& displacements) const {
@@ -62,7 +62,7 @@ class MassTensor {
         }
     }
 
-    /// Numbers kept, of eight bytes.
+    /// Returns the count of stored numbers, of eight bytes each.
     std::size_t num_coefficients() const;
 
   private:

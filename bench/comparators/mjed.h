@@ -1,5 +1,5 @@
-// Multiplicative Jacobian energy decomposition: the energy density is a sum of products
-// f(J) g(I1, I2), so that no stress needs an inverse of C: the derivative of J by a corner is a
+// Multiplicative Jacobian energy decomposition. The energy density is a sum of products
+// f(J) g(I1, I2). No stress then needs the inverse of C, since the derivative of J by a corner is a
 // cross product of edges.
 // Source: S. Marchesseau, T. Heimann, S. Chatelin, R. Willinger, H. Delingette, Multiplicative
 // Jacobian energy decomposition method for fast porous visco-hyperelastic soft tissue model, MICCAI
@@ -40,7 +40,7 @@ ProductSums<Scalar> products(const physics::MooneyRivlin& law, Scalar, Scalar, S
     using std::log;
     return {law.c1, law.c2, (law.lambda * log(J) - (2.0 * law.c1 + 4.0 * law.c2)) / J};
 }
-/// J^-2/3 [C1 I1] + J^-4/3 [C2 I2] + [K/2 (J - 1)^2 - 3 C1 - 3 C2] 1, the paper's own example
+/// J^-2/3 [C1 I1] + J^-4/3 [C2 I2] + [K/2 (J - 1)^2 - 3 C1 - 3 C2] 1, the example of the paper
 inline ProductSums<double> products(const physics::IsochoricMooneyRivlin& law, double I1, double I2,
                                     double J) {
     const double f = 1.0 / std::cbrt(J * J);
@@ -49,13 +49,15 @@ inline ProductSums<double> products(const physics::IsochoricMooneyRivlin& law, d
         -2.0 / 3.0 * f / J * (law.c1 * I1 + 2.0 * law.c2 * I2 * f) + law.bulk_modulus * (J - 1.0)};
 }
 
-/// Whether stress has a term with C, from I1^2 or I2; whether f is not 1 alone.
+/// True if the stress has a term with C, from I1^2 or I2.
 template <class Law>
 constexpr bool has_C = !std::is_same_v<Law, physics::NeoHookean>;
+/// True if a factor f depends on J.
 template <class Law>
 constexpr bool has_J = !std::is_same_v<Law, physics::SaintVenantKirchhoff>;
 
-/// @pre J > 0 but for Saint Venant-Kirchhoff tissue
+/// The forces of one tetrahedron.
+/// @pre J > 0, except for Saint Venant-Kirchhoff tissue
 template <class Scalar, class Law>
 struct Mjed {
     using Element = typename Tled<Scalar, Law>::Element;

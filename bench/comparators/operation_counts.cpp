@@ -20,7 +20,7 @@ topology::MeshData cube_of_five_tetrahedra(int n) {
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const bool mirrored = (i + j + k) % 2 != 0;
-                // Corners by their offsets; a mirrored brick's run along x the other way.
+                // The point at offsets a, b, c. In a mirrored brick the offset along x is reversed.
                 const auto corner = [&](int a, int b, int c) -> std::int64_t {
                     const int x = i + (mirrored ? 1 - a : a);
                     return x + (n + 1) * (j + b + (n + 1) * (k + c));
@@ -32,7 +32,7 @@ topology::MeshData cube_of_five_tetrahedra(int n) {
                 };
                 const std::int64_t o = corner(0, 0, 0), xy = corner(1, 1, 0), xz = corner(1, 0, 1),
                                    yz = corner(0, 1, 1);
-                add(o, xz, xy, yz);  // in the middle
+                add(o, xz, xy, yz);  // the one in the middle
                 add(corner(1, 0, 0), xy, o, xz);
                 add(corner(0, 1, 0), o, xy, yz);
                 add(corner(0, 0, 1), o, yz, xz);
@@ -90,7 +90,7 @@ std::int64_t printed_mass_tensor_operations(std::span<const Nodes> tetrahedra) {
     for (const Nodes& nodes : tetrahedra)
         for (const std::uint32_t p : nodes) {
             if (p >= neighbours.size()) neighbours.resize(p + 1);
-            neighbours[p].insert(nodes.begin(), nodes.end());  // itself, too
+            neighbours[p].insert(nodes.begin(), nodes.end());  // including p
         }
     std::int64_t sum = 0;
     for (const auto& star : neighbours) {

@@ -1,5 +1,5 @@
-// Total Lagrangian explicit dynamics: forces by second Piola-Kirchhoff stress and shape functions,
-// both of the rest configuration.
+// Total Lagrangian explicit dynamics: forces by the second Piola-Kirchhoff stress and gradients of
+// shape functions, both in the rest frame.
 // Source: K. Miller, G. Joldes, D. Lance, A. Wittek, Total Lagrangian explicit dynamics finite
 // element algorithm for computing soft tissue deformation, Communications in Numerical Methods in
 // Engineering 23, 2007. Its B_L^T S of a corner is F S grad N.
@@ -14,7 +14,7 @@
 
 namespace incise::bench {
 
-/// C = F^T F, six products and not nine.
+/// Returns C = F^T F from six scalar products, not nine.
 template <class Scalar>
 Matrix<Scalar> right_cauchy_green(const Matrix<Scalar>& F) {
     Matrix<Scalar> C;
@@ -23,7 +23,7 @@ Matrix<Scalar> right_cauchy_green(const Matrix<Scalar>& F) {
     return C;
 }
 
-/// C^-1 by cofactors, from C and J^2 = det C.
+/// Returns C^-1 by cofactors, from C and J^2 = det C.
 template <class Scalar>
 Matrix<Scalar> inverse_of_symmetric(const Matrix<Scalar>& C, Scalar determinant) {
     const Scalar scale = 1.0 / determinant;
@@ -36,8 +36,9 @@ Matrix<Scalar> inverse_of_symmetric(const Matrix<Scalar>& C, Scalar determinant)
     return inverse;
 }
 
-/// Second Piola-Kirchhoff stress, Pa, from C and J (which Saint Venant-Kirchhoff tissue ignores).
-/// @pre J > 0 for the others
+/// Returns the second Piola-Kirchhoff stress, Pa, from C and J. Saint Venant-Kirchhoff tissue does
+/// not use J.
+/// @pre J > 0 for the other laws
 template <class Scalar>
 Matrix<Scalar> second_piola_kirchhoff(const physics::SaintVenantKirchhoff& law,
                                       const Matrix<Scalar>& C, Scalar) {
@@ -74,9 +75,9 @@ Matrix<Scalar> second_piola_kirchhoff(const physics::MooneyRivlin& law, const Ma
     return S;
 }
 
-/// One tetrahedron, which has one point of integration. The deformation gradient is taken from the
-/// three edge vectors at corner 0, the force on which is minus the sum of the others: fewer
-/// operations than by four displacements, and the same in exact arithmetic.
+/// The forces of one tetrahedron, with one integration point. The deformation gradient comes from
+/// the three edges at corner 0, and the force on corner 0 is minus the sum of the others. In exact
+/// arithmetic this equals the form with four displacements, and takes fewer operations.
 template <class Scalar, class Law>
 struct Tled {
     struct Element {
@@ -100,7 +101,7 @@ struct Tled {
         if constexpr (!std::is_same_v<Law, physics::SaintVenantKirchhoff>)
             J = F.col(0).dot(F.col(1).cross(F.col(2)));
         const Matrix<Scalar> S = second_piola_kirchhoff<Scalar>(law, C, J);
-        const Matrix<Scalar> scaled = -e.volume * F;  // by itself, or the product scales it thrice
+        const Matrix<Scalar> scaled = -e.volume * F;  // separate: Eigen would scale it three times
         const Matrix<Scalar> P = scaled * S;
         const Matrix<Scalar> f = P * e.gradients.transpose();
         return {-(f.col(0) + f.col(1) + f.col(2)), f.col(0), f.col(1), f.col(2)};

@@ -10,12 +10,12 @@ namespace incise::cutting {
 
 namespace {
 
-/// A point that moves across the edge by less than this share of its motion, or of what the fastest
-/// point does, goes on as its neighbours do.
+/// A point goes on as its neighbours do if its motion across the edge is small. It is small below
+/// this share of the point's whole motion, or of the fastest motion of a point across the edge.
 constexpr double least_share = 0.05;
 
-/// What is nearer to two segments alike than this, relative to its distance, is ahead of the point
-/// in which they meet.
+/// Two segments count as equally near to a point if their distances differ by less than this share.
+/// The point is then nearest to the place where the segments meet.
 constexpr double rounding_of_distances = 1e-9;
 
 Vec3 without(const Vec3& v, const Vec3& unit) { return v - v.dot(unit) * unit; }
@@ -26,7 +26,7 @@ BladeEnd::BladeEnd(std::vector<Vec3> edge, const std::vector<Vec3>& motion)
     : edge_(std::move(edge)), ahead_(edge_.size(), Vec3::Zero()) {
     const std::size_t last = edge_.size() - 1;
     std::vector<Vec3> across = motion;
-    std::vector<double> speeds(edge_.size());  // across the slower of the segments at a point
+    std::vector<double> speeds(edge_.size());  // across that segment at the point which gives less
     for (std::size_t i = 0; i <= last; ++i) {
         const Vec3 before = i > 0 ? along(i - 1) : along(i), after = i < last ? along(i) : before;
         across[i] = without(motion[i], (before + after).stableNormalized());
@@ -74,7 +74,8 @@ double BladeEnd::distance_ahead(const Vec3& x) const {
     return nearest.dot(direction.stableNormalized());
 }
 
-/// Of the point of the segment that is nearest to x: 0 at its first end, 1 at the other.
+/// Returns the parameter of the point of the segment that is nearest to x: 0 at its first end, 1 at
+/// the other.
 double BladeEnd::nearest_place(std::size_t segment, const Vec3& x) const {
     const Vec3 way = edge_[segment + 1] - edge_[segment];
     const double square = way.squaredNorm();

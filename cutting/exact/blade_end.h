@@ -1,4 +1,4 @@
-// Where the way of a blade ends inside the body.
+// The edge of a blade whose path ends inside the body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,23 +9,24 @@
 
 namespace incise::cutting {
 
-/// The edge of a blade where it stops, and the direction in which it was moving.
+/// The edge of a blade where it stops, with the direction in which it was moving.
 class BladeEnd {
   public:
     /// @param edge    a polyline of at least two points, m
-    /// @param motion  of each point, of any length; a point without goes on as its neighbours do
+    /// @param motion  of each point, of any length; a point without motion goes on as its
+    ///                neighbours do
     BladeEnd(std::vector<Vec3> edge, const std::vector<Vec3>& motion);
 
     const std::vector<Vec3>& edge() const { return edge_; }
 
-    /// How far the point is ahead of the edge, m; negative behind it.
+    /// Returns how far a point is ahead of the edge, m; negative behind it.
     double distance_ahead(const Vec3& x) const;
 
-    /// What the edge would sweep if it went straight on, each of its points by this distance (m)
-    /// across the edge.
+    /// Returns what the edge would sweep if it went straight on. Each of its points moves by
+    /// `distance`, m, across the edge.
     SweptEdge continuation(double distance) const;
 
-    /// From its point that is nearest to x.
+    /// Returns the vector to x from the point of the edge that is nearest to x, m.
     Vec3 away_from_edge(const Vec3& x) const;
 
   private:
@@ -34,7 +35,8 @@ class BladeEnd {
     Vec3 point_at(std::size_t segment, double place) const;
 
     std::vector<Vec3> edge_;
-    std::vector<Vec3> ahead_;  // by point: its motion, as long as it takes to get 1 across the edge
+    // By point: its motion, of such a length that the part across the edge is 1.
+    std::vector<Vec3> ahead_;
 };
 
 }  // namespace incise::cutting

@@ -9,9 +9,9 @@ namespace incise::cutting {
 
 namespace {
 
-/// Cosine of the angle from which on a bend is a crease: 18 degrees.
+/// Cosine of the smallest angle of a crease, 18 degrees.
 constexpr double sharp = 0.95;
-/// Sheets whose planes are this share of an edge apart are two, even if they are parallel.
+/// Branches whose planes are this share of an edge apart are two, even if they are parallel.
 constexpr double apart = 0.2;
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Which edges the cut passes through at a node that a division has made.
+// The edges of a new node that a cut passes through, found by counting intersections round
+// triangles.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -16,16 +17,23 @@
 
 namespace incise::cutting {
 
-/// Counts the crossings of the edges that the middle of the edge from a to b has come to. It counts
-/// as on the side of the end b: where it is, if it was made off the surface. Round a triangle the
-/// crossings are odd in number if the boundary of the sweep runs through it, and in no other case,
-/// now and after each later step: rounding has moved the middle off the edge, so nothing of this
-/// may be left to its place.
-/// @param has_boundary  (p, q, r): whether the boundary runs through a triangle; nothing if the
-/// surface
-///                    has a boundary instead
-/// @param is_passed_to_b  (i): whether a way from the middle's neighbour ring[i] to b by the middle
-///                        crosses the surface; asked where the boundary is in their face
+/// Counts the intersections of the new edges at `middle`, a node that divides the edge from a to b.
+/// The middle counts as on the side of b.
+///
+/// The number of intersections round a triangle is odd if the boundary of the sweep passes through
+/// the triangle, and in no other case. This must hold now and after each later step. As rounding
+/// has moved the middle off the edge, no count may depend on its position.
+/// @pre  if the middle was made off the surface, it is on the side of b
+/// @param front           of the cut; takes the counts
+/// @param a               the end of the edge that may be on the other side
+/// @param b               the end on whose side the middle counts
+/// @param middle          the new node
+/// @param ring            the other nodes of the elements round the edge
+/// @param has_boundary    (p, q, r): whether the boundary of the sweep passes through the triangle;
+///                        nothing if the surface is not swept
+/// @param is_passed_to_b  (i): whether the path from ring[i] by the middle to b crosses the
+///                        surface; called only if the boundary of the surface is in the face of
+///                        ring[i]
 template <class HasBoundary, class IsPassed>
 void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
                    const std::vector<NodeId>& ring, HasBoundary has_boundary,
@@ -37,7 +45,7 @@ void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
         bool is_crossed_to_n = at_b;
         if (const std::optional<bool> boundary = has_boundary(middle, b, n))
             is_crossed_to_n = at_b != *boundary;
-        else if (at_a != (at_b != is_crossed))  // the boundary is in the face: which half it is in
+        else if (at_a != (at_b != is_crossed))  // the boundary is in one half of the face
             is_crossed_to_n = is_passed_to_b(i);
         if (is_crossed_to_n) front.toggle(middle, n);
     }
@@ -45,11 +53,16 @@ void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
     if (is_crossed != has_boundary(a, middle, b).value_or(false)) front.toggle(a, middle);
 }
 
-/// The same for a blade that this cut comes across. A middle between two nodes on its cut is on it,
-/// too; any other keeps to an end that is off it, as edges without a node on it are not to stay
-/// crossed.
-/// @param local_edge_length  see CutFront::put_on
-/// @param point  (node): where it is, a MovingPoint
+/// Counts the intersections at a new node for a suspended cut. A node between two nodes on the
+/// suspended cut is on it, too. Any other keeps to the side of an end that is off the cut, since no
+/// edge without a node on the cut may stay crossed.
+/// @param blade              the suspended cut
+/// @param edge               the edge that was divided
+/// @param middle             the new node
+/// @param ring               the other nodes of the elements round the edge
+/// @param local_edge_length  see CutFront::put_on()
+/// @param snap_history       gives the middle its rank
+/// @param point              (node): its MovingPoint
 template <class PointOf>
 void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
                            const std::vector<NodeId>& ring, double local_edge_length,
@@ -66,7 +79,8 @@ void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
             return blade.is_inside({point(p), point(q), point(r)});
         },
         [](std::size_t) { return false; });
-    // Its cut ends beyond the middle, and goes through an edge that would have been divided.
+    // The suspended cut ends beyond the middle, and passes through an edge that it would have
+    // divided.
     const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](NodeId n) {
         return !front.is_on(n) && front.is_crossed(middle, n);
     });

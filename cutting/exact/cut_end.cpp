@@ -8,16 +8,17 @@ namespace incise::cutting {
 
 namespace {
 
-/// Share of an edge up to which a place on it is found where the blade's edge is bent.
+/// The precision of intersections with the blade's edge, as a share of the edge of the mesh.
 constexpr double rounding_of_places = 1e-9;
 constexpr int max_bisections = 50;
 
-/// How many edge lengths from the blade's edge its cut tells whether it is behind it, and how much
-/// so it is on the mean, as a cosine, if the blade's motion has made it and not that of the tissue.
+/// The nodes of the front within this many edge lengths of the blade's edge show whether the cut is
+/// behind the blade. If the blade's motion has made the cut, not that of the tissue, the mean
+/// cosine of the nodes' directions with the direction backward is above the second number.
 constexpr double size_of_neighbourhood = 3.0, least_share_behind = 0.3;
 
-/// So much farther than out of an element, in units of its size, a blade is taken to go on: not
-/// just to its end, where rounding or the shift of exact signs would decide.
+/// How much farther than to the end of an element a blade is taken to go on, in units of the
+/// element's size. If it went to just that end, rounding or the shift of exact signs would decide.
 constexpr double room_ahead = 1e-3;
 
 }  // namespace
@@ -28,7 +29,7 @@ std::optional<EdgeIntersection> CutEnd::intersection(const Edge& edge) const {
     const Vec3 from = position_(edge.a), to = position_(edge.b);
     const auto at = [&](double place) -> Vec3 { return (1.0 - place) * from + place * to; };
     const double length = (to - from).norm();
-    double place = a / (a - b);  // it is there, if the blade's edge is straight
+    double place = a / (a - b);  // exact if the blade's edge is straight
     double low = 0.0, high = 1.0;
     for (int i = 0; i < max_bisections; ++i) {
         const double ahead = blade_.distance_ahead(at(place));
@@ -77,7 +78,7 @@ bool CutEnd::is_behind(FaceId f) const {
 
 BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
                        const PositionOf& position) {
-    // In an order of its own, so that sums are the same however the front has come about.
+    // Sorted, so that the sums do not depend on the history of the front.
     std::vector<NodeId> nodes;
     front.for_each([&](NodeId n) {
         if (mesh.is_alive(n)) nodes.push_back(n);
@@ -116,7 +117,7 @@ double exit_distance(const TissueMotion& tissue, const BladeEnd& blade) {
                 has_edge = *edge.ends_inside(points);
             }
             if (!has_edge) return;
-            // It may be in its hindmost face, or in the foremost.
+            // The edge may be in the hindmost face of the element, or in the foremost.
             const double more = room_ahead * tissue.box(e).diagonal().norm();
             for (const NodeId n : mesh.corners(e))
                 farthest = std::max(

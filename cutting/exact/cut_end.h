@@ -1,4 +1,4 @@
-// Where a cut ends within the elements that it divides: at the edge of a blade that has stopped.
+// The end of a cut at the edge of a blade that has stopped, within the elements that it divides.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,30 +17,36 @@
 
 namespace incise::cutting {
 
-/// The elements at the end of a way have been divided along its continuation. Of the faces on it
-/// those behind the blade's edge are to open. Where they run on ahead they are divided at the edge.
+/// Holds the nodes at the blade's edge where a cut ends, and decides which faces open there. The
+/// elements have been divided along the continuation of the blade's path. Of the faces on the
+/// continuation, those behind the blade's edge open. Faces that the edge passes through are divided
+/// at the edge.
+/// @lifetime  mesh and blade must outlive the object
 class CutEnd {
   public:
     CutEnd(const topology::Mesh& mesh, const BladeEnd& blade, PositionOf position)
         : mesh_(mesh), blade_(blade), position_(std::move(position)) {}
 
-    /// An edge of a face, from behind the blade's edge to ahead of it, and where it crosses that.
+    /// An edge of a face with one end behind the blade's edge and the other ahead of it.
     struct CrossedEdge {
         Edge edge;
-        ElementId element;  ///< one of those that have it
-        EdgeIntersection intersection;
+        ElementId element;              ///< one of those that have the edge
+        EdgeIntersection intersection;  ///< with the blade's edge
     };
-    /// Of faces on the cut, each once. Nodes nearer to the blade's edge than a share of an edge
-    /// that crosses it, and than `farthest`, m at rest, count as at the blade's edge from now on.
+    /// Returns the edges that the blade's edge crosses, each once. Near ends of these edges count
+    /// as at the blade's edge from now on.
+    /// @param faces     on the cut
+    /// @param share     of a crossed edge: its nearer end is near if it is nearer than this
+    /// @param farthest  and no farther away than this, m at rest
     std::vector<CrossedEdge> crossed_edges(std::span<const FaceId> faces, double share,
                                            double farthest);
 
-    /// The node counts as at the blade's edge.
+    /// Makes the node count as at the blade's edge.
     void put_at(NodeId n) { nodes_.insert(n); }
     bool is_at(NodeId n) const { return nodes_.contains(n); }
 
-    /// Whether no part of a face on the cut is ahead of the blade's edge, once what crosses that is
-    /// divided there.
+    /// True if no part of a face on the cut is ahead of the blade's edge.
+    /// @pre  edges that cross the blade's edge have been divided there
     bool is_behind(FaceId f) const;
 
   private:
@@ -50,16 +56,16 @@ class CutEnd {
     const topology::Mesh& mesh_;
     const BladeEnd& blade_;
     PositionOf position_;
-    std::unordered_set<NodeId> nodes_;  // at the blade's edge
+    std::unordered_set<NodeId> nodes_;  // that count as at the blade's edge
 };
 
-/// The same blade, if its cut is behind it, else one that goes on away from its cut: a blade may
-/// also cut because the tissue moves.
+/// Returns the same blade if its cut is behind it, else one that goes on away from its cut. A blade
+/// may also cut because the tissue moves, and its own motion then does not give the direction.
 BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
                        const PositionOf& position);
 
-/// How far the edge has to go on to be past all of the elements that it is in, m; 0 if it is in
-/// none. An edge in a face between two is in one of them (space_time.h).
+/// Returns how far the edge must go on to be past all tetrahedra that it is in, m. Returns 0 if it
+/// is in none. An edge in the face between two elements counts as in one of them (space_time.h).
 double exit_distance(const TissueMotion& tissue, const BladeEnd& blade);
 
 }  // namespace incise::cutting

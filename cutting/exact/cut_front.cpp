@@ -42,9 +42,8 @@ std::optional<CutFront::Place> CutFront::place_of(ElementId e,
                                                   std::span<const NodeId, 4> corners) const {
     for (const NodeId n : corners)
         if (!is_on(n)) return Place{n};
-    // Up to when it came to the cut it was this corner that told. So the element is where it has
-    // been all the time, and faces of it that have opened in earlier steps are as they would be in
-    // a single one.
+    // Until this corner came to the cut, it gave the side of the element. So the element keeps its
+    // side, and its faces that opened in earlier steps are those that a single step would open.
     NodeId last;
     for (const NodeId n : corners)
         if (is_near(n) && (!last.is_valid() || rank(n) > rank(last))) last = n;
@@ -92,8 +91,8 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
            std::ranges::all_of(waiting_, is_element);
 }
 
-// Of an edge of which both ends were copied, too many copies are noted; the mesh has no such
-// edges and nobody will ask for them.
+// If both ends of an edge were copied, too many pairs of copies are noted as crossed. The mesh has
+// no such edges, so nothing depends on them.
 void CutFront::apply(const Mesh&, const topology::ChangeSet& changes, bool has_opened_faces_of_it) {
     if (is_empty() || changes.is_empty()) return;
     has_changed_ = true;
@@ -125,7 +124,8 @@ void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
         const auto place = crossed_.find(n);
         if (place == crossed_.end()) continue;
         for (const NodeId other : std::vector<NodeId>(place->second)) {
-            // An edge between a node on the cut and another is forgotten with the former.
+            // Edges to nodes off the cut are forgotten with the node. Others also belong to their
+            // other end.
             if (!is_on(other)) toggle(n, other);
         }
     }

@@ -1,4 +1,4 @@
-// What a cut that goes on has to remember: the elements at its front are cut in part.
+// The state of a cut in progress. Elements at its front are cut in part.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,26 +17,29 @@
 
 namespace incise::cutting {
 
-/// The nodes that count as lying on the cut, and which edges at them the cut passes through.
+/// Holds the nodes that count as on the cut, and the edges at these nodes that the cut crosses.
 ///
-/// A node on the cut stays on the side where it happens to be: an edge between it and another node
-/// counts as crossed or not, like any edge. Two nodes are on different sides of the cut if a path
-/// of edges between them, away from the front, crosses it an odd number of times. Edges without a
-/// node on the cut are never crossed for long: they get one.
+/// A node on the cut stays on its side: an edge from it to another node counts as crossed or not,
+/// as any edge does. Two nodes are on different sides of the cut if a path of edges between them,
+/// away from the front, has an odd number of intersections. A crossed edge without a node on the
+/// cut gets one in the same step.
 ///
-/// A front forgets what it has left behind, so that a later stroke along the same cut, or across
-/// it, stands for itself.
+/// A front forgets the nodes round which the cut is finished. A later stroke along the same cut, or
+/// across it, is another cut.
 class CutFront {
   public:
-    /// Of the cut, from SnapHistory::take_rank: higher than those of earlier cuts; 0 before it
-    /// begins.
+    /// Returns the number of the cut, which is higher than those of earlier cuts. It is 0 before
+    /// the cut begins, and comes from SnapHistory::take_rank().
     std::uint64_t number() const { return number_; }
     void set_number(std::uint64_t number) { number_ = number; }
 
-    /// Counts the node as on the cut. A node made on the cut lies there exactly; others are near
-    /// it, on one side. `local_edge_length` is the size of the elements there, m; `rank`, see
-    /// SnapHistory::take_rank. Of a node that is on the cut already only the local_edge_length can
-    /// change, to more.
+    /// Makes a node count as on the cut. If it is on the cut already, only its local edge length
+    /// can change, and only to more.
+    /// @param n                  the node
+    /// @param is_exact           true if the node was made on the cut surface; others are near it,
+    ///                           on one side
+    /// @param local_edge_length  size of the elements there, m
+    /// @param rank               see SnapHistory::take_rank()
     void put_on(NodeId n, bool is_exact, double local_edge_length, std::uint64_t rank);
     bool is_on(NodeId n) const { return nodes_.contains(n); }
     bool is_near(NodeId n) const {
@@ -44,28 +47,30 @@ class CutFront {
         return place != nodes_.end() && !place->second.is_exact;
     }
 
-    /// The same surface has cut here before: what it left joined between such nodes stays so.
+    /// Marks a node where the same surface has cut before. What that cut left joined between frozen
+    /// nodes stays joined.
+    /// @pre  is_on(n)
     void freeze(NodeId n) { nodes_.at(n).is_frozen = true; }
     bool is_frozen(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() && place->second.is_frozen;
     }
 
-    /// Lower for nodes that came to the cut before others; 0 for those that are not on it.
+    /// Returns a number that is lower for nodes that came to the cut earlier. It is 0 for nodes
+    /// that are not on the cut.
     std::uint64_t rank(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.rank : 0;
     }
 
-    /// The next of the nodes that a node on the cut has become by the faces of this cut that have
-    /// opened since it came to it: from one to the next they make a ring. The node itself if it is
-    /// the only one.
+    /// Returns the next twin of a node on the cut. Twins are the nodes that one node has become as
+    /// faces of this cut opened; they form a ring. Returns the node itself if it has no twin.
     NodeId next_twin(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.next_twin : n;
     }
 
-    /// Size of the elements at a node on the cut, m; 0 for others.
+    /// Returns the size of the elements at a node on the cut, m, and 0 for other nodes.
     double local_edge_length(NodeId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.local_edge_length : 0.0;
@@ -74,60 +79,65 @@ class CutFront {
     bool is_crossed(NodeId a, NodeId b) const;
     void toggle(NodeId a, NodeId b);
 
-    /// Where an element is: whether the way from there to one of its corners crosses the cut.
+    /// The side of an element: whether the path from the element to one of its corners crosses the
+    /// cut.
     struct Place {
         NodeId corner;
         bool is_crossed = false;
     };
 
-    /// Of a tetrahedron, or of one that was divided, with the corners that it had. An element is
-    /// where its corner is that is not on the cut. One that has no such corner is where it was
-    /// made; if it had one then, where the last of its corners is that came to count as on the cut,
-    /// being near it. Nothing if all were made on the cut and it is not known.
+    /// Returns the side of a tetrahedron, or nothing if it is not known. `corners` are its corners,
+    /// or those before a division. These rules apply in turn:
+    /// - An element with a corner off the cut is on the side of that corner.
+    /// - An element with corners near the cut is on the side of the one that came to the cut last.
+    /// - An element with all corners exactly on the cut has the side that place_halves() has kept.
     std::optional<Place> place_of(ElementId e, std::span<const NodeId, 4> corners) const;
 
-    /// Keeps where the halves of elements are that were divided by `middle`, between `a` and `b`,
-    /// once the crossings of its edges are counted: a half that has lost the corner which told is
-    /// on the other side of the cut through the middle.
+    /// Keeps the sides of the halves of divided elements, if all their corners are on the cut.
+    /// `middle` divides the edge from `a` to `b`. A half without the corner that gave the side of
+    /// the whole is on the other side of the cut through the middle.
+    /// @pre  the intersections of the new edges are counted
     void place_halves(const topology::Mesh& mesh, NodeId a, NodeId b, NodeId middle,
                       std::span<const topology::MeshEdit::DividedElement> elements);
 
-    /// Whether the mesh has had all nodes and elements of it, and twins make rings.
+    /// True if the ids of the nodes on the cut and of the elements exist in the mesh, and twins
+    /// form rings. The ends of crossed edges are not checked.
     bool is_on(const topology::Mesh& mesh) const;
 
-    /// Elements of small pieces that are not to come off before it is known whether they hang on
-    /// the rest of their side.
+    /// Returns elements of small components that must not come off yet. First it must be known
+    /// whether they are connected to the rest of their side.
     const std::vector<ElementId>& waiting() const { return waiting_; }
     void set_waiting(std::vector<ElementId> elements) { waiting_ = std::move(elements); }
 
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }
 
-    /// Calls visit(node) for each node on the cut, in no order.
+    /// Calls visit(node) for each node on the cut, in no particular order.
     template <class Visit>
     void for_each(Visit visit) const {
         for (const auto& [n, node] : nodes_) visit(n);
     }
 
-    /// Calls visit(node, others) for each node with crossed edges, in no order.
+    /// Calls visit(node, others) for each node with crossed edges, in no particular order.
     template <class Visit>
     void for_each_crossed(Visit visit) const {
         for (const auto& [n, others] : crossed_) visit(n, others);
     }
 
-    /// Copies of a node are what it is, and its twins if the edit has opened faces of this cut.
+    /// Follows an edit. A copy of a node has the state of its source. If the edit has opened faces
+    /// of this cut, the copy is also a twin of its source.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes,
                bool has_opened_faces_of_it = false);
-    /// The nodes for which keep(node) is false, in ascending order.
+    /// Returns the nodes on the cut for which keep(node) is false, in ascending order.
     template <class Keep>
     std::vector<NodeId> nodes_unless(Keep keep) const;
-    /// Forgets that they are on the cut, which edges to nodes off it are crossed, and where
-    /// elements at them are.
+    /// Makes nodes no longer count as on the cut. Forgets which of their edges to nodes off the cut
+    /// are crossed, and the sides that were kept of elements at them.
     void forget(const topology::Mesh& mesh, const std::vector<NodeId>& nodes);
 
-    /// Of the nodes on the cut, how many are so since the last call of set_reviewed(); whether
-    /// anything has changed since.
+    /// Returns how many nodes came to the cut since the last call of set_reviewed().
     std::size_t num_new() const { return num_new_; }
+    /// True if anything has changed since the last call of set_reviewed().
     bool has_changed() const { return has_changed_; }
     void set_reviewed() {
         num_new_ = 0;
@@ -151,13 +161,13 @@ class CutFront {
         }
     };
     struct LocalPlace {
-        std::int32_t corner = 0;  // which of the element's: copies of nodes take its place
+        std::int32_t corner = 0;  // local number; a copy may replace the node there
         bool is_crossed = false;
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
     std::uint64_t number_ = 0;
     std::unordered_map<NodeId, Node> nodes_;
-    // Both directions of each crossed edge.
+    // By node, the other ends of its crossed edges; each edge is in both directions.
     std::unordered_map<NodeId, std::vector<NodeId>> crossed_;
     // Of elements whose corners are all on the cut.
     std::unordered_map<ElementId, LocalPlace> places_;

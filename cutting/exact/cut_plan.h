@@ -1,4 +1,4 @@
-// What is to be cut, decided before anything is touched.
+// A plan of what to cut, decided before the mesh changes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,6 +9,7 @@
 
 namespace incise::cutting {
 
+/// The elements and faces that a carver or a separating blade changes.
 struct CutPlan {
     std::vector<ElementId> elements_to_remove;
     std::vector<FaceId> faces_to_open;
@@ -16,8 +17,8 @@ struct CutPlan {
     bool is_empty() const { return elements_to_remove.empty() && faces_to_open.empty(); }
 };
 
-/// Carries the plan out in one transaction. What another edit has done meanwhile, elements gone
-/// and faces open already, is passed over.
+/// Carries out a plan in one transaction. Elements that have died and faces that are open already
+/// are skipped.
 topology::ChangeSet execute(const CutPlan& plan, topology::Mesh& mesh);
 
 }  // namespace incise::cutting

@@ -36,7 +36,8 @@ EdgeIntersection intersection_at(const Crossing& crossing, const CutSurface& sur
                                   a + crossing.place * (b - a),
                                   crossing.normal.normalized(),
                                   normal_at_rest.normalized()};
-    // Where the surface bends away its plane at the crossing would say too little.
+    // Where the surface bends away, its plane at the intersection gives distances that are too
+    // small.
     const double length = (b - a).norm(), at_a = surface.distance(a) / length;
     if (!std::isnan(at_a)) {
         const double at_b = surface.distance(b) / length;

@@ -1,4 +1,4 @@
-// Edges of the mesh, and lists of those of several elements.
+// Edges of the mesh, and lists of the edges of several elements.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace incise::cutting {
 
-/// An edge of the mesh, the lower node first.
+/// An edge of the mesh, with the lower node id first.
 struct Edge {
     NodeId a, b;
     std::uint64_t key() const { return (static_cast<std::uint64_t>(a.index()) << 32) | b.index(); }
@@ -29,18 +29,18 @@ struct EdgeHash {
     }
 };
 
-/// The edges of elements, each once, by number: in a table with room for twice as many, where an
-/// edge stands at the first free place from that of its hash on. An edge belongs to about five
-/// elements: to sort those of all of them takes longer.
+/// A list that numbers the edges of elements, each edge once. The table has room for at least twice
+/// as many edges; an edge is at the first free place from that of its hash on. As an edge belongs
+/// to about five elements, this is faster than sorting the edges of all elements.
 class EdgeList {
   public:
     struct Entry {
         Edge edge;
-        ElementId element;  ///< the first that came with it
+        ElementId element;  ///< the first that came with the edge
         bool operator<(const Entry& other) const { return edge < other.edge; }
     };
 
-    /// The number of the edge, from 0.
+    /// Returns the number of an edge, from 0. Adds the edge if it is new.
     std::size_t add(const Edge& edge, ElementId element) {
         if (2 * entries_.size() >= table_.size()) grow();
         std::uint32_t& place = table_[place_of(edge)];
@@ -55,7 +55,7 @@ class EdgeList {
   private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    /// Of the edge, or where it is to be put.
+    /// Returns the place of an edge in the table, or the free place for it.
     std::size_t place_of(const Edge& edge) const {
         std::size_t i = EdgeHash()(edge) & (table_.size() - 1);
         while (table_[i] != none && entries_[table_[i]].edge != edge)

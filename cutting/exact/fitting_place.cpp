@@ -10,8 +10,8 @@ using topology::Mesh;
 
 namespace {
 
-/// Whether the halves of all elements round the edge, divided at `t`, are larger than this share of
-/// what the uncut body had.
+/// True if the halves of all elements round the edge, divided at `t`, keep this share of the uncut
+/// body's step length.
 bool is_fit(const Mesh& mesh, const EdgeRing& ring, double t, const UncutBody& uncut,
             double share) {
     const Vec3 middle = (1.0 - t) * mesh.rest_position(ring.a) + t * mesh.rest_position(ring.b);

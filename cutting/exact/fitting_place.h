@@ -1,4 +1,4 @@
-// Where to divide an edge so that no element becomes too small.
+// Finds where to divide an edge so that no element becomes too small.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,22 +10,27 @@
 
 namespace incise::cutting {
 
-/// An edge to be divided, and the elements round it, all of which become two.
+/// An edge to be divided, and the elements round it. Each of these becomes two.
 struct EdgeRing {
     NodeId a, b;
     std::span<const ElementId> elements;
 };
 
+/// The limits within which an edge may be divided.
 struct FitLimits {
     const UncutBody& uncut;
-    double least_step_share;  ///< of the uncut body's step length, to be left to every element
-    double farthest;          ///< that nodes of the cut may be off the surface, m at rest
+    double least_step_share;  ///< of the uncut body's step length, for every element
+    double farthest;          ///< largest distance of nodes of the cut from the surface, m at rest
 };
 
-/// Where to divide the edge, 0 at a and 1 at b: on the surface; if a half would be too small, as
-/// much nearer to the middle as nodes may be off the surface. If that does not do either, negative:
-/// the nearer end is to count as on the surface; unless it is farther away than that, and half of
-/// the share is enough.
+/// Returns the edge parameter at which to divide an edge, or a negative number if its nearer end is
+/// to count as on the surface. These remedies are tried in turn, until no half is too small:
+/// - the edge parameter of the intersection
+/// - one nearer to the middle of the edge, by as much as nodes may be off the surface
+/// - the nearer end, if it is no farther from the surface than that
+/// - the second one again, if half of the share is enough
+///
+/// If none of them does, the nearer end counts as on the surface, however far it is.
 double fitting_place(const topology::Mesh& mesh, const EdgeRing& ring,
                      const EdgeIntersection& intersection, const FitLimits& limits);
 

@@ -29,7 +29,8 @@ void NearNodes::collect_star(const EdgeEnd& end) {
     topology::collect_star(mesh_, end.node, end.element, star_);
 }
 
-/// At the end of that name, or what it was when last asked for, which is no less.
+/// Returns the length of the longest edge at the node at the first call for it, m at rest. Its
+/// edges are not longer now.
 double NearNodes::longest_edge_once(const EdgeEnd& end) {
     const auto [place, is_new] = longest_edges_.try_emplace(end.node, 0.0);
     double& longest = place->second;

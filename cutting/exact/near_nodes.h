@@ -1,4 +1,4 @@
-// Which ends of crossed edges are so near a surface that they count as on it.
+// Decides which ends of crossed edges are so near to a surface that they count as on it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,34 +10,39 @@
 
 namespace incise::cutting {
 
-/// An end of an edge that the surface passes through, and where, seen from there.
+/// An end of a crossed edge, with the intersection as seen from there.
 struct EdgeEnd {
     NodeId node, other;
     ElementId element;   ///< one of those that have the edge
-    double place, from;  ///< as in EdgeIntersection
+    double place, from;  ///< as in EdgeIntersection, from this end
 };
 
-/// How near a node has to be to count as on the surface.
+/// How near to the surface a node must be to count as on it.
 struct NearLimits {
-    double share;     ///< of an edge at the node that the surface passes through
+    double share;     ///< of an edge of the node that the surface crosses
     double farthest;  ///< m, at rest
 };
 
-/// Of a mesh of which edges are divided meanwhile, but nothing else is changed.
+/// A search for the nodes of a mesh that are near a surface.
+/// @pre  between calls, the mesh changes only by the division of edges
 class NearNodes {
   public:
     NearNodes(const topology::Mesh& mesh, const NearLimits& limits)
         : mesh_(mesh), limits_(limits) {}
 
-    /// Whether the end is so near that it counts as on the surface. It is that for all of its
-    /// edges at once, from the first of them on that the surface comes to: so those of them count
-    /// that the surface passes through if it goes on straight, and it does not matter into how many
-    /// steps the way of a blade is taken. Of an edge that lies all but in the surface both ends
-    /// might be near; that edge speaks for the nearer one only, or whole layers of elements would
-    /// lie on the surface.
-    /// @param normal_at_rest  of the surface, of unit length, or zero if not known: only the edge
-    ///                        counts then
-    /// Cost: a look at the elements round the node, if its longest edge is long enough to matter.
+    /// True if the end counts as on the surface.
+    ///
+    /// A node counts for all of its edges at once, from the first edge on to which the surface
+    /// comes. So edges that the surface will cross if it goes straight on count as crossed. Then
+    /// the result does not depend on the number of steps of a blade.
+    ///
+    /// Both ends of an edge that lies nearly in the surface may be near. Such an edge lets only its
+    /// nearer end count. Otherwise whole layers of elements would lie on the surface.
+    /// @param end             the end of an edge
+    /// @param normal_at_rest  of the surface, of unit length; if zero, it is not known, and only
+    ///                        this edge counts
+    /// Cost: that of visiting the elements at the node, if its longest edge is long enough to
+    /// matter.
     bool has(const EdgeEnd& end, const Vec3& normal_at_rest);
 
   private:
@@ -46,8 +51,8 @@ class NearNodes {
 
     const topology::Mesh& mesh_;
     const NearLimits limits_;
-    /// By node id, m, when the node was first asked for. Divisions make no edge at a node longer:
-    /// a new one lies within a triangle that has two of them.
+    /// By node id: the longest edge, m, at the first call for the node. Divisions make no edge of a
+    /// node longer, since a new edge lies within a triangle that has two of them.
     std::unordered_map<NodeId, double> longest_edges_;
     std::vector<ElementId> star_;  // scratch
 };

@@ -20,7 +20,8 @@ class Recognizer {
             if (moves(edge.a) || moves(edge.b)) moving_.insert({edge.a, edge.b});
     }
 
-    /// Looks for the node's snap_history; `length` is that of an edge there, m.
+    /// Puts the node on the front if the surface passes by it as one of its records says. `length`
+    /// is that of an edge there, m.
     void look_at(NodeId n, double length, CutFront& front, std::vector<Arrival>& arrivals) const {
         for (const CutRecord& record : snap_history_.of(n)) {
             const bool may_freeze = is_where_it_was(n, record, length);
@@ -42,7 +43,7 @@ class Recognizer {
   private:
     bool moves(NodeId n) const { return tissue_.before[n.index()] != tissue_.after[n.index()]; }
 
-    /// Where the surface passes through the place at which the cut passed by the node.
+    /// Returns the intersection of the surface with the place at which a cut passed by the node.
     std::optional<Crossing> intersection_by(NodeId n, const Vec3& to_surface, const Vec3& normal,
                                             double length) const {
         const Vec3 short_way = SnapHistory::rounding * length * normal;
@@ -55,8 +56,9 @@ class Recognizer {
         return crossings.size() % 2 == 1 ? std::optional(crossings.front()) : std::nullopt;
     }
 
-    /// Or beside it: at a crease of the surface, rounding may have put that place beyond the
-    /// crease. One that runs as the cut did, if there is any.
+    /// Returns the intersection at that place or beside it. At a crease of the surface, rounding
+    /// may have put the place beyond the crease. Prefers an intersection with the direction of the
+    /// earlier cut.
     std::optional<Crossing> intersection_near(NodeId n, const CutRecord& record,
                                               double length) const {
         const Vec3 u = 2.0 * SnapHistory::rounding * length * record.normal.unitOrthogonal();
@@ -72,7 +74,7 @@ class Recognizer {
         return other;
     }
 
-    /// Whether this is the surface of that cut, and the node where it was then.
+    /// True if the surface is that of the record and the node is where it was then.
     bool is_where_it_was(NodeId n, const CutRecord& record, double length) const {
         return surface_.identity() != no_identity && record.surface == surface_.identity() &&
                !moving_.contains(n) &&
@@ -85,7 +87,7 @@ class Recognizer {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     const SnapHistory& snap_history_;
-    std::unordered_set<NodeId> moving_;  // nodes that move, and those next to such
+    std::unordered_set<NodeId> moving_;  // nodes that move in this step, and their neighbours
 };
 
 }  // namespace
@@ -99,7 +101,7 @@ std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& sur
     for (const auto& [edge, element] : edges)
         if (is_new(edge.a) || is_new(edge.b)) scarred.push_back(edge);
     if (scarred.empty()) return {};
-    // In an order that is the same whichever elements are near.
+    // Sorted, so that the order does not depend on which elements are near.
     std::sort(scarred.begin(), scarred.end());
 
     const Recognizer recognizer(tissue, surface, edges, snap_history);

@@ -1,4 +1,4 @@
-// A cut finds what earlier ones have left where it passes through the same places.
+// Recognizes nodes of earlier cuts where a cut passes through the same places.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,16 +13,22 @@
 
 namespace incise::cutting {
 
-/// When a node came to count as on the cut.
+/// The time at which a node came to count as on the cut.
 struct Arrival {
     NodeId node;
-    double time;  ///< see Crossing
+    double time;  ///< 0 before the step, 1 after it
 };
 
-/// Puts nodes on the front that counted as on an earlier cut, where the surface passes through the
-/// same place, even if it crosses none of their edges. If it is the same surface, and neither the
-/// node has moved nor do its neighbours, it has nothing to add: the node is settled.
-/// @param edges  those of the elements near the surface, in any order
+/// Puts nodes of earlier cuts on the front if the surface passes by them at the same place. It need
+/// not cross an edge of theirs. Returns the nodes that came to the front.
+///
+/// A node is frozen if an earlier cut had the same surface, the node has not moved since, and
+/// neither it nor a neighbour moves in this step. The cut then has nothing to add there.
+/// @param tissue        the positions of the nodes
+/// @param surface       what the cut follows
+/// @param edges         of the elements near the surface, in any order
+/// @param snap_history  of all earlier cuts
+/// @param front         of this cut
 std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& surface,
                                std::span<const EdgeList::Entry> edges,
                                const SnapHistory& snap_history, CutFront& front);

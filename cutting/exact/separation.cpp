@@ -20,8 +20,8 @@ using topology::Mesh;
 
 namespace {
 
-/// DisjointSet of more volume than this share of the cube of the edges there are pieces, not
-/// slivers: less than two elements have before they are divided.
+/// Largest volume of a sliver fragment, as a share of the cube of the longest edge there. For
+/// comparison, a regular tetrahedron has 0.118.
 constexpr double largest_sliver = 0.1;
 
 double rest_volume(const Mesh& mesh, ElementId e) {
@@ -32,17 +32,19 @@ double rest_volume(const Mesh& mesh, ElementId e) {
     return std::abs(edge(1).dot(edge(2).cross(edge(3)))) / 6.0;
 }
 
-/// Whether an earlier cut along the same surface has left the face joined.
+/// True if the face is between frozen nodes: an earlier cut along the same surface has left it
+/// joined.
 bool is_frozen(const Mesh& mesh, const CutFront& front, FaceId f) {
     for (int p = 0; p < mesh.face_size(f); ++p)
         if (!front.is_frozen(mesh.face_corner(f, p))) return false;
     return true;
 }
 
-/// Of an edit that is not ended yet.
+/// Holds the sliver fragments of an edit that is not committed yet.
 class SliverFragments {
   public:
-    /// @param parted  faces in ascending order, each from its lower side
+    /// `parted` has the faces between the sides in ascending order, each with its lower id. All
+    /// arguments must outlive the object.
     SliverFragments(const Mesh& mesh, const CutFront& front, const SnapHistory& snap_history,
                     const Sides& sides, const std::vector<ElementId>& touched,
                     const std::vector<FaceId>& parted, const Course& course)
@@ -54,7 +56,7 @@ class SliverFragments {
           parted_(parted),
           course_(course) {}
 
-    /// Finds them. To be called once.
+    /// Finds the fragments. To be called once.
     void keep();
 
     bool is_kept(FaceId f) const { return kept_.contains(f); }
@@ -80,13 +82,13 @@ class SliverFragments {
     const std::vector<ElementId>& touched_;
     const std::vector<FaceId>& parted_;
     const Course& course_;
-    std::unordered_set<ElementId> large_;  // elements of large pieces
-    std::map<FaceId, double> times_;       // of those asked for
-    std::set<FaceId> kept_;                // joined, of the parted ones
+    std::unordered_set<ElementId> large_;  // elements of large components
+    std::map<FaceId, double> times_;       // of the faces for which time() was called
+    std::set<FaceId> kept_;                // faces between the sides that stay joined
     std::vector<ElementId> elements_, waiting_;
 };
 
-// In the order in which the surface comes to the faces, each opens unless that leaves a sliver.
+// In the order in which the surface comes to the faces, each opens unless that leaves a fragment.
 void SliverFragments::keep() {
     std::vector<ElementId> piece;
     std::vector<std::pair<double, FaceId>> doubtful;
@@ -125,8 +127,8 @@ double SliverFragments::time(FaceId f) {
     return place->second;
 }
 
-/// What hangs together with `start` once the faces are open that are so by then; false if that is
-/// much.
+/// Collects the component of `start` when those faces are open that open by the time `by`. Returns
+/// false if the component is too large for a sliver fragment.
 bool SliverFragments::collect_piece(ElementId start, double by, std::vector<ElementId>& piece) {
     const auto is_open = [&](FaceId f) {
         return std::binary_search(parted_.begin(), parted_.end(), f) && !kept_.contains(f) &&
@@ -139,7 +141,7 @@ bool SliverFragments::collect_piece(ElementId start, double by, std::vector<Elem
         if (!is_known(e)) volume += rest_volume(mesh_, e);
         for (const NodeId n : mesh_.corners(e)) edge = std::max(edge, front_.local_edge_length(n));
         if (large_.contains(e) || volume > largest_sliver * edge * edge * edge) {
-            if (by == at_last)  // and before it was no less
+            if (by == at_last)  // at earlier times it is at least as large
                 for (const ElementId member : piece) large_.insert(member);
             return false;
         }
@@ -154,8 +156,8 @@ bool SliverFragments::collect_piece(ElementId start, double by, std::vector<Elem
     return true;
 }
 
-/// The mesh knows an element of each node from before the edit, which may have lost it since; one
-/// that has it then is among the touched.
+/// Collects the elements at a node. The element that the mesh keeps for the node is from before the
+/// edit, and may no longer have the node. One of the touched elements then has it.
 void SliverFragments::star_of(NodeId n, std::vector<ElementId>& star) const {
     const auto has_it = [&](ElementId e) { return mesh_.corner_of(e, n) >= 0; };
     ElementId start = mesh_.incident_element(n);
@@ -168,18 +170,19 @@ void SliverFragments::star_of(NodeId n, std::vector<ElementId>& star) const {
     topology::collect_star(mesh_, n, start, star);
 }
 
-/// Whether the condition holds for one of the nodes that a node on the cut has become.
+/// True if the condition holds for the node or for one of its twins.
 template <class Condition>
 bool SliverFragments::any_twin(NodeId n, Condition condition) const {
     for (NodeId twin = n;;) {
-        // Nodes that the edit has made do not count as alive before it ends.
+        // Nodes that the edit has made are not alive before it is committed.
         if ((twin == n || mesh_.is_alive(twin)) && condition(twin)) return true;
         twin = front_.next_twin(twin);
         if (twin == n) return false;
     }
 }
 
-/// Whether it hangs on the rest of its side by nodes, or did so along an earlier cut.
+/// True if the component is connected to the rest of its side by nodes, or was kept by an earlier
+/// cut.
 bool SliverFragments::hangs(const std::vector<ElementId>& piece) const {
     const auto is_in_piece = [&](ElementId e) {
         return std::find(piece.begin(), piece.end(), e) != piece.end();
@@ -205,7 +208,7 @@ bool SliverFragments::hangs(const std::vector<ElementId>& piece) const {
     return false;
 }
 
-/// Whether the cut is not finished round one of its nodes.
+/// True if the cut is not finished round one of the nodes of the component.
 bool SliverFragments::may_hang(const std::vector<ElementId>& piece) const {
     std::vector<ElementId> star;
     const auto is_at_boundary = [&](ElementId e) {

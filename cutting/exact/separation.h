@@ -1,4 +1,4 @@
-// Which faces open along a cut, and which stay joined lest slivers come off.
+// Decides which faces open along a cut, and which stay joined because of sliver fragments.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,34 +14,36 @@
 
 namespace incise::cutting {
 
-/// What to open, and what stays joined all the same.
+/// The faces to open, and the small components that stay joined.
 struct Separation {
-    std::vector<FaceId> faces;
-    std::vector<ElementId> slivers;
-    std::vector<ElementId> waiting;  ///< see CutFront::waiting
+    std::vector<FaceId> faces;       ///< to open
+    std::vector<ElementId> slivers;  ///< elements of sliver fragments
+    std::vector<ElementId> waiting;  ///< not decided yet: see CutFront::waiting()
 };
 
-/// How the surface has come to the faces of the mesh.
+/// The times at which the surface comes to faces of the mesh, and where its sweep ends.
 struct Course {
-    /// When the last of what parts the face came about.
+    /// Returns the time in the step of the last event that separates the elements of a face.
     std::function<double(FaceId)> time_of_separation;
-    /// Whether the boundary at which the sweep has ended runs through the face.
+    /// True if the boundary at which the sweep ends passes through the face.
     std::function<bool(FaceId)> ends_in;
 };
 
-/// The faces that part the two sides (Sides::separated_faces), without those between settled nodes
-/// (CutFront::settle) and those of slivers.
+/// Returns the faces between the two sides (Sides::separated_faces()). Faces between frozen nodes
+/// (CutFront::freeze()) and faces of sliver fragments stay joined.
 ///
-/// SliverFragments are small groups of elements that hang on the rest of their side by nodes only,
-/// which snapping may leave. They stay with the other side: by the face to which the surface comes
-/// last, or by all of those to which it comes at once. While the boundary of the cut is at one of
-/// their nodes it is not known whether they hang on anything, and they wait. So it does not matter
-/// how many steps a blade takes.
-///
-/// @param touched  the elements to look at: all that the edit has changed, and any besides
+/// Sliver fragments are small groups of elements that snapping leaves connected to their side by
+/// nodes only. They stay with the other side: by the face to which the surface comes last, or by
+/// all faces to which it comes at once. While the boundary of the cut is at one of their nodes, it
+/// is not known whether they are connected to their side, and they wait. So the number of steps of
+/// a blade does not matter.
+/// @param mesh          during the edit
+/// @param front         of the cut
+/// @param snap_history  has the sliver fragments of earlier cuts
+/// @param touched       the elements to look at: all that the edit has changed, and possibly others
 /// @param place_on_cut  see Sides
-/// @param is_reached  whether a face that parts the two sides is to open at all; empty: all are
-/// @param course  nothing if there are no slivers: an exact cut leaves none
+/// @param is_reached    whether a face between the sides may open; if empty, all may
+/// @param course        nothing if no sliver fragments can arise, as without snapping
 Separation separation(const topology::Mesh& mesh, const CutFront& front,
                       const SnapHistory& snap_history, const std::vector<ElementId>& touched,
                       const PlaceOnCut& place_on_cut, const std::function<bool(FaceId)>& is_reached,

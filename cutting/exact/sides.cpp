@@ -25,7 +25,8 @@ std::vector<FaceId> Sides::separated_faces() const {
     return parted;
 }
 
-/// Of the touched elements, and of those next to them that have no corner off the cut.
+/// Collects the faces on the cut of the touched elements, and of neighbours with all corners on the
+/// cut.
 void Sides::collect_faces(const std::vector<ElementId>& touched) {
     std::vector<ElementId> pending = touched;
     std::unordered_set<ElementId> followed;
@@ -48,7 +49,7 @@ void Sides::collect_faces(const std::vector<ElementId>& touched) {
 void Sides::place_elements_on_cut() {
     struct Bond {
         double area;
-        FaceId placed;  // the side that is placed
+        FaceId placed;  // the one with the element whose side is known
         bool operator<(const Bond& other) const {
             return area != other.area ? area < other.area : other.placed < placed;
         }
@@ -84,7 +85,7 @@ bool Sides::is_on_cut(FaceId f) const {
     return true;
 }
 
-/// The corner that tells where the element is: one that is not on the cut; invalid if all are.
+/// Returns a corner that is not on the cut, or an invalid id if all corners are on it.
 NodeId Sides::far_corner(ElementId e) const {
     for (const NodeId n : mesh_.corners(e))
         if (!front_.is_on(n)) return n;

@@ -1,4 +1,4 @@
-// Which side of a cut elements are on, and which faces lie between the two.
+// The sides of a cut on which elements are, and the faces between the two sides.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,27 +14,32 @@
 
 namespace incise::cutting {
 
-/// Where an element is all of whose corners are on the cut, if the surface tells.
+/// Returns the side of an element whose corners are all on the cut, or nothing if the surface does
+/// not decide it.
 using PlaceOnCut = std::function<std::optional<CutFront::Place>(ElementId)>;
 
-/// Where an element is, see CutFront::place_of; one of which it is not known goes with the
-/// neighbour with which it shares the largest face.
+/// Holds the sides of elements: see CutFront::place_of(). An element whose side is not known has
+/// that of the neighbour with which it shares the largest face.
+/// @lifetime  mesh, front and place_on_cut must outlive the object
 class Sides {
   public:
-    /// @param touched  the elements to look at, and thereby their faces
-    /// @param place_on_cut  asked first, or empty
+    /// @param mesh          during the edit
+    /// @param front         of the cut
+    /// @param touched       the elements to look at, with their faces
+    /// @param place_on_cut  called before CutFront::place_of(); may be empty
     Sides(const topology::Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
           const PlaceOnCut& place_on_cut);
 
-    /// Joined faces, each from its lower side and in ascending order, whose three nodes lie on the
-    /// cut and whose elements are on different sides of it, all three nodes agreeing; at the front,
-    /// where the cut ends, they do not agree yet.
+    /// Returns the joined faces between the two sides, in ascending order, each with its lower id.
+    ///
+    /// The three nodes of such a face are on the cut, and its elements are on different sides by
+    /// all three nodes. At the front, where the cut ends, the three nodes do not agree yet.
     std::vector<FaceId> separated_faces() const;
 
-    /// Whether it is known where the element is.
+    /// True if the side of the element is known.
     bool is_placed(ElementId e) const { return place(e).has_value(); }
-    /// Whether the way from where the placed element lies to its corner `n`, on the cut, crosses
-    /// it.
+    /// True if the path from an element to its corner `n` on the cut crosses the cut.
+    /// @pre  is_placed(e)
     bool is_crossed_to(ElementId e, NodeId n) const;
 
   private:
@@ -50,7 +55,7 @@ class Sides {
     const topology::Mesh& mesh_;
     const CutFront& front_;
     const PlaceOnCut& place_on_cut_;
-    std::vector<FaceId> faces_;  // joined, on the cut, from their lower side
+    std::vector<FaceId> faces_;  // joined, on the cut, each with its lower id
     // Of elements all of whose corners are on the cut.
     std::unordered_map<ElementId, Place> places_;
 };

@@ -9,7 +9,7 @@ namespace incise::cutting {
 namespace {
 
 bool is_same(const CutRecord& a, const CutRecord& b, double size) {
-    const double turn = a.normal.dot(b.normal);  // a surface may be given from either side
+    const double turn = a.normal.dot(b.normal);  // normals of one surface may be opposite
     const double height_a = a.normal.dot(a.to_surface), height_b = b.normal.dot(b.to_surface);
     return a.normal.cross(b.normal).norm() <= SnapHistory::rounding &&
            std::abs(height_a - std::copysign(1.0, turn) * height_b) <= SnapHistory::rounding * size;

@@ -1,4 +1,4 @@
-// Where earlier cuts passed by the nodes that counted as lying on them.
+// The snap history: where earlier cuts passed by the nodes that counted as on them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,68 +15,77 @@
 
 namespace incise::cutting {
 
-/// A node that counted as lying on a cut, and where that passed by it.
+/// A record of a node that counted as on a cut, and of where the cut passed by it.
 struct CutRecord {
-    Vec3 normal;         ///< of the cut, of unit length
+    Vec3 normal;         ///< of the cut surface, of unit length
     Vec3 to_surface;     ///< from the node to where the cut passed through an edge, m
-    bool is_exact;       ///< the node was made there
+    bool is_exact;       ///< true if the node was made on the cut surface
     std::uint64_t rank;  ///< of the node on that cut: SnapHistory::take_rank
     SurfaceIdentity surface = no_identity;  ///< of the cut
-    Vec3 place = Vec3::Zero();              ///< where the node was then, m
+    Vec3 place = Vec3::Zero();              ///< position of the node at that time, m
     static void archive(auto& ar, auto& self) {
         ar(self.normal, self.to_surface, self.is_exact, self.rank, self.surface, self.place);
     }
 };
 
-/// A node, and where it is, m.
+/// A node and its position, m.
 struct PlacedNode {
     NodeId node;
     Vec3 place;
 };
 
-/// Nodes that counted as lying on a cut, and where it really was. A cut that passes by at the same
-/// place counts them as on itself too: so a cut along an earlier one changes nothing, though that
-/// one's nodes are only near it, and no other cut is drawn to them. Positions are the current ones:
-/// once the body has moved, nothing is at the same place.
+/// Holds the records of nodes that counted as on cuts. A cut that passes by such a node at the same
+/// place counts the node as on itself, too. So a cut along an earlier one changes nothing, although
+/// the nodes of the earlier one are only near it. Other cuts are not drawn to these nodes.
+///
+/// Records are in the current frame of the time of the cut. They fit no more once the tissue has
+/// deformed or turned.
 class SnapHistory {
   public:
     void add(NodeId n, const CutRecord& record);
-    /// The record that a cut left that passed by the node as `record` says; null if none did.
-    /// @param size  of the elements there, m, which rounding is measured by
+    /// Returns the record of a node whose normal and distance are those of `record`, or null.
+    /// @param n       the node
+    /// @param record  where the present cut passes by the node
+    /// @param size    of the elements there, m, by which rounding is measured
+    /// @lifetime  the pointer is valid until records of the node change
     const CutRecord* find(NodeId n, const CutRecord& record, double size) const;
     bool has(NodeId n, const CutRecord& record, double size) const {
         return find(n, record, size) != nullptr;
     }
+    /// Returns all records of a node.
     std::span<const CutRecord> of(NodeId n) const;
     bool is_empty() const { return snap_history_.empty(); }
 
-    /// Nodes of all cuts are numbered in the order in which they come to count as on one.
+    /// Returns the next number. Nodes of all cuts are numbered in the order in which they come to a
+    /// cut, and cuts have numbers of the same sequence.
     std::uint64_t take_rank() { return next_rank_++; }
 
-    /// The element stayed with the other side of the cut of this number (CutFront::number), as
-    /// there was too little of it.
+    /// Notes that an element stayed with the other side of a cut, as part of a sliver fragment.
+    /// `cut` is CutFront::number().
     void add_sliver(ElementId e, std::uint64_t cut) {
         auto& first = slivers_.emplace(e, cut).first->second;
         first = std::min(first, cut);
     }
-    /// Whether it did so at a cut that began before the one of this number.
+    /// True if the element did so at a cut that began before the one with number `cut`.
     bool is_earlier_sliver(ElementId e, std::uint64_t cut) const {
         const auto place = slivers_.find(e);
         return place != slivers_.end() && place->second < cut;
     }
     bool is_sliver(ElementId e) const { return slivers_.contains(e); }
 
-    /// The middle has been made on the edge between two nodes: a cut that passes by one of them and
-    /// goes through the edge beyond the middle, or passes by both, passes by the middle.
+    /// Gives `middle`, a new node on the edge from `a` to `b`, its records. A cut passes by the
+    /// middle if it passes by one end and through the edge beyond the middle, or if it passes by
+    /// both ends.
     void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
-    /// Copies of a node, and parts of an element, are what it is.
+    /// Follows an edit. Copies of a node have its records. Parts of an element of a sliver fragment
+    /// are elements of it, too.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     static void archive(auto& ar, auto& self) {
         ar(self.snap_history_, self.slivers_, self.next_rank_);
     }
 
-    /// In units of the size of elements: nearer than this is the same place.
+    /// Positions nearer to each other than this share of the size of elements count as the same.
     static constexpr double rounding = 1e-6;
 
   private:

@@ -35,22 +35,23 @@ using topology::MeshEdit;
 
 namespace {
 
-/// Nearer to an end than this share of an edge, rounding would decide.
+/// The least snap, as a share of an edge. Nearer to an end than this, rounding would decide.
 constexpr double smallest_snap = 1e-7;
 
-/// Of the distance up to which nodes may count as on the surface, that up to which they always do.
-/// What lies between keeps the shape of elements (docs/cutting.md).
+/// Nodes up to this share of the largest distance always count as on the surface. Farther nodes do
+/// so only if that keeps the shape of elements (docs/cutting.md).
 constexpr double share_always_snapped = 1.0 / 3.0;
 
-/// Nearer than this share of an edge to an end that is on the surface, it is no other intersection
-/// but a bend of the surface, or that the tissue's motion between two steps is taken as straight.
+/// Share of an edge. An intersection that is nearer to an end on the surface is none of its own. It
+/// comes from a bend of the surface, or because the motion of tissue between two steps is taken as
+/// straight.
 constexpr double bend = 0.25;
 
-/// How often an edge is divided in one sweep: creases of a surface could go on for ever.
+/// How often an edge is divided in one step. At creases it could go on for ever.
 constexpr int max_generation = 6;
 
-/// Of those through an edge, the one at which it is divided first: that to which the blade comes
-/// first, as in steps of which each has one of them; of those that it meets at once, the middle.
+/// Returns the intersection at which an edge is divided first. It is the one to which the blade
+/// comes first, as in smaller steps. Of those that the blade meets at once, it is the middle one.
 const EdgeIntersection& first_of(const EdgeIntersections& intersections) {
     const auto is_earlier = [](const EdgeIntersection& a, const EdgeIntersection& b) {
         return a.time < b.time;
@@ -63,6 +64,7 @@ const EdgeIntersection& first_of(const EdgeIntersections& intersections) {
                          [&](const EdgeIntersection& p) { return is_first(p) && skipped-- == 0; });
 }
 
+/// Makes the edit of one step of a cut: see split() and finish(). Used once.
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
@@ -104,7 +106,7 @@ class Splitter {
     }
 
   private:
-    /// An edge to be divided, unless an end of it comes to count as on the surface.
+    /// An edge to be divided, unless one of its ends comes to count as on the surface.
     struct Pending {
         ElementId element;  // one of those that have the edge
         EdgeIntersections intersections;
@@ -112,8 +114,9 @@ class Splitter {
     struct Turn {
         double time, length;
         Edge edge;
-        // As the blade comes to them, so that it does not matter into how many steps its way is
-        // taken; of those that it meets at once, the longest comes first, of equal ones the lowest.
+        // In the order in which the blade comes to edges, so that the number of steps does not
+        // matter. Of edges that it meets at once, the longest comes first, and of equal ones the
+        // lowest.
         bool operator<(const Turn& other) const {
             if (time != other.time) return time > other.time;
             return length != other.length ? length < other.length : other.edge < edge;
@@ -132,7 +135,7 @@ class Splitter {
             report_.elements_crossed > 0, front_);
     }
 
-    /// Of a copy, where its source is.
+    /// Returns the position of a node after the step. A copy is where its source is.
     Vec3 final_position(NodeId n, const topology::ChangeSet& changes) const {
         if (n.index() >= num_old_nodes_ + new_points_.size()) {
             const std::size_t row = n.index() - changes.node_capacity_before;
@@ -166,7 +169,7 @@ class Splitter {
                   const EdgeIntersection& intersection);
     struct Division {
         NodeId middle;
-        std::vector<NodeId> ring;  // of the other nodes of the elements round the edge
+        std::vector<NodeId> ring;  // the other nodes of the elements round the edge
         const std::vector<MeshEdit::DividedElement>& elements;
     };
     Division bisect(const Edge& edge, ElementId element, double place);
@@ -192,28 +195,29 @@ class Splitter {
     SnapHistory& snap_history_;
     const std::span<SuspendedCut> suspended_;
     const SplitOptions& options_;
-    const double snap_;      // share of an edge: nearer crossings count as at its end
-    const double farthest_;  // m, at rest: nodes farther from the surface do not count as on it
+    const double snap_;      // share of an edge: nearer nodes count as on the surface
+    const double farthest_;  // m at rest: farther nodes do not count as on the surface
     const std::size_t num_old_nodes_;
     NearNodes near_nodes_;
-    std::optional<MeshEdit> edit_;  // from when there is something to do
-    std::optional<CutEnd> end_;     // where the surface goes on ahead of the cut
+    std::optional<MeshEdit> edit_;  // once there is something to do
+    std::optional<CutEnd> end_;     // only in finish()
 
     std::vector<MovingPoint> new_points_;
-    double now_ = 0.0;  // the time of what is being done
-    // When nodes came to the cut, in this step.
+    double now_ = 0.0;  // the time in the step of what is being done
+    // The times in this step at which nodes came to the cut.
     std::unordered_map<NodeId, double> came_on_;
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
-    NodesOnSurface lying_;            // but for rounding
-    std::vector<ElementId> touched_;  // crossed, made of such, or with a face on the surface
+    NodesOnSurface lying_;            // on the surface to rounding
+    std::vector<ElementId> touched_;  // crossed, parts of such, or with a face on the surface
     std::vector<ElementId> ring_;     // scratch
-    std::vector<std::pair<ElementId, std::uint64_t>> slivers_;  // and the number of the cut
+    std::vector<std::pair<ElementId, std::uint64_t>> slivers_;  // with the number of the cut
     SplitReport report_;
 };
 
-/// Normals go the other way than points: n . F dX = (F^T n) . dX, F the deformation gradient.
+/// Returns the normal in the rest frame. Normals transform inversely to points: n . F dX = (F^T n)
+/// . dX, with F the deformation gradient.
 Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
     const auto corners = mesh_.corners(e);
     Eigen::Matrix3d rest, current;
@@ -273,7 +277,7 @@ void Splitter::find_crossed_edges() {
     report_.elements_crossed = touched_.size();
     for (const ElementId e : touched_)
         if (mesh_.kind(e) != CellKind::tetrahedron) {
-            if (end_) {  // the blade has not come to it, and its cut ends as the front is
+            if (end_) {  // the blade has not come to it: the cut ends as its front
                 touched_.clear();
                 report_ = {};
                 return;
@@ -297,7 +301,7 @@ void Splitter::find_crossed_edges() {
     for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.intersections));
 }
 
-/// Opens what lies on the cut, and on those of the blades that are in the body besides.
+/// Opens the faces on this cut and on the suspended cuts.
 void Splitter::part() {
     std::ranges::copy_if(front_.waiting(), std::back_inserter(touched_),
                          [&](ElementId e) { return mesh_.is_alive(e); });
@@ -311,7 +315,7 @@ void Splitter::part() {
     };
     const PlaceOnCut position_at_crease = [&](ElementId e) { return this->position_at_crease(e); };
     const auto is_behind_end = [&](FaceId f) { return !end_ || end_->is_behind(f); };
-    // A surface at rest does not go on, nor does a blade at its end: all is decided at once.
+    // A surface at rest does not go on, nor does a blade at its end, so nothing has to wait.
     Separation own = separation_of(
         front_, surface_.has_creases() ? position_at_crease : PlaceOnCut(), is_behind_end,
         options_.snap > 0.0,
@@ -333,8 +337,8 @@ void Splitter::part() {
     }
 }
 
-/// By its middle. Corners that the edit has made do not tell: rounding has moved them off their
-/// edges, and crossings are counted as if it had not.
+/// Returns the side of an element by its middle. Corners that the edit has made are not used:
+/// rounding has moved them off their edges, and intersections are counted as if it had not.
 std::optional<CutFront::Place> Splitter::position_at_crease(ElementId e) const {
     std::array<MovingPoint, 4> points;
     NodeId old;
@@ -349,7 +353,7 @@ std::optional<CutFront::Place> Splitter::position_at_crease(ElementId e) const {
 
 void Splitter::open(const CutFront& front, const Separation& separation) {
     for (const FaceId f : separation.faces) {
-        if (!mesh_.neighbor(f).is_valid()) continue;  // it is on another cut, too
+        if (!mesh_.neighbor(f).is_valid()) continue;  // another cut has opened it
         report_.cut_area += topology::rest_area(mesh_, f);
         ++report_.faces_opened;
         edit_->open(f);
@@ -357,8 +361,8 @@ void Splitter::open(const CutFront& front, const Separation& separation) {
     for (const ElementId e : separation.slivers) slivers_.emplace_back(e, front.number());
 }
 
-/// When the face came to have its three nodes on the cut and its elements on different sides of
-/// it; before the step, if a look at them does not tell.
+/// Returns the time in the step at which the face had its three nodes on the cut and its elements
+/// on different sides. Returns -1 if nodes and edges give no such time: it was before the step.
 double Splitter::time_of_separation(FaceId f) const {
     double last = -1.0;
     for (int p = 0; p < 3; ++p)
@@ -376,8 +380,9 @@ double Splitter::time_of_separation(FaceId f) const {
     return last;
 }
 
-/// When all is divided: if they were on the cut before, a bend of the surface or another sheet near
-/// them would count as passing by them.
+/// Puts the nodes that lie on the surface on the cut, once all edges are divided. If they were on
+/// the cut before, a bend of the surface or another branch near them would count as passing by
+/// them.
 void Splitter::put_on_lying_nodes() {
     for (const auto& [n, normal, local_edge_length] : lying_) {
         if (front_.is_on(n)) continue;
@@ -405,15 +410,15 @@ CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) co
             front_.rank(n),      surface_.identity(),    x};
 }
 
-/// Whether an intersection through an edge counts as at the end.
+/// True if an intersection with an edge counts as at the end of the edge.
 bool Splitter::is_at(const EdgeEnd& end, const EdgeIntersection& intersection) {
     if (near_nodes_.has(end, intersection.normal_at_rest)) return true;
     const double size = (point(end.node)[1] - intersection.point).norm();
     return snap_history_.has(end.node, record_at(end.node, intersection), size);
 }
 
-/// Whether the intersection through the edge to `other` is no more than where the surface passes by
-/// a node that is near it.
+/// True if an intersection with the edge from `n` to `other` is none of its own: the surface only
+/// passes by `n`, which is near it.
 bool Splitter::passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const {
     if (!front_.is_near(n)) return false;
     if (!surface_.has_creases()) return true;
@@ -421,7 +426,7 @@ bool Splitter::passes_by(NodeId n, NodeId other, const EdgeIntersection& interse
     return is_same_branch(snap_history_.of(n), record_at(n, intersection), length);
 }
 
-// Of a node near the surface, the nearest crossing of any edge counts as at the node.
+// At a node near the surface, the nearest intersection with each edge counts as at the node.
 bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
                                 EdgeIntersections& intersections) {
     auto begin = intersections.begin(), end = intersections.end();
@@ -434,7 +439,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
     if (begin != end && passes_by(edge.a, edge.b, *begin)) ++begin;
     if (begin != end && passes_by(edge.b, edge.a, *(end - 1))) --end;
     drop_bends();
-    if (begin == end || are_both_on()) return false;  // between them there is nothing but rounding
+    if (begin == end || are_both_on()) return false;  // only rounding is between them
     const double length = rest_length(edge);
     const auto is_near_a = [&](const EdgeIntersection& p) {
         return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
@@ -442,7 +447,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
     const auto is_near_b = [&](const EdgeIntersection& p) {
         return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
     };
-    // At both of them: at the nearer one.
+    // What is near both ends is at the nearer one.
     const auto is_at_a = [&](const EdgeIntersection& p) {
         return is_near_a(p) && (p.from_a <= p.from_b || !is_near_b(p));
     };
@@ -467,7 +472,7 @@ void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections in
     pending_.insert_or_assign(edge, Pending{element, std::move(intersections)});
 }
 
-/// The edge is not divided: what passes through it counts as at its ends.
+/// Records the intersections of an edge that is not divided: they count as at its ends.
 void Splitter::resolve(const Edge& edge, const EdgeIntersections& intersections) {
     for (const EdgeIntersection& intersection : intersections) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
@@ -486,7 +491,7 @@ void Splitter::divide_next() {
     const ElementId element = place->second.element;
     EdgeIntersections due = std::move(place->second.intersections), later;
     pending_.erase(place);
-    // Of later ones it is decided when the blade is there, as if they were in another step.
+    // Later intersections are decided when the blade is there, as if they were in another step.
     const auto is_later = [&](const EdgeIntersection& intersection) {
         return intersection.time > now_ + at_once;
     };
@@ -503,13 +508,14 @@ void Splitter::divide_next() {
         const NodeId end = intersection.from_a < intersection.from_b ? edge.a : edge.b;
         snap_to(end, rest_length(edge));
         snap_history_.add(
-            end, record_at(end, intersection));  // beside a crease, even of a node made on the cut
+            end, record_at(end, intersection));  // at a crease, also for a node made on the cut
     }
     resolve(edge, due);
     if (!later.empty()) receive(edge, element, std::move(later));
 }
 
-/// Where to divide the edge; negative if the nearer end is to count as on the surface.
+/// Returns the edge parameter at which to divide the edge, or a negative number if its nearer end
+/// is to count as on the surface.
 double Splitter::place_to_divide(const Edge& edge, ElementId element,
                                  const EdgeIntersection& intersection) {
     if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
@@ -535,7 +541,7 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
         for (const NodeId n : mesh_.corners(added)) {
             if (n == middle || n == edge.b) continue;
             ring.push_back(n);
-            // Edges that end where the added half begins have gone over to it.
+            // Edges at the second end now belong to the added half only.
             const auto waiting = pending_.find(edge_between(edge.b, n));
             if (waiting != pending_.end()) waiting->second.element = added;
         }
@@ -547,7 +553,8 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
     return {middle, std::move(ring), halves.elements};
 }
 
-/// On this cut and on those of the other blades, once its crossings of the new edges are counted.
+/// Keeps the sides of the halves on this cut and on the suspended cuts.
+/// @pre  the intersections of this cut with the new edges are counted
 void Splitter::place_halves(const Edge& edge, const Division& division, double local_edge_length) {
     const auto& [middle, ring, elements] = division;
     front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
@@ -558,7 +565,7 @@ void Splitter::place_halves(const Edge& edge, const Division& division, double l
     }
 }
 
-/// Returns the new node.
+/// Divides an edge where the surface crosses it, and returns the new node.
 NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
                         const EdgeIntersection& intersection) {
     const double local_edge_length = rest_length(edge);
@@ -592,8 +599,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
     else
         place(edge.a, edge.b, to_b);
     place_halves(edge, division, local_edge_length);
-    // What the blade did before, it did to the edge that was there then: in smaller steps these
-    // would not be asked for it.
+    // What the blade did earlier concerns the edge that was there then. In smaller steps, the new
+    // edges would not be examined for it.
     const auto take = [&](NodeId other, EdgeIntersections&& passed) {
         std::erase_if(passed,
                       [&](const EdgeIntersection& p) { return p.time < intersection.time; });
@@ -605,7 +612,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
     return middle;
 }
 
-/// The faces on the cut, where they run on ahead of the edge at which it ends.
+/// Divides faces on the cut at the blade's edge where they go on ahead of it.
 void Splitter::divide_at_end() {
     if (!end_) return;
     now_ = 1.0;
@@ -627,7 +634,8 @@ void Splitter::divide_at_end() {
     }
 }
 
-/// Both ends are on the cut: so is the new node, on the side of one of them.
+/// Divides an edge whose ends are both on the cut, and returns the new node. It is on the cut, too,
+/// on the side of one of the ends.
 NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
     const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, t);

@@ -1,4 +1,4 @@
-// The exact cut: elements are divided along a surface and parted there.
+// The exact cut: divides elements along a surface and separates them there. See docs/cutting.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,68 +17,76 @@
 
 namespace incise::cutting {
 
-/// Measured: docs/measurements/cutting.md.
+/// The default of `snap`, from measurements: docs/measurements/cutting.md.
 inline constexpr double default_snap = 0.6;
 
-/// Of the uncut body's step length (step_length.h), what cuts try to leave every element: 0.55 from
-/// a snap of 0.6 on, less in proportion below.
+/// Returns the share of the uncut body's step length (step_length.h) that cuts try to leave to
+/// every element. It is 0.55 from a snap of 0.6 on, and less in proportion below.
 double least_step_share(double snap);
 
+/// The options of a cut.
 struct SplitOptions {
-    /// How far off the surface nodes of the cut may be, in mean edge lengths of the uncut body;
-    /// nothing is moved. In [0, 1]. A node nearer to the surface than a third of `snap` of an edge
-    /// that the surface crosses counts as lying on it; up to `snap` away it does where elements
-    /// would otherwise be left with too little of the uncut body's step length: less than
-    /// least_step_share(), or half of that where all that is nearer would be smaller still.
+    /// How far nodes of the cut may be off the surface, in mean edge lengths of the uncut body. The
+    /// range is [0, 1]. No node is moved.
+    ///
+    /// A node counts as on the surface if it is nearer to it than a third of `snap` of an edge that
+    /// the surface crosses. It also counts, up to a distance of `snap`, where elements would
+    /// otherwise keep less than least_step_share() of the uncut body's step length. If the nearer
+    /// end of an edge is farther away than `snap`, half of that share is enough.
     double snap = default_snap;
-    UncutBody uncut = {};
+    UncutBody uncut = {};  ///< the body before its first cut
 };
 
-/// What a cut did.
+/// The report of a cut.
 struct SplitReport {
-    std::size_t elements_crossed = 0;  ///< of before, those through which the surface passed
-    std::size_t nodes_snapped = 0;     ///< nodes of before that count as on the surface
+    std::size_t elements_crossed = 0;  ///< elements before the edit that the surface crosses
+    std::size_t nodes_snapped = 0;  ///< nodes before the edit that came to count as on the surface
     std::size_t edges_divided = 0;
     std::size_t faces_opened = 0;
     double cut_area = 0.0;  ///< of one side of the opened faces, at rest, m2
 };
 
+/// An edit by a cut, with its report.
 struct Split {
     topology::ChangeSet changes;
     SplitReport report;
 };
 
-/// Divides the tetrahedra that the surface passes through and opens the faces on it, in one
-/// transaction.
+/// Divides the tetrahedra that the surface crosses and opens the faces on it, in one transaction.
 ///
-/// Edges that the surface crosses are divided there, in the order in which it comes to them, of
-/// those that it meets at once the longest first; each division takes every element round the edge
-/// in two, so the mesh stays conforming, and no volume is lost. Then the faces open whose three
-/// nodes lie on the surface and whose elements are on different sides of it. A body through which
-/// the surface passes right across is parted; where the surface ends, so do the opened faces,
-/// within one element. Small pieces at its end wait in the front, for the step in which the blade
-/// has gone on or away: separation.h.
+/// Edges that the surface crosses are divided there, in the order in which the surface comes to
+/// them. Of those that it meets at once, the longest comes first. A division makes two of every
+/// element round the edge, so the mesh stays conforming and no volume is lost. Then the faces open
+/// whose three nodes are on the surface and whose elements are on different sides of it.
 ///
-/// @param front  what is left of the cut so far, if it goes on (a blade), else an empty one; it is
-///               brought up to date
-/// @param snap_history  of all cuts of this body so far; brought up to date
-/// @param resting  the blades that are in the body besides; their fronts know of what is divided,
-///                 but not yet of nodes that the edit copies: CutFront::follow. What comes to lie
-///                 on their cuts behind them opens too.
-/// Throws InputError, and leaves the mesh as it was, if a crossed element is no tetrahedron.
-/// Cost: a few microseconds for each element that is crossed, and the search for them: what is near
-/// the surface, if the motion has boxes, else O(#elements).
+/// A body that the surface passes right through comes apart. Where the surface ends, the opened
+/// faces end within one element of it. Small components at its end wait in the front for the step
+/// in which the blade has gone on or away (separation.h).
+/// @param mesh          the mesh to cut
+/// @param tissue        its motion in this step
+/// @param surface       what the cut follows
+/// @param front         the state of the cut so far if a blade goes on, else an empty one; is
+///                      brought up to date
+/// @param options       of the cut
+/// @param snap_history  of all cuts of this body so far; is brought up to date
+/// @param resting       the suspended cuts of other blades. Their fronts follow the divisions, but
+///                      not yet the copies of nodes: see CutFront::apply(). Faces that come to lie
+///                      on these cuts behind their blades open, too.
+/// Throws UndividableElement, and changes nothing, if a crossed element is no tetrahedron.
+/// Cost: a few microseconds for each crossed element, and the search. The search looks at what is
+/// near the surface if `tissue` has boxes, else at all elements.
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
             CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
             std::span<SuspendedCut> resting = {});
 
-/// Ends the cut of a blade whose way has ended, at its edge: elements that the edge is in are
-/// divided along the continuation of its way, the faces on the cut at the edge, to the same limits,
-/// and those behind it open. Small pieces that have waited come off or stay. The front is empty
-/// afterwards.
+/// Ends the cut of a blade at its edge, where its path ends. Elements that the edge is in are
+/// divided along the continuation of the path. Faces on the cut are divided at the edge, with the
+/// same limits, and those behind the edge open. Small components that have waited come off or stay.
+/// The front is empty afterwards.
 ///
-/// @param tissue  at rest: before and after are the same
-/// Else as split(). Nothing happens if the front is empty.
+/// Parameters and cost are those of split(). Nothing happens if the front is empty. If the
+/// continuation comes to an element that is no tetrahedron, no element is divided along it.
+/// @pre  the tissue is at rest: before and after are the same
 Split finish(topology::Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade,
              CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
              std::span<SuspendedCut> resting = {});

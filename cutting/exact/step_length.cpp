@@ -10,7 +10,7 @@ namespace incise::cutting {
 
 namespace {
 
-/// Six times the volume, and the inverse altitudes of the corners.
+/// Six times the volume of a tetrahedron, and the inverse altitudes of its corners, 1/m.
 struct Shape {
     double six_volumes;
     std::array<double, 4> inverse_altitudes;
@@ -38,7 +38,8 @@ double element_step_length(const std::array<Vec3, 4>& corners) {
 }
 
 double step_length(const topology::Mesh& mesh) {
-    // At each node 2 / sqrt(s / m) with s the sum of V (1/h) sum_j (1/h_j), m that of V / 4.
+    // The step of a node is 2 / sqrt(s / m). Here s is the sum of V (1/h) sum_j (1/h_j) over its
+    // elements, and m that of V / 4.
     std::vector<double> stiffness(mesh.node_capacity(), 0.0), volume(mesh.node_capacity(), 0.0);
     for (const ElementId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;

@@ -12,17 +12,17 @@ using topology::Mesh;
 
 namespace {
 
-/// The share of its nodes by which a front may be larger than it has to be.
+/// A front is examined when more than this share of its nodes is new.
 constexpr double growth_before_look = 0.5;
 
-/// How many edge lengths away from its whole front a blade has probably gone.
+/// A blade that is this many edge lengths away from its whole front has probably left it.
 constexpr double far_away = 4.0;
 
-/// How many elements round the boundary a front remembers. A blade that turns and comes back beside
-/// its way meets what it has cut, and has to find all of it or nothing.
+/// How many rings of elements round the boundary a front keeps. A blade that turns and comes back
+/// beside its path meets its own cut, and must find all of it or nothing.
 constexpr std::uint8_t num_rings_kept = 8;
 
-/// Of nodes, by id.
+/// A number for each node, by id.
 using Marks = std::vector<std::uint8_t>;
 
 bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t mark) {
@@ -31,7 +31,8 @@ bool has_corner(const Mesh& mesh, ElementId e, const Marks& marks, std::uint8_t 
                        [&](NodeId n) { return marks[n.index()] == mark; });
 }
 
-/// The elements that have a node on the cut. Those round a node hang together through faces at it.
+/// Returns the elements that have a node on the cut. Those at a node are connected through faces at
+/// it.
 std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
     constexpr std::uint8_t on_cut = 1;
     Marks marks(mesh.node_capacity());
@@ -54,7 +55,7 @@ std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
     return elements;
 }
 
-/// The crossed edges of a front, by node id: every edge of every element at the front is asked for.
+/// The crossed edges of a front by node id, for quick answers about all edges at the front.
 class CrossedEdges {
   public:
     CrossedEdges(const Mesh& mesh, const CutFront& front) : places_(mesh.node_capacity()) {
@@ -73,16 +74,16 @@ class CrossedEdges {
 
   private:
     std::vector<const std::vector<NodeId>*> others_;
-    std::vector<std::uint32_t> places_;  // by node id: 0 for none, else one more than in others_
+    std::vector<std::uint32_t> places_;  // by node id: 0 for none, else 1 + the index in others_
 };
 
-/// Whether crossings round one of the element's faces are odd in number, and the sweep has ended
-/// there.
+/// True if the number of intersections round one of the element's faces is odd and the sweep has
+/// ended in this face.
 bool has_boundary(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                   const CrossedEdges& edges, ElementId e) {
     const topology::CellTraits& t = traits(mesh.kind(e));
     const auto corners = mesh.corners(e);
-    // By corner, a bit for each other to which the edge is crossed.
+    // By corner, a bit for each other corner to which the edge is crossed.
     std::array<unsigned, topology::max_corners> crossed{};
     bool is_any = false;
     for (int k = 0; k < t.num_edges; ++k) {
@@ -110,13 +111,13 @@ bool has_boundary(const Mesh& mesh, const CutSurface& surface, const PositionOf&
     return false;
 }
 
-/// By node id, which nodes of the front are near the boundary of the cut: the ring of elements that
-/// each is in, from 1 for those at the boundary; 0 for those that are farther away. What it says of
-/// other nodes is of no meaning.
+/// Returns by node id the ring of elements round the boundary of the cut in which a node of the
+/// front is. It is 1 at the boundary, and 0 for nodes that are farther away than the rings kept.
+/// For other nodes it has no meaning.
 Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                          const CutFront& front) {
     Marks rings(mesh.node_capacity());
-    // Across the opened faces, too: what is left behind of a cut is so on both sides.
+    // Across opened faces, too, so that a cut is forgotten on both sides at once.
     const auto reach = [&](ElementId e, std::uint8_t ring) {
         for (const NodeId n : mesh.corners(e)) {
             if (rings[n.index()] != 0) continue;
@@ -135,8 +136,8 @@ Marks rings_round_border(const Mesh& mesh, const CutSurface& surface, const Posi
     return rings;
 }
 
-/// Each of the nodes comes to be on the side of those of its neighbours that are not on the cut: no
-/// edge to them is crossed then, and the counts of its other edges stay true.
+/// Makes nodes no longer count as on the cut. Each is first put on the side of its neighbours off
+/// the cut. No edge to these is crossed then, and the counts of its other edges stay true.
 void forget(const Mesh& mesh, const std::vector<NodeId>& nodes, CutFront& front) {
     std::vector<ElementId> star;
     std::vector<NodeId> neighbors;
@@ -180,7 +181,7 @@ void leave_behind(const Mesh& mesh, const CutSurface& surface, const PositionOf&
     forget(mesh,
            front.nodes_unless([&](NodeId n) { return mesh.is_alive(n) && rings[n.index()] != 0; }),
            front);
-    front.set_reviewed();  // forgetting takes crossings back
+    front.set_reviewed();  // forget() has changed crossed edges
 }
 
 }  // namespace incise::cutting

@@ -1,4 +1,4 @@
-// Where a cut that goes on ends inside the body, and which nodes of its front are done with.
+// Finds where a cut in progress ends inside the body, and which nodes of its front are finished.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,21 +10,29 @@
 
 namespace incise::cutting {
 
-/// Where a node is after the step, m.
+/// Returns the position of a node after the step, m.
 using PositionOf = std::function<Vec3(NodeId)>;
 
-/// Forgets the nodes of the front round which the cut is finished: a later intersection there is
-/// another cut. Kept are those near the boundary at which the sweep has ended, as the cut may go on
-/// there: they are a few elements away from one through which the boundary runs. The counts of
-/// crossings tell which do: round a triangle through which the boundary runs they are odd in
-/// number. Where they are odd but the blade is no more, it ended in the body and has gone.
+/// Forgets the nodes of the front round which the cut is finished. A later intersection there is
+/// part of another cut.
 ///
-/// To find this out takes a look at the whole front. So it is done when the front has grown by a
-/// share of its size, and when the sweep crosses nothing any more but has done so, or is far away.
+/// Nodes near the boundary at which the sweep has ended stay, since the cut may go on there. They
+/// are within the eight rings of elements round the boundary. The number of intersections round a
+/// triangle that the boundary passes through is odd. If it is odd but the blade is elsewhere, the
+/// blade has ended in the body and left.
 ///
+/// Such a search examines the whole front, so it takes place in three cases only:
+/// - More than half of the front's nodes are new.
+/// - The sweep crosses nothing any more, but the front has changed.
+/// - The sweep crosses nothing any more, and the blade is far away.
+///
+/// @param mesh         after the edit
+/// @param surface      what the cut follows
+/// @param position     of nodes, copies included
 /// @param has_crossed  whether the surface passed through any element in this step
-/// Cost of a look: proportional to the number of elements at the front, and clearing six bytes for
-/// each node of the mesh and a bit for each element.
+/// @param front        of the cut
+/// Cost: for each search, proportional to the number of elements at the front. In addition it
+/// clears six bytes for each node of the mesh and one bit for each element.
 void leave_behind(const topology::Mesh& mesh, const CutSurface& surface, const PositionOf& position,
                   bool has_crossed, CutFront& front);
 

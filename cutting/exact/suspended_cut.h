@@ -1,4 +1,4 @@
-// A blade that is on its way through the body while another tool cuts.
+// A cut in progress that does not act while another tool cuts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,15 +10,18 @@
 
 namespace incise::cutting {
 
-/// Where another cut divides elements that this blade has cut in part, its front has to keep count
-/// of crossings, or the blade would find less than the whole of its cut when it goes on.
+/// A suspended cut of a blade. Where another cut divides elements that this one has cut in part,
+/// its front must keep count of the intersections. Otherwise the blade would not find all of its
+/// cut when it goes on.
 struct SuspendedCut {
     CutFront& front;
-    SweptEdge edge;  ///< from where it is to there
-    bool has_moved;  ///< in this step: tissue is where it is after the step, else before
-    bool snaps;
+    SweptEdge edge;  ///< of the blade, at rest where it is
+    /// True if the blade has moved in this step. Tissue is then where it is after the step, else
+    /// before.
+    bool has_moved;
+    bool snaps;  ///< true if the snap of the cut is above 0
 
-    /// Whether its edge runs through the triangle.
+    /// True if the blade's edge passes through the triangle an odd number of times.
     std::optional<bool> is_inside(std::array<MovingPoint, 3> triangle) const {
         for (MovingPoint& x : triangle) x[0] = x[1] = x[has_moved ? 1 : 0];
         return edge.ends_inside(triangle);

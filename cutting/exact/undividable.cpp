@@ -22,7 +22,7 @@ void refuse_to_divide(const Mesh& mesh, ElementId e) {
 
 namespace {
 
-/// An element that is no tetrahedron, at rest.
+/// An element at rest that is no tetrahedron.
 class RestingElement {
   public:
     RestingElement(const Mesh& mesh, ElementId e)
@@ -43,8 +43,8 @@ class RestingElement {
 
     double mean_edge() const { return mean_edge_; }
 
-    /// Whether the surface passes through an edge of the element, whose faces have been moved
-    /// outwards by `distance`, m: exactly so if its angles are right ones.
+    /// True if the surface passes through an edge of the element after its faces were moved
+    /// outwards by `distance`, m. If its angles are not right ones, the distance is approximate.
     bool is_crossed_by(const CutSurface& surface, double distance) const {
         std::array<MovingPoint, topology::max_corners> points;
         Box box;
@@ -59,7 +59,8 @@ class RestingElement {
         std::vector<Crossing> crossings;
         for (int k = 0; k < traits_.num_edges; ++k) {
             const auto [p, q] = ends_of_edge(k);
-            // In the direction in which the cut asks, so that ties are decided as there.
+            // The direction is that in which the cut looks for intersections, so that zeros are
+            // decided alike.
             const bool is_forward = corners_[p] < corners_[q];
             surface.append_crossings(points[is_forward ? p : q], points[is_forward ? q : p],
                                      crossings);
@@ -77,12 +78,12 @@ class RestingElement {
     const topology::CellTraits& traits_;
     std::span<const NodeId> corners_;
     std::array<Vec3, topology::max_corners> points_;
-    std::array<Vec3, topology::max_corners> outwards_;  // of the corners
+    std::array<Vec3, topology::max_corners> outwards_;  // by corner, for faces moved by 1
     double mean_edge_ = 0.0;
 };
 
-/// How far the faces of the element must be moved outwards for the surface to cross it, m.
-/// @pre  at `limit` it does, at 0 it does not
+/// Returns how far the faces of the element must be moved outwards until the surface crosses it, m.
+/// @pre  the surface crosses it at `limit`, and not at 0
 double distance_to(const RestingElement& element, const CutSurface& surface, double limit) {
     double low = 0.0, high = limit;
     constexpr int num_halvings = 20;  // to a millionth of the limit
@@ -111,7 +112,7 @@ void add_near_misses(const Mesh& mesh, const CutSurface& surface, double margin,
         const double limit = margin * element.mean_edge();
         if (!element.is_crossed_by(surface, limit)) continue;
         found.elements.insert(e);
-        // Those that are as near but for rounding need no exact distance.
+        // If it is as near as the nearest to rounding, no exact distance is needed.
         const double nearer = std::min(limit, 0.999 * found.distance);
         if (nearer < limit && (nearer == 0.0 || !element.is_crossed_by(surface, nearer))) continue;
         found.distance = distance_to(element, surface, nearer);

@@ -1,4 +1,4 @@
-// Elements that a cut cannot divide: all but tetrahedra.
+// Elements that a cut cannot divide: all that are no tetrahedra.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,32 +13,31 @@
 
 namespace incise::cutting {
 
-/// A cut that is to divide elements has met one that it cannot divide. The text names the element;
-/// the remedy is the caller's, who knows what the user has asked for.
+/// Thrown if a cut would divide an element that is no tetrahedron. The text names the element by
+/// its label. Callers add what the user can change.
 struct UndividableElement : InputError {
     using InputError::InputError;
 };
 
-/// Throws UndividableElement.
+/// Throws UndividableElement for an element.
 [[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, ElementId e);
 
-/// The element of lowest id that the surface crosses where the mesh is at rest and that is no
-/// tetrahedron; nothing if there is none. Cost: O(#elements), and of those that are no tetrahedra
-/// and that the surface may meet a look at their edges.
+/// Returns the element of lowest id that is no tetrahedron and that the surface crosses at rest.
+/// Returns nothing if there is none. Cost: O(n), and a test of the edges of such elements near the
+/// surface.
 std::optional<ElementId> first_undividable(const topology::Mesh& mesh, const CutSurface& surface);
 
-/// Elements that surfaces do not cross at rest and that are not tetrahedra, but that they come near
-/// to.
+/// Elements that are no tetrahedra and that surfaces come near to at rest, without crossing them.
 struct NearMisses {
     std::set<ElementId> elements;
-    ElementId nearest;                                          ///< one of them, if there are any
+    ElementId nearest;  ///< of these elements; invalid if there are none
     double distance = std::numeric_limits<double>::infinity();  ///< of the nearest, m
 
     bool is_empty() const { return elements.empty(); }
 };
 
-/// Adds the elements that the surface comes nearer to than `margin` times the mean length of their
-/// edges, where the mesh is at rest.
+/// Adds the elements to which the surface comes nearer at rest than `margin` times their mean edge
+/// length.
 /// @pre  first_undividable() finds none
 /// Cost: as first_undividable().
 void add_near_misses(const topology::Mesh& mesh, const CutSurface& surface, double margin,

@@ -10,7 +10,7 @@ namespace incise::cutting {
 bool Plane::may_meet(const Box& box) const {
     const Vec3 half = 0.5 * box.sizes();
     const double reach = normal_.cwiseAbs().dot(half), offset = normal_.dot(box.center() - point_);
-    // What rounding could hide is far below this.
+    // 1e-12 of this size is far above the rounding errors.
     const double size = normal_.cwiseAbs().dot(box.center().cwiseAbs() + point_.cwiseAbs() + half);
     return std::abs(offset) <= reach + 1e-12 * size;
 }

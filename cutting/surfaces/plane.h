@@ -1,4 +1,4 @@
-// A cut right through along a plane.
+// A cut surface that is an infinite plane.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,9 +6,10 @@
 
 namespace incise::cutting {
 
+/// A plane at rest, in the frame of the world.
 class Plane final : public CutSurface {
   public:
-    /// @param normal  of any length but zero
+    /// Makes the plane through `point`, m. The normal may have any length above 0.
     Plane(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal) {}
 
     bool may_meet(const Box& box) const override;
@@ -17,7 +18,7 @@ class Plane final : public CutSurface {
 
     SurfaceIdentity identity() const override { return identity_of_planes; }
 
-    /// +1 or -1, exact; the plane itself counts as above.
+    /// Returns the side of a point, +1 or -1, exactly. Points on the plane are on side +1.
     int side(const Vec3& x) const;
 
   private:

@@ -1,5 +1,6 @@
-// Signs of determinants that decide where things lie, exact and never undecided by chance.
-// Internal to cutting; only its .cpp files include this, for it needs CGAL.
+// Exact signs of determinants, with zeros decided by an infinitesimal shift of the tissue.
+// Sources: [Shewchuk 1997] and [Edelsbrunner 1990] in docs/glossary.md. Internal to cutting: only
+// .cpp files include this header, since it needs CGAL.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,19 +14,18 @@
 
 namespace incise::cutting {
 
-/// A point in n dimensions. Tissue counts as shifted by an infinitesimal (e, e^2, e^4) in space,
-/// one and the same shift for all tissue at all times, so that every case is decided once and from
-/// every side alike.
+/// A point in n dimensions. All tissue counts as shifted in space, at all times, by the same
+/// infinitesimal (e, e^2, e^4). So each case is decided once, and alike from every element.
 template <std::size_t n>
 struct ShiftedPoint {
-    std::array<double, n> x;  ///< the first three are space
+    std::array<double, n> x;  ///< the first three coordinates are space
     bool is_tissue = false;
 };
 
-/// A determinant: its value, and the sign that it has after the shift.
+/// The value of a determinant, and its sign after the shift.
 struct ShiftedSign {
     int sign = 0;        ///< 0 only if no shift in space decides it
-    double value = 0.0;  ///< without the shift; as exact as a double can be where it is near zero
+    double value = 0.0;  ///< without the shift; where near zero, the exact value rounded to double
 };
 
 namespace detail {
@@ -33,8 +33,10 @@ namespace detail {
 template <class Number, std::size_t n>
 using Square = std::array<std::array<Number, n>, n>;
 
-/// The row of ones is eliminated by subtracting the last column. Along `axis`, if any, stands the
-/// indicator of tissue: the derivative with respect to the shift along it.
+/// Returns the matrix of the determinant, without the row of ones. That row is eliminated by
+/// subtracting the last column. If `axis` is not negative, the row of this axis has 1 for tissue
+/// and 0 for other points. The determinant is then the derivative with respect to the shift along
+/// the axis.
 template <class Number, std::size_t n>
 Square<Number, n> reduced(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
     const auto entry = [&](const ShiftedPoint<n>& point, std::size_t row) -> double {
@@ -62,7 +64,8 @@ Number determinant(const Square<Number, 4>& m) {
                              m[3][3]);
 }
 
-/// The determinant with all signs positive: what its rounding errors are measured by.
+/// Returns the sum of the absolute values of all products of a determinant. Rounding errors are in
+/// proportion to it.
 inline double permanent(const Square<double, 3>& m) {
     const auto at = [&](std::size_t r, std::size_t c) { return std::abs(m[r][c]); };
     double sum = 0.0;
@@ -89,14 +92,14 @@ inline double permanent(const Square<double, 4>& m) {
     return sum;
 }
 
-/// Nothing if rounding might decide.
+/// Returns the sign from floating point, or nothing if rounding errors might change it.
 template <std::size_t n>
 std::optional<ShiftedSign> rounded_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points,
                                         int axis) {
     const auto m = reduced<double, n>(points, axis);
     const double value = determinant(m);
-    // Each of the at most 24 products has four rounded differences and under a dozen roundings
-    // more: 64 units of rounding bound their sum generously.
+    // Each of the at most 24 products has four rounded differences and fewer than twelve other
+    // roundings. So 64 units of rounding are a generous bound of their sum.
     constexpr double bound = 64.0 * 0x1.0p-53;
     const double uncertainty = bound * permanent(m);
     if (std::abs(value) > uncertainty && uncertainty > 0x1.0p-900)
@@ -112,15 +115,15 @@ ShiftedSign exact_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, 
 
 }  // namespace detail
 
-/// Orientation of n + 1 points in n dimensions (3, or 4 with time as the last), if it takes no
-/// exact arithmetic, which costs a hundred times as much; else nothing.
+/// Returns the orientation of n + 1 points in n dimensions (3, or 4 with time as the last). Returns
+/// nothing if this needs exact arithmetic, which takes about a hundred times as long.
 template <std::size_t n>
 std::optional<ShiftedSign> clear_orientation(
     const std::array<const ShiftedPoint<n>*, n + 1>& points) {
     return detail::rounded_sign<n>(points, -1);
 }
 
-/// Orientation of n + 1 points in any case.
+/// Returns the orientation of n + 1 points, by exact arithmetic where necessary.
 template <std::size_t n>
 ShiftedSign orientation(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
     const auto sign = [&](int axis) {

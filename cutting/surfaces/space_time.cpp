@@ -9,20 +9,20 @@ namespace incise::cutting {
 
 namespace {
 
-/// A point in space and time; time is 0 before the step and 1 after it.
+/// A point in space and time. Its time is 0 before the step and 1 after it.
 using Event = ShiftedPoint<4>;
 using EventTriangle = std::array<const Event*, 3>;
 
-/// Six events span one more point than four dimensions have, so some combination of them
-/// vanishes: its coefficients are the minors with alternating signs. The triangles meet if those
-/// of the first are all of one sign and those of the second all of the other; then the first
-/// three are the weights of the meeting point in the first triangle.
+/// True if two triangles in four dimensions meet. Their six events satisfy one affine relation,
+/// whose coefficients are the minors with alternating signs. The triangles meet if the coefficients
+/// of the first are all of one sign and those of the second all of the other. The first three
+/// coefficients are then the weights of the meeting point in the first triangle.
 bool triangles_meet(const EventTriangle& s, const EventTriangle& t,
                     std::array<double, 3>& weights) {
     const std::array<const Event*, 6> events = {s[0], s[1], s[2], t[0], t[1], t[2]};
     int common_sign = 0;
     std::array<bool, 6> is_known{};
-    // Exactly only if need be: mostly one of those that are clear rules it out.
+    // Exact arithmetic only where necessary: mostly, the clear signs already exclude a meeting.
     for (const bool is_exact : {false, true})
         for (std::size_t k = 0; k < 6; ++k) {
             if (is_known[k]) continue;
@@ -48,7 +48,7 @@ std::array<Event, 4> corners(const MovingSegment& s, bool is_tissue) {
     return {event(s.a[0], 0.0), event(s.b[0], 0.0), event(s.b[1], 1.0), event(s.a[1], 1.0)};
 }
 
-/// Calls visit(place along the tissue's segment, time) for each crossing.
+/// Calls visit(edge parameter of the tissue's segment, time) for each intersection.
 template <class Visit>
 void for_crossings(const MovingSegment& tissue, const MovingSegment& blade, Visit visit) {
     const auto p = corners(tissue, true), q = corners(blade, false);

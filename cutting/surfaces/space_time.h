@@ -1,4 +1,5 @@
-// Whether and where moving things met: exact, and without gaps from step to step.
+// Exact intersections of moving segments, without gaps between steps: docs/theory.md, Crossings in
+// space and time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,7 +10,8 @@
 
 namespace incise::cutting {
 
-/// A point that moves straight during a step: [0] is where it is before, [1] after.
+/// A point that moves straight during a step: [0] is its position before the step, [1] that after
+/// it.
 using MovingPoint = std::array<Vec3, 2>;
 
 /// A segment between two moving points.
@@ -17,35 +19,37 @@ struct MovingSegment {
     MovingPoint a, b;
 };
 
-/// Where a cut passes through a segment of tissue from a to b.
+/// An intersection of a cut surface with a segment of tissue from a to b.
 struct Crossing {
-    double place;       ///< 0 at a, 1 at b
-    Vec3 normal;        ///< of the cut there, of any length but zero, unless it is not known
+    double place;       ///< edge parameter: 0 at a, 1 at b
+    Vec3 normal;        ///< of the surface there, of any length; zero if not known
     double time = 0.0;  ///< of the intersection: 0 before the step, 1 after it
     bool operator<(const Crossing& other) const { return place < other.place; }
 };
 
-/// Of a step: what is nearer to each other in time happens at once, but for rounding.
+/// Times in a step that differ by less than this count as equal, since rounding may separate them.
 inline constexpr double at_once = 1e-9;
 
-/// Appends where the blade's segment passed through the tissue's during the step, in no order.
+/// Appends the intersections of a blade's segment with a segment of tissue during the step, in no
+/// particular order.
 ///
-/// In space and time each segment sweeps a surface, taken as two triangles; two such surfaces in
-/// four dimensions meet in points, which are found by the signs of 5 x 5 determinants. Where a
-/// sign is zero, the tissue counts as shifted by an infinitesimal (shifted_sign.h). Neighbouring
-/// segments, and successive steps, share their edges in space and time: a closed path of tissue is
-/// crossed consistently, whoever moves and however the step is chosen.
+/// In space and time each segment sweeps a surface, taken as two triangles. Two such surfaces in
+/// four dimensions meet in points, which the signs of 5 x 5 determinants decide. Where a sign is
+/// zero, the tissue counts as shifted by an infinitesimal (shifted_sign.h). Neighbouring segments
+/// and successive steps share their edges in space and time. So a closed path of tissue is crossed
+/// consistently, whether blade or tissue moves, and however the time is divided into steps.
 ///
-/// Whether there is a crossing is exact for any finite input; the places are rounded. A zero-length
-/// or parallel segment crosses nothing.
+/// Whether there is an intersection is exact for any finite input. Its edge parameter and time are
+/// rounded. A segment that has no length, or that is parallel to the other, has no intersection.
 void append_crossings(const MovingSegment& tissue, const MovingSegment& blade,
                       std::vector<Crossing>& crossings);
 
-/// Whether the blade's segment passed through the tissue's an odd number of times in the step.
+/// True if the blade's segment passes through the tissue's segment an odd number of times in the
+/// step.
 bool cross(const MovingSegment& tissue, const MovingSegment& blade);
 
-/// Whether the resting segment of a blade from p to q passes through the triangle of tissue, with
-/// the same shift: what fronts of a sweep are inside a face of the mesh.
+/// True if a blade's segment at rest from p to q passes through a triangle of tissue, with the same
+/// shift. This decides which boundaries of a sweep are inside a face of the mesh.
 bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& triangle);
 
 }  // namespace incise::cutting

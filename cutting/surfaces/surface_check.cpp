@@ -16,13 +16,14 @@ namespace incise::cutting {
 
 namespace {
 
-/// Corners as numbers of places, and where they are.
+/// A triangle: the numbers of the positions of its corners, and these positions.
 struct PlacedTriangle {
     std::array<std::size_t, 3> places;
     std::array<Vec3, 3> corners;
 };
 
-/// On which side of the triangle u, v, w the point is; 0 in its plane, to rounding errors.
+/// Returns the side of the triangle u, v, w on which the point is, or 0 if the point is in its
+/// plane to rounding errors.
 int side(const Vec3& p, const Vec3& u, const Vec3& v, const Vec3& w) {
     constexpr double tolerance = 1e-13;
     const Vec3 a = v - u, b = w - u, c = p - u;
@@ -32,7 +33,7 @@ int side(const Vec3& p, const Vec3& u, const Vec3& v, const Vec3& w) {
     return height > rounding ? 1 : height < -rounding ? -1 : 0;
 }
 
-/// Triangles with an area, with one number for all points at one place.
+/// Returns the triangles that have an area. All points at one position have one number.
 std::vector<PlacedTriangle> placed_triangles(const topology::SurfaceData& surface) {
     std::map<std::array<double, 3>, std::size_t> numbers;
     std::vector<PlacedTriangle> triangles;
@@ -48,14 +49,15 @@ std::vector<PlacedTriangle> placed_triangles(const topology::SurfaceData& surfac
     return triangles;
 }
 
-/// A point off the plane of the triangle: seen from it, triangles in that plane turn one way.
+/// Returns a point off the plane of the triangle. With it, side() gives the orientation of three
+/// points in that plane.
 Vec3 apex_over(const PlacedTriangle& t) {
     const Vec3 u = t.corners[1] - t.corners[0], v = t.corners[2] - t.corners[0];
     return t.corners[0] + std::max(u.norm(), v.norm()) * u.cross(v).normalized();
 }
 
-/// Whether the line through an edge of `t` has the other triangle, in the same plane, on its outer
-/// side.
+/// True if an edge of `t` has no corner of the other triangle on its inner side. Both triangles are
+/// in one plane.
 bool has_separating_edge(const PlacedTriangle& t, const PlacedTriangle& other, const Vec3& apex) {
     for (std::size_t k = 0; k < 3; ++k) {
         const auto &a = t.corners[k], &b = t.corners[(k + 1) % 3];
@@ -67,8 +69,9 @@ bool has_separating_edge(const PlacedTriangle& t, const PlacedTriangle& other, c
     return false;
 }
 
-/// Whether the edge from p to q goes through the triangle. One that begins or ends in its plane
-/// does so within it, not on its boundary; one that lies in the plane does not.
+/// True if the edge from p to q passes through the triangle. An edge that ends in the plane of the
+/// triangle does so if this end is inside the triangle, not on its boundary. An edge in the plane
+/// does not.
 bool passes_through(const Vec3& p, int side_of_p, const Vec3& q, int side_of_q,
                     const PlacedTriangle& t) {
     if (side_of_p == side_of_q) return false;
@@ -85,7 +88,7 @@ bool passes_through(const Vec3& p, int side_of_p, const Vec3& q, int side_of_q,
 
 enum class Meeting { none, passing, lying_upon };
 
-/// Whether an edge of s passes through t; `are_coplanar` tells if they lie in one plane.
+/// True if an edge of s passes through t. Sets `are_coplanar` to whether both are in one plane.
 bool has_edge_through(const PlacedTriangle& s, const PlacedTriangle& t, bool& are_coplanar) {
     std::array<int, 3> sides{};
     std::array<bool, 3> is_shared{};
@@ -96,7 +99,7 @@ bool has_edge_through(const PlacedTriangle& s, const PlacedTriangle& t, bool& ar
     are_coplanar = sides == std::array<int, 3>{};
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3;
-        if (is_shared[k] || is_shared[l]) continue;  // they meet at that corner already
+        if (is_shared[k] || is_shared[l]) continue;  // the corner belongs to both
         if (passes_through(s.corners[k], sides[k], s.corners[l], sides[l], t)) return true;
     }
     return false;
@@ -122,7 +125,7 @@ std::string place(const Vec3& x) {
     return text.str();
 }
 
-/// Finds the first pair of each way of meeting.
+/// A search for the first pair of triangles of each kind of meeting, for Eigen::BVIntersect.
 struct MeetingPairs {
     const std::vector<PlacedTriangle>& triangles;
     const PlacedTriangle *passing = nullptr, *lying_upon = nullptr;

@@ -1,4 +1,4 @@
-// Whether a triangulated surface is one sheet, as a cut along it takes it to be.
+// Checks whether a triangulated surface is a single sheet, as cuts require.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,13 +9,19 @@
 
 namespace incise::cutting {
 
-/// What keeps the triangles from being one sheet that does not meet itself: a sentence with a
-/// place for edges of more than two triangles, for triangles that pass through each other, and for
-/// those that lie upon each other; empty for a sheet. Where sheets meet, an edge of tissue may be
-/// passed twice, which counts as not at all: tissue stays joined.
-/// Points at the same place count as one. Triangles without area count for nothing. Corners that
-/// lie on the boundary of another triangle are none of these, and so sheets that cross just along
-/// edges of both, divided differently there, go unnoticed. To rounding errors. Cost: O(n log n).
+/// Returns a sentence with a position for each kind of defect of a surface. Returns nothing for a
+/// sheet that does not meet itself. Where parts of a surface meet, it may pass through an edge of
+/// tissue twice. Two intersections count as none, and tissue stays joined.
+///
+/// The kinds of defects are:
+/// - edges of more than two triangles
+/// - triangles that pass through each other
+/// - triangles that lie upon each other
+///
+/// Points at the same position count as one, and triangles without area are ignored. A corner on
+/// the boundary of another triangle is no defect. So sheets are not found that cross exactly along
+/// edges of both, if these edges are divided differently. Decisions hold to rounding errors.
+/// Cost: O(n log n).
 std::vector<std::string> defects_of_sheet(const topology::SurfaceData& surface);
 
 }  // namespace incise::cutting

@@ -9,13 +9,13 @@ namespace incise::cutting {
 
 namespace {
 
-/// More than what rounding could hide of the height of a point in the box along the normal.
+/// Returns a bound of the rounding errors in the heights of points in the box along the normal.
 double rounding_of_heights(const Vec3& normal, const Box& box) {
     return 1e-12 * normal.cwiseAbs().dot(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()));
 }
 
-/// Of the height of a hull: what lies nearer to it counts as in it. An earlier cut that is met
-/// again is found to as much (SnapHistory::rounding).
+/// Share of the height of a hull. What is nearer to the hull than this counts as in it. Earlier
+/// cuts are recognized to the same precision (SnapHistory::rounding).
 constexpr double hull_margin = 1e-6;
 
 }  // namespace

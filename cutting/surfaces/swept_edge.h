@@ -1,4 +1,4 @@
-// What a blade's edge sweeps in one step.
+// The surface that the edge of a blade sweeps in one step, in space and time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace incise::cutting {
 
-/// A polyline whose points move straight from `before` to `after` (m).
+/// The surface of a polyline whose points move straight from `before` to `after`, m.
 class SweptEdge final : public CutSurface {
   public:
-    /// The two have the same number of points, at least two.
+    /// @pre  `before` and `after` have the same number of points, at least two
     SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after);
 
     bool may_meet(const Box& box) const override;
@@ -22,7 +22,7 @@ class SweptEdge final : public CutSurface {
     bool ends_near(const Vec3& x, double reach) const override;
 
   private:
-    /// What a segment sweeps lies in its box and between two planes across the normal.
+    /// Bounds of what a segment sweeps: a box, and two planes across `normal`.
     struct Bounds {
         Box box;
         Vec3 normal;

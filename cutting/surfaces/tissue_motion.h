@@ -1,4 +1,4 @@
-// What a tool sees of the body during one step.
+// The positions of the tissue during one step.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,15 +11,16 @@
 
 namespace incise::cutting {
 
-/// The body over one step: nodes move straight from `before` to `after` (m, by node id).
+/// The body during one step. Nodes move straight from `before` to `after`, m, by node id.
+/// @lifetime  the mesh, the positions and the boxes must outlive the object
 struct TissueMotion {
     const topology::Mesh& mesh;
     std::span<const Vec3> before, after;
-    /// Find what is near without looking at the whole body; none: look at all of it.
+    /// Boxes for the search of elements; if null, a search visits all elements.
     const topology::ElementBoxes* boxes = nullptr;
 
-    /// Calls visit(element), in ascending order, for the living elements for whose box, and for
-    /// every box round it, may_meet(box) holds.
+    /// Calls visit(element) in ascending order for living elements. Visits those for which
+    /// may_meet(box) is true, both for their own box and for every box round it.
     template <class MayMeet, class Visit>
     void for_each_near(MayMeet may_meet, Visit visit) const {
         const auto look_at = [&](ElementId e) {
@@ -32,10 +33,11 @@ struct TissueMotion {
         for (const ElementId e : mesh.elements()) look_at(e);
     }
 
-    /// False only if no element comes into what is swept in the step. Without boxes: true.
+    /// Returns false only if no element is in the box `swept` at any time of the step. Without
+    /// boxes it returns true.
     bool may_meet(const Box& swept) const { return !boxes || boxes->may_meet(swept); }
 
-    /// Mean of an element's corners.
+    /// Returns the mean of the corners of an element.
     static Vec3 centre(const topology::Mesh& mesh, ElementId e, std::span<const Vec3> positions) {
         Vec3 sum = Vec3::Zero();
         const auto corners = mesh.corners(e);
@@ -43,7 +45,7 @@ struct TissueMotion {
         return sum / static_cast<double>(corners.size());
     }
 
-    /// Holds the element throughout the step.
+    /// Returns a box that contains the element throughout the step.
     Box box(ElementId e) const {
         Box box;
         for (const auto n : mesh.corners(e)) {

@@ -24,7 +24,8 @@ Box box_of(const Triangle& t) {
 
 ShiftedPoint<3> point(const Vec3& x, bool is_tissue) { return {{x.x(), x.y(), x.z()}, is_tissue}; }
 
-/// Where the segment of tissue from a to b passes through the triangle; negative if nowhere.
+/// Returns the edge parameter at which the segment of tissue from a to b passes through the
+/// triangle, or a negative number if it does not.
 double crossing(const Vec3& a, const Vec3& b, const Triangle& triangle) {
     const auto from = point(a, true), to = point(b, true);
     const auto u = point(triangle[0], false), v = point(triangle[1], false),
@@ -41,7 +42,8 @@ double crossing(const Vec3& a, const Vec3& b, const Triangle& triangle) {
     return height > 0.0 ? std::abs(below.value) / height : 0.5;
 }
 
-/// Least squared distance of x from the triangle: from its inside, or else from its edges.
+/// Returns the squared distance of x from the triangle: from its inside if x is over it, else from
+/// its edges.
 double squared_distance(const Vec3& x, const Triangle& t) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const double square = normal.squaredNorm();
@@ -65,7 +67,7 @@ struct AnyInBox {
     bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
     bool intersectObject(const Triangle& t) {
         found = box.intersects(box_of(t));
-        return found;  // the first will do
+        return found;  // true ends the search
     }
 };
 
@@ -89,7 +91,7 @@ struct NearestWithin {
     bool intersectVolume(const Box& volume) const { return box.intersects(volume); }
     bool intersectObject(const Triangle& t) {
         const Vec3 across = (t[1] - t[0]).cross(t[2] - t[0]);
-        if (across.isZero(0.0)) return false;  // it cuts nothing
+        if (across.isZero(0.0)) return false;  // a triangle without area cuts nothing
         if (const double found = squared_distance(x, t); found <= square) {
             square = found;
             normal = across.normalized();
@@ -110,7 +112,8 @@ struct CrossingsOf {
     }
 };
 
-/// A number for the coordinates of all corners in their order: one in 2^64 others has it too.
+/// Returns a hash of the coordinates of all corners, in their order. Another surface has the same
+/// one with a probability of 2^-64.
 SurfaceIdentity identity_of(const std::vector<Triangle>& triangles) {
     std::uint64_t number = 0xCBF29CE484222325u;
     for (const Triangle& t : triangles)
@@ -139,7 +142,7 @@ void fill(TriangleTree& tree, const std::vector<Triangle>& triangles) {
         tree.init(triangles.begin(), triangles.end(), boxes.begin(), boxes.end());
 }
 
-/// Edges of an odd number of triangles, as triangles without area.
+/// Returns the edges of an odd number of triangles, as triangles without area.
 std::vector<Triangle> boundary_of(const std::vector<Triangle>& triangles) {
     const auto is_before = [](const Vec3& a, const Vec3& b) {
         return std::ranges::lexicographical_compare(a, b);

@@ -1,4 +1,4 @@
-// A cut along a triangulated surface, open or closed.
+// A cut surface of triangles, open or closed.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace incise::cutting {
 
-/// Triangles that share an edge share its points, so that nothing slips through between them; a
-/// closed surface frees its inside. Triangles without area cut nothing.
+/// A triangulated surface at rest. Two triangles at an edge use the same points there, so no gap is
+/// between them, and a closed surface frees its inside. Triangles without area cut nothing.
 class TriangleSurface final : public CutSurface {
   public:
     /// Cost: O(n log n).
@@ -23,10 +23,10 @@ class TriangleSurface final : public CutSurface {
 
     bool has_creases() const override { return true; }
     std::optional<Vec3> normal_near(const Vec3& x, double distance) const override;
-    /// Of its triangles.
+    /// Returns a hash of the triangles.
     SurfaceIdentity identity() const override { return identity_; }
 
-    /// Infinite without triangles.
+    /// Returns infinity if there are no triangles.
     double distance(const Vec3& x) const override;
 
   private:

@@ -8,12 +8,12 @@ namespace incise::cutting {
 
 namespace {
 
-/// Squared distance of two segments p0p1 and q0q1, either of which may be a point.
+/// Returns the squared distance of two segments p0p1 and q0q1. Either may be a point.
 double squared_distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
     const Vec3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
     const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
     const auto clamp = [](double s) { return std::clamp(s, 0.0, 1.0); };
-    // Where the lines are nearest; then each parameter again for the clamped other one.
+    // First the nearest points of the lines, then each parameter again for the clamped other one.
     const double det = uu * vv - uv * uv;
     double s = det > 0.0 ? clamp((uv * vw - vv * uw) / det) : 0.0;
     const double t = vv > 0.0 ? clamp((uv * s + vw) / vv) : 0.0;
@@ -46,7 +46,7 @@ struct Meets {
     }
 };
 
-/// Distance of the shape's farthest point from the tool's origin.
+/// Returns the distance of the farthest point of the shape from the origin of the tool.
 double reach(const CarverShape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->radius;
     if (const auto* cuboid = std::get_if<Cuboid>(&shape)) return 0.5 * cuboid->size.norm();

@@ -1,4 +1,5 @@
-// A tool that takes away what it covers: cautery, suction, a burr.
+// Tools that remove the elements that they cover, as cautery, suction or a burr does.
+// Source: [Forest 2005] in docs/glossary.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,28 +12,30 @@
 
 namespace incise::cutting {
 
-/// Shapes in the tool's frame, metres.
+/// A ball in the frame of the tool, m.
 struct Sphere {
-    double radius;  ///< about the origin
+    double radius;  ///< centred at the origin
     static void archive(auto& ar, auto& self) { ar(self.radius); }
 };
+/// A cylinder with round ends in the frame of the tool, m.
 struct Capsule {
     Vec3 from, to;  ///< ends of the axis
     double radius;
     static void archive(auto& ar, auto& self) { ar(self.from, self.to, self.radius); }
 };
+/// A box in the frame of the tool, with sides parallel to the axes, m.
 struct Cuboid {
     Vec3 size;  ///< edge lengths, centred at the origin
     static void archive(auto& ar, auto& self) { ar(self.size); }
 };
 using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
 
-/// Whether the segment from a to b (tool's frame) meets the closed shape.
+/// True if the segment from a to b, in the frame of the tool, meets the shape or its surface.
 bool meets(const CarverShape& shape, const Vec3& a, const Vec3& b);
 
-/// Elements whose centre the shape covers at some moment of the step, while both tool and tissue
-/// move: the centre's path in the tool's frame is taken as straight. In ascending order.
-/// Cost: follows what is near the tool's way, if the motion has boxes; else O(#elements).
+/// Returns the elements whose centre the shape covers at some time of the step, in ascending order.
+/// Tool and tissue both move. The path of a centre in the frame of the tool is taken as straight.
+/// Cost: proportional to the elements near the path of the tool if `tissue` has boxes, else O(n).
 std::vector<ElementId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
                                         const Pose& before, const Pose& after);
 

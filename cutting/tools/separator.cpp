@@ -13,9 +13,10 @@ using topology::Mesh;
 
 namespace {
 
-/// Weights of a face's corners for its intersection: where, at rest, the straight line between the
-/// centres of its elements pierces it, so that the path is nearly straight and a blade seldom
-/// passes it twice; the face's centre if the line misses the face, and on quadrilaterals.
+/// Returns the weights of the corners of a face for the point where paths pass through it. At rest
+/// this point is on the straight line between the centres of the two elements. The path then is
+/// nearly straight, and a blade seldom passes through it twice. If the line misses the face, or if
+/// the face is a quadrilateral, the point is the centre of the face.
 std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, FaceId f) {
     const int size = mesh.face_size(f);
     std::array<double, topology::max_face_corners> centre{};
@@ -26,8 +27,8 @@ std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, Fa
     };
     const Vec3 from = TissueMotion::centre(mesh, f.element, mesh.rest_positions());
     const Vec3 to = TissueMotion::centre(mesh, mesh.neighbor(f).element, mesh.rest_positions());
-    // Volumes that the line spans with the edges are in proportion to the weights of the corners
-    // opposite to them.
+    // The weight of a corner is proportional to the volume that the line spans with the opposite
+    // edge.
     const auto volume = [&](int i, int j) {
         return (to - from).dot((at(i) - from).cross(at(j) - from));
     };
@@ -46,7 +47,7 @@ Vec3 on_face(const Mesh& mesh, FaceId f, std::span<const double> weights,
     return sum;
 }
 
-/// How often, modulo two, the blade's edge passes through the segment between two points.
+/// True if the blade's edge passes through the segment between two points an odd number of times.
 bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3> before,
                 std::span<const Vec3> after) {
     Box path(p[0]);
@@ -61,10 +62,11 @@ bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3
     return is_odd;
 }
 
-/// Takes out the faces that would cut a single element off from several others. Such an element
-/// at the boundary of the cut, its centre on one side and its neighbours' on the other, would fall
-/// off as a sliver; hanging by one face it is a leaf, over which nothing passes from side to side.
-/// An element that the source joins to one other only is no sliver but an end, and may be cut off.
+/// Takes out the faces that would separate a single element from several others. Such an element is
+/// at the boundary of the cut, with its centre on one side and those of its neighbours on the
+/// other. It would come off as a sliver. If it stays joined by one face, no path from side to side
+/// leads through it. An element that had one neighbour only in the input mesh is no sliver, and may
+/// be separated.
 void leave_no_slivers(const Mesh& mesh, std::vector<FaceId>& faces) {
     std::map<ElementId, int> num_joined;
     const auto joined = [&](ElementId e) -> int& {
@@ -104,16 +106,16 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
                            TissueMotion::centre(mesh, e, tissue.after)};
     };
     std::vector<FaceId> faces;
-    // A crossed path has a crossed half, which lies in one of its two elements.
+    // If a path is crossed, one of its halves is, and each half is in one of the two elements.
     const auto may_meet = [&](const Box& box) { return swept.intersects(box); };
     tissue.for_each_near(may_meet, [&](ElementId e) {
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;
-            // Both sides may be near the blade: the lower one asks.
+            // If both elements are near the blade, the face is examined from its lower side only.
             if (other < face && swept.intersects(tissue.box(other.element))) continue;
             const FaceId lower = std::min(face, other), higher = std::max(face, other);
-            // From the lower side, so that sums are in the same order every time.
+            // From the lower side, so that sums always have the same order.
             const auto weights = intersection(mesh, lower);
             const MovingPoint middle = {on_face(mesh, lower, weights, tissue.before),
                                         on_face(mesh, lower, weights, tissue.after)};

@@ -1,4 +1,5 @@
-// A blade that opens faces which exist: the cut runs along the mesh, next to the blade's path.
+// A blade that opens existing faces next to its path.
+// Source: [Nienhuys 2001] in docs/glossary.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,16 +11,18 @@
 
 namespace incise::cutting {
 
-/// Faces to open after a blade's edge, a polyline, moved straight from `before` to `after` (m)
-/// while the tissue moved too. In ascending order.
+/// Returns the faces to open after a blade's edge has moved straight from `before` to `after`,
+/// while the tissue moved too. The edge is a polyline, m. The faces are in ascending order.
 ///
-/// A face is opened when the edge passed, an odd number of times, through the path that joins the
-/// centres of its two elements by way of a point of the face. These paths run inside the body, and
-/// crossings are counted exactly (space_time.h): once the blade has passed right through, no chain
-/// of elements leads past it, so the body is parted; until then the opened faces are a sheet that
-/// ends at the blade, within one element of where it went. An element that had several neighbours
-/// is not cut off alone: it would be a sliver, its centre beyond the blade and the rest of it not.
-/// Cost: follows what is near the blade's way, if the motion has boxes; else O(#elements).
+/// A face opens if the edge passes an odd number of times through the path between the centres of
+/// its two elements. The path goes by way of a point of the face, so it lies inside the body.
+/// Intersections are counted exactly (space_time.h). Once the blade has passed right through, no
+/// chain of elements leads past it, so the body comes apart. Until then the opened faces are a
+/// sheet that ends at the blade, within one element of its path.
+///
+/// An element that had several neighbours is not separated alone. Its centre would be beyond the
+/// blade and the rest of it not, so it would be a sliver.
+/// Cost: proportional to the elements near the path of the blade if `tissue` has boxes, else O(n).
 std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Vec3> before,
                                   std::span<const Vec3> after);
 

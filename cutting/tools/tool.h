@@ -1,4 +1,4 @@
-// What a tool is, as plain values in the frame of the tool.
+// Definitions of tools, as plain values.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,34 +14,34 @@
 
 namespace incise::cutting {
 
-/// How a blade cuts: it divides elements where it passes, or it opens the existing faces that lie
-/// nearest to where it passes.
+/// The way in which a blade cuts. `split` divides the elements that it passes through. `separate`
+/// opens the existing faces that lie nearest to its path.
 enum class CutMode { split, separate };
 
-/// Cuts along what its edge sweeps.
+/// A tool that cuts along what its edge sweeps. The edge is in the frame of the tool.
 struct Blade {
-    std::vector<Vec3> edge;         ///< polyline of two points or more, m
+    std::vector<Vec3> edge;         ///< a polyline of at least two points, m
     CutMode mode = CutMode::split;  ///< split is for tetrahedra only
-    double snap = default_snap;     ///< of mode split: see SplitOptions
+    double snap = default_snap;     ///< for mode split: see SplitOptions
     static void archive(auto& ar, auto& self) { ar(self.edge, self.mode, self.snap); }
 };
 
-/// Removes the elements whose centres its shape covers.
+/// A tool that removes the elements whose centre its shape covers.
 struct Carver {
     CarverShape shape;
     static void archive(auto& ar, auto& self) { ar(self.shape); }
 };
 
-/// Divides elements along a plane, at once. The plane is in the frame of the world.
+/// A tool that divides elements along a plane, at once. The plane is in the frame of the world.
 struct PlaneCut {
     Vec3 point = Vec3::Zero();    ///< m
-    Vec3 normal = Vec3::UnitZ();  ///< of any length but zero
+    Vec3 normal = Vec3::UnitZ();  ///< of any length above 0
     double snap = default_snap;   ///< see SplitOptions
     static void archive(auto& ar, auto& self) { ar(self.point, self.normal, self.snap); }
 };
 
-/// Divides elements along a triangulated surface, at once. The surface is in the frame of the
-/// world, m.
+/// A tool that divides elements along a triangulated surface, at once. The surface is in the frame
+/// of the world, m.
 struct SurfaceCut {
     topology::SurfaceData surface;
     double snap = default_snap;  ///< see SplitOptions
@@ -50,10 +50,11 @@ struct SurfaceCut {
 
 using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut>;
 
-/// The surface of a PlaneCut or a SurfaceCut; null for other tools.
+/// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.
 std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape);
 
-/// The points of a blade's edge, m, for a pose of the blade. `edge` keeps its memory.
+/// Sets `edge` to the points of a blade's edge at a pose of the blade, m. Memory of `edge` is
+/// reused.
 void place_edge(const Blade& blade, const Pose& pose, std::vector<Vec3>& edge);
 
 }  // namespace incise::cutting

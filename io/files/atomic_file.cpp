@@ -52,10 +52,10 @@ const char* remedy(int error_number) {
     }
 }
 
-/// Between the name of a file and the process that is writing it.
+/// The separator between the name of a file and the number of the process that writes it.
 constexpr std::string_view temporary_mark = ".tmp";
 
-/// Whether it is a name that a TemporaryFile takes: ".NAME.tmpPROCESS-ATTEMPT".
+/// True if the name is one of a TemporaryFile: ".NAME.tmpPROCESS-ATTEMPT".
 bool is_temporary(const std::string& name) {
     const auto mark = name.rfind(temporary_mark);
     if (!name.starts_with('.') || mark == name.npos) return false;
@@ -65,7 +65,7 @@ bool is_temporary(const std::string& name) {
            parse_number<int>(numbers.substr(dash + 1));
 }
 
-/// Puts off what would end the process, as far as this thread may, until it goes.
+/// An object that blocks SIGINT, SIGTERM and SIGHUP in this thread during its lifetime.
 class SignalsPutOff {
   public:
     SignalsPutOff() {
@@ -82,8 +82,8 @@ class SignalsPutOff {
     sigset_t former_;
 };
 
-/// Waits for the lock of a file that is open, where there are locks. Returns false if the file has
-/// been removed meanwhile, as by one who looked whether it was locked before it was.
+/// Waits for the lock of an open file, if the file system has locks. Returns false if the file has
+/// been removed meanwhile: remove_if_left() may find it between its creation and its lock.
 bool lock(const FileDescriptor& file) {
     while (::flock(file.get(), LOCK_EX) != 0 && errno == EINTR) {
     }
@@ -91,15 +91,16 @@ bool lock(const FileDescriptor& file) {
     return ::fstat(file.get(), &status) != 0 || status.st_nlink > 0;
 }
 
-/// A hidden file of its own in `folder`, to be renamed to `name`; removed again unless kept. It is
-/// locked as long as it is being written, and the system unlocks it however the writer ends: that
-/// tells it from what a killed process has left, where its number does not (another process may
-/// have that by now).
+/// A new hidden file in a folder. It is removed at the end of its lifetime unless it is renamed.
+///
+/// The file is locked while it is written. The system releases the lock when the process ends, so
+/// that files of killed processes are not locked. The process number in the name does not identify
+/// such files, since another process may get the same number later.
 class TemporaryFile {
   public:
-    /// Throws OutputError about `meant` if there can be none.
+    /// Throws OutputError about `meant` if the file cannot be made.
     TemporaryFile(const fs::path& folder, const std::string& name, const fs::path& meant) {
-        // Stale files of a killed process may have our process number: count on past them.
+        // Files of a killed process with the same number may exist.
         constexpr std::size_t longest_stem = 200;  // of the 255 that file systems allow
         auto stem = name.substr(0, longest_stem);
         stem.insert(stem.begin(), '.');
@@ -119,30 +120,30 @@ class TemporaryFile {
 
     FileDescriptor& file() { return file_; }
 
-    /// Returns false, with errno set, if the system refuses.
+    /// Returns false, with errno set, if it fails.
     bool rename_to(const fs::path& target) {
         is_kept_ = ::rename(path_.c_str(), target.c_str()) == 0;
         return is_kept_;
     }
 
   private:
-    SignalsPutOff signals_put_off_;  // or they would leave the file behind
+    SignalsPutOff signals_put_off_;  // they would end the process before the file is removed
     fs::path path_;
     FileDescriptor file_;
     bool is_kept_ = false;
 };
 
-/// Removes the temporary file unless another one is writing it. It stays too if that cannot be
-/// told: where it may not be opened, or there are no locks.
+/// Removes a temporary file unless a process is writing it. Keeps it also if that cannot be
+/// determined: if it cannot be opened, or if the file system has no locks.
 void remove_if_left(const fs::path& temporary) {
     const FileDescriptor file(temporary, O_WRONLY | O_NONBLOCK);
     if (file.is_open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0)
-        remove_output_file(temporary);  // while it is locked, or it could be a new one by now
+        remove_output_file(temporary);  // while locked: else it could be a new file by now
 }
 
-/// What a link finally leads to, even if that is not there yet.
+/// Returns the final target of a symbolic link, which need not exist.
 fs::path follow_links(fs::path path) {
-    constexpr int most_links = 40;  // the kernel's own limit
+    constexpr int most_links = 40;  // the limit of the kernel
     std::error_code error;
     for (int i = 0; i < most_links && fs::is_symlink(path, error); ++i) {
         const auto link = fs::read_symlink(path, error);
@@ -158,23 +159,23 @@ fs::path folder_of(const fs::path& path) {
 
 struct Target {
     fs::path path;
-    bool is_device;  ///< or a pipe: never to be replaced by a file
+    bool is_device;  ///< true for a device or a pipe, which no file may replace
 };
 
-/// Throws OutputError if it is a folder.
+/// Throws OutputError if the path is a folder.
 Target target_of(const fs::path& path) {
     struct stat status {};
     const bool is_there = ::stat(path.c_str(), &status) == 0;
     if (is_there && S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
-    // Links of the system to pipes, as /dev/stdout, cannot be followed by name.
+    // Links of the system to pipes, such as /dev/stdout, cannot be followed by name.
     if (is_there && !S_ISREG(status.st_mode)) return {path, true};
     const Target target{follow_links(path), false};
     if (!target.path.has_filename()) throw_output_error(path, EISDIR);
     return target;
 }
 
-/// Makes a rename in the folder last. A folder that may be written to but not read, as for
-/// handing in, cannot be synchronised: the file is there all the same.
+/// Waits until a rename in the folder is on the disk. A folder that is writable but not readable
+/// cannot be synchronised. This is no error, since the file exists.
 bool sync_folder(const fs::path& folder) {
     FileDescriptor descriptor(folder, O_RDONLY | O_DIRECTORY);
     return !descriptor.is_open() || descriptor.sync();
@@ -194,7 +195,7 @@ void throw_output_error(const fs::path& path, int error_number) {
 void write_file(const fs::path& path, std::string_view bytes) {
     const Target target = target_of(path);
     if (target.is_device) {
-        // A pipe that nobody reads is refused here, not waited for.
+        // With O_NONBLOCK, opening a pipe without a reader fails instead of waiting.
         FileDescriptor device(target.path, O_WRONLY | O_NONBLOCK);
         if (!device.is_open() || ::fcntl(device.get(), F_SETFL, 0) != 0 || !device.write(bytes) ||
             !device.close())
@@ -203,7 +204,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
     }
     const auto folder = folder_of(target.path);
     TemporaryFile temporary(folder, target.path.filename().string(), path);
-    // Closed last, since that unlocks it.
+    // Closed after the rename, since closing releases the lock.
     if (!temporary.file().write(bytes) || !temporary.file().sync() ||
         !temporary.rename_to(target.path) || !temporary.file().close() || !sync_folder(folder))
         throw_output_error(path, errno);
@@ -213,7 +214,7 @@ void require_writable(const fs::path& path) {
     const Target target = target_of(path);
     if (!target.is_device) {
         const TemporaryFile probe(folder_of(target.path), target.path.filename().string(), path);
-    } else if (::access(target.path.c_str(), W_OK) != 0) {  // not opened: a reader would notice
+    } else if (::access(target.path.c_str(), W_OK) != 0) {  // opening would disturb a reader
         throw_output_error(path, errno);
     }
 }
@@ -222,7 +223,7 @@ void make_output_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw_output_error(folder, error.value());
-    // Permissions alone do not tell (root, read-only mounts, quotas): try it.
+    // Permissions are not enough (root, read-only mounts, quotas).
     const TemporaryFile probe(folder, "probe", folder);
 }
 
@@ -243,7 +244,7 @@ void remove_unfinished_files(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error))
         if (is_temporary(entry->path().filename().string())) temporaries.push_back(entry->path());
-    // A folder that may be written to but not read keeps them.
+    // A folder that cannot be read keeps its temporary files.
     for (const auto& path : temporaries) remove_if_left(path);
 }
 

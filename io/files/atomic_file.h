@@ -1,4 +1,4 @@
-// Files that are either whole or not there: written beside and renamed into place.
+// Atomic output files: written under a temporary name, then renamed.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -7,39 +7,43 @@
 
 namespace incise::io {
 
-/// Makes `bytes` the contents of the file, at once: whoever opens it, at any moment and also after
-/// a kill or a loss of power, finds the old contents or the new ones. The bytes go to a hidden
-/// file in the same folder, which is synchronised with the disk and renamed. A link is followed
-/// and stays a link; a device or a pipe is written to as it is. SIGINT, SIGTERM and SIGHUP to this
-/// thread wait until the hidden file has gone.
-/// Throws OutputError that names the file, the system's reason and a remedy; no hidden file is
-/// left behind then, and the contents are the old ones (or, if only the very last wait failed,
-/// the new ones).
+/// Replaces the contents of the file atomically. A reader finds the old contents or the new ones,
+/// also after a kill or a loss of power.
+///
+/// The bytes go to a hidden file in the same folder, which is synchronised with the disk and then
+/// renamed. A symbolic link is followed and stays a link. A device or a pipe is written directly.
+///
+/// Throws OutputError that names the file, the reason of the system and a remedy. The hidden file
+/// is then removed, and the file has its old contents. If only the last wait for the disk failed,
+/// the file has the new contents.
+///
 /// Cost: two or three waits for the disk.
+/// @thread  SIGINT, SIGTERM and SIGHUP to this thread are blocked while the hidden file exists
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Throws the OutputError that write_file would throw at once: there is no such folder, it may not
-/// be written to, a folder is in the place of the file. For what is written after long work; a
-/// disk may still be full then. Changes nothing.
+/// Checks in advance whether write_file() can write the file, for a file that is written after long
+/// work. Throws OutputError if the folder does not exist or is not writable, or if the path is a
+/// folder. Does not detect a full disk. Leaves no file.
 void require_writable(const std::filesystem::path& path);
 
-/// Makes the folder and its parents where they are missing, and makes sure that files can be
-/// written in it. Throws OutputError as above.
+/// Makes the folder and its missing parents, and checks that files can be written in it. Throws
+/// OutputError as write_file() does.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// Throws the OutputError that make_output_folder would throw, as far as permissions tell: those of
-/// the folder, or of the nearest one above it that is there. Changes nothing.
+/// Checks in advance whether make_output_folder() can make the folder. Looks only at the
+/// permissions of the folder, or of its nearest existing parent. Throws OutputError as
+/// make_output_folder() does. Changes nothing.
 void require_output_folder(const std::filesystem::path& folder);
 
-/// Removes from the folder the hidden files that nobody writes any more: those of processes that
-/// were killed in the middle of write_file. Throws OutputError as above.
+/// Removes the hidden files that processes left in the folder when they were killed during
+/// write_file(). Throws OutputError as write_file() does.
 void remove_unfinished_files(const std::filesystem::path& folder);
 
-/// Removes a file if it is there. Throws OutputError as above.
+/// Removes a file if it exists. Throws OutputError as write_file() does.
 void remove_output_file(const std::filesystem::path& path);
 
-/// The text of every OutputError of this folder: `path`, the reason of the system's error number,
-/// and what to do about it. Throws std::bad_alloc instead where the system is out of memory.
+/// Throws OutputError that names the path, the reason and a remedy. The reason is that of the error
+/// number (errno). Throws std::bad_alloc instead if the error is ENOMEM.
 [[noreturn]] void throw_output_error(const std::filesystem::path& path, int error_number);
 
 }  // namespace incise::io

@@ -12,7 +12,7 @@ namespace incise::io {
 
 namespace {
 
-/// Changes with the layout of the file, not with that of the bytes in it.
+/// The format number changes with the layout of this file, not with the layout of its contents.
 constexpr std::string_view first_line = "incise checkpoint, format 1\n";
 constexpr std::size_t checksum_size = sizeof(std::uint64_t);
 

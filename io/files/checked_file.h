@@ -1,4 +1,4 @@
-// Bytes in a file that knows whether it is whole: checkpoints.
+// Files with a checksum, for checkpoints.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,16 +9,17 @@
 
 namespace incise::io {
 
-/// CRC-64 (ECMA-182, as xz has it) of all bytes so far: of `before`, if that is not 0, and these.
+/// Returns the CRC-64 (ECMA-182, as in xz) of the bytes. To continue a checksum, `before` is the
+/// checksum of all bytes before these.
 /// Cost: about a nanosecond a byte.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t before = 0);
 
-/// Writes the bytes between a line that names the format and a checksum; all of it or nothing, see
-/// write_file. Throws OutputError.
+/// Writes a line that names the format, the bytes, and a checksum of both. Works and throws as
+/// write_file() does.
 void write_checked_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The bytes again. Throws InputError, naming file and fault, if it cannot be read, is no such
-/// file, or is not what was written, to the bit.
+/// Returns the bytes that write_checked_file() wrote. Throws InputError that names the file and the
+/// fault if the file cannot be read, has another format, or has a wrong checksum.
 std::string read_checked_file(const std::filesystem::path& path);
 
 }  // namespace incise::io

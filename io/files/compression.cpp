@@ -24,7 +24,7 @@ std::size_t max_expansion(Compressor compressor) {
         case Compressor::none:
             return 1;
         case Compressor::zlib:
-            return 1032;  // 258 bytes for two bits (zlib technical details)
+            return 1032;  // 258 bytes for two bits (zlib, "Technical Details")
         case Compressor::lz4:
             return 256;  // a length byte stands for at most 255 bytes
         case Compressor::lzma:

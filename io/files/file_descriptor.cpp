@@ -34,7 +34,7 @@ bool FileDescriptor::write(std::string_view bytes) {
 
 bool FileDescriptor::sync() {
     while (::fsync(descriptor_) != 0) {
-        if (errno == EINVAL || errno == EROFS) return true;  // nothing there that could be synced
+        if (errno == EINVAL || errno == EROFS) return true;  // the file cannot be synchronised
         if (errno != EINTR) return false;
     }
     return true;
@@ -42,7 +42,7 @@ bool FileDescriptor::sync() {
 
 bool FileDescriptor::close() {
     if (descriptor_ < 0) return true;
-    // Linux closes the file in any case; EINTR means only that it did not wait.
+    // Linux closes the file also if it returns EINTR.
     return ::close(std::exchange(descriptor_, -1)) == 0 || errno == EINTR;
 }
 

@@ -1,5 +1,5 @@
-// A file of the operating system, closed when it goes out of scope. For the writers of this
-// folder, which need what streams do not tell: the reason of a failure, and that data is on disk.
+// A file descriptor of the operating system. Streams do not report why an operation failed or
+// whether the data is on the disk.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,11 +10,12 @@
 
 namespace incise::io {
 
-/// Every operation returns false, with errno set, if the system refuses.
+/// A file descriptor that is closed at the end of its lifetime. Every operation returns false, with
+/// errno set, if it fails.
 class FileDescriptor {
   public:
     FileDescriptor() = default;
-    /// Opens with the flags of open(2); ask is_open().
+    /// Opens a file with the flags of open(2). is_open() tells whether that succeeded.
     FileDescriptor(const std::filesystem::path& path, int flags);
     ~FileDescriptor();
     FileDescriptor(FileDescriptor&& other) noexcept
@@ -27,9 +28,10 @@ class FileDescriptor {
     bool is_open() const { return descriptor_ >= 0; }
     int get() const { return descriptor_; }
 
-    /// All bytes, however many calls it takes.
+    /// Writes all bytes, with as many calls of the system as needed.
     bool write(std::string_view bytes);
-    /// Waits until the data is on the disk; true also for what has no disk, such as a pipe.
+    /// Waits until the data is on the disk. Returns true also for a file without a disk, such as a
+    /// pipe.
     bool sync();
     bool close();
 

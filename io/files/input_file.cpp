@@ -1,4 +1,3 @@
-// A user's file as bytes in memory, read with checks.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/files/input_file.h"
 

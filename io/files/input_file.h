@@ -1,4 +1,4 @@
-// A user's file as bytes in memory, read with checks.
+// Input files, read into memory with checks.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,22 +9,25 @@
 
 namespace incise::io {
 
+/// An input file in memory.
 struct InputFile {
     std::filesystem::path path;
     std::string bytes;  ///< without a UTF-8 byte order mark
 
-    /// The file as messages call it.
+    /// Returns the name of the file for messages.
     std::string name() const { return path.string(); }
-    /// The number, from 1, of the line on which `offset` lies.
+    /// Returns the number, from 1, of the line of the byte at `offset`.
     std::size_t line_of(std::size_t offset) const;
 };
 
-/// Throws InputError if the path is not a readable regular file with something in it.
+/// Reads a file. Throws InputError if the path is not a readable regular file, or if the file is
+/// empty.
 InputFile load_input_file(const std::filesystem::path& path);
 
-/// Text of a file made fit for a message: without control characters.
+/// Returns the text of a file for a message: each character that is not printable ASCII becomes a
+/// question mark.
 std::string printable(std::string_view text);
-/// Besides quoted, and shortened.
+/// Returns the printable text in quotes, shortened to 40 characters.
 std::string in_quotes(std::string_view text);
 
 }  // namespace incise::io

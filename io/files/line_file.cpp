@@ -18,7 +18,7 @@ LineFile::LineFile(std::filesystem::path path, const BytesWritten& keep)
     : path_(std::move(path)), file_(path_, O_WRONLY | O_CREAT | O_APPEND), written_(keep) {
     struct stat status {};
     if (!file_.is_open() || ::fstat(file_.get(), &status) != 0) throw_output_error(path_, errno);
-    if (!S_ISREG(status.st_mode)) return;  // a pipe or a device: nothing to keep or to cut off
+    if (!S_ISREG(status.st_mode)) return;  // a pipe or a device has no length
     if (static_cast<std::uint64_t>(status.st_size) < keep.size)
         throw OutputError(path_.string() + ": has " + std::to_string(status.st_size) +
                           " bytes, but " + std::to_string(keep.size) +
@@ -33,7 +33,7 @@ void LineFile::append(std::string_view line) {
     buffer_ += '\n';
     if (!file_.write(buffer_)) {
         const int reason = errno;
-        // What got through of the line goes again; where that fails too, the reason stands.
+        // Remove the part of the line that was written. If this fails too, the first error counts.
         if (::ftruncate(file_.get(), static_cast<off_t>(written_.size)) != 0) errno = reason;
         throw_output_error(path_, reason);
     }

@@ -1,4 +1,4 @@
-// Text files that grow by whole lines: history.csv, edits.jsonl.
+// Text files that grow by complete lines: history.csv, edits.jsonl.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,17 +11,19 @@
 
 namespace incise::io {
 
-/// Appends lines to a file, each with one call of the system: whoever reads along, and who reads
-/// after a kill, sees whole lines. A line that fails is taken back.
+/// A file to which lines are appended, each with one call of the system. A reader sees complete
+/// lines only, also while the file grows and after a kill. A line that fails is removed again.
 /// Every function throws OutputError that names the file, the reason and a remedy.
 class LineFile {
   public:
-    /// Opens the file, made where it is missing, and keeps the lines with which it begins: those of
-    /// a former written(), to go on from there, or none, to begin anew. Fails if there are fewer
-    /// bytes; whether they are the same, require_begins_with() tells.
+    /// Opens the file, or makes it if it is missing, and truncates it after its first `keep.size`
+    /// bytes. To continue a file, `keep` is its former written(). By default the file becomes
+    /// empty. Throws OutputError if the file has fewer bytes. Does not compare the contents; see
+    /// require_begins_with().
     explicit LineFile(std::filesystem::path path, const BytesWritten& keep = {});
 
-    /// @pre `line` holds no line feed; one is added.
+    /// Appends a line and a line feed.
+    /// @pre  the line has no line feed
     void append(std::string_view line);
 
     const BytesWritten& written() const { return written_; }

@@ -10,12 +10,13 @@
 
 namespace incise::io {
 
-/// The line up to a comment, which # begins.
+/// Returns the line without its comment, which begins with #.
 inline std::string_view without_comment(std::string_view line) {
     return line.substr(0, line.find('#'));
 }
 
-/// Appends the words of a line.
+/// Appends the words of a line to `words`.
+/// @lifetime  the words refer to the text of the line
 inline void append_words(std::string_view line, std::vector<std::string_view>& words) {
     std::size_t end = 0;
     while (true) {

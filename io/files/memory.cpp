@@ -18,7 +18,7 @@ std::string gigabytes(double bytes) { return shown(std::round(bytes / 1e8) / 10)
 
 std::optional<std::string> lack_of_memory(double bytes) {
     const auto pages = ::sysconf(_SC_PHYS_PAGES), page_size = ::sysconf(_SC_PAGESIZE);
-    if (pages <= 0 || page_size <= 0) return std::nullopt;  // not known
+    if (pages <= 0 || page_size <= 0) return std::nullopt;  // the memory is not known
     const double memory = static_cast<double>(pages) * static_cast<double>(page_size);
     if (bytes <= memory) return std::nullopt;
     return "takes " + gigabytes(bytes) + " of memory, and this machine has " + gigabytes(memory);

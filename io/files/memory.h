@@ -1,5 +1,5 @@
-// Whether something fits in this machine's memory: asked before it is allocated, because a process
-// that takes more is killed without a word.
+// Checks of the memory of this machine, before a large allocation. The system kills a process that
+// uses more, without a message.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,11 +9,12 @@
 
 namespace incise::io {
 
-/// "takes ... GB of memory, and this machine has ... GB" if it has fewer bytes.
+/// Returns "takes ... GB of memory, and this machine has ... GB" if the machine has fewer bytes.
+/// Returns nothing if the bytes fit, or if the memory of the machine is not known.
 std::optional<std::string> lack_of_memory(double bytes);
 
-/// Throws InputError "`what` takes ... GB of memory, and this machine has ...; `remedy`" if it
-/// has fewer bytes.
+/// Throws InputError "`what` takes ... GB of memory, and this machine has ... GB; `remedy`" if the
+/// machine has fewer bytes.
 void require_memory(double bytes, std::string_view what, std::string_view remedy);
 
 }  // namespace incise::io

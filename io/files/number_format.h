@@ -1,4 +1,4 @@
-// Numbers as text: the shortest that reads back as the same number, whatever the locale.
+// Numbers to text: the shortest text that reads back as the same number. Ignores the locale.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace incise::io {
 
-/// Appends without an allocation of its own; at most 17 significant digits for a double.
+/// Appends a number, of at most 17 significant digits for a double. Makes no temporary string.
 template <class T>
 void append_number(std::string& text, T value) {
     std::array<char, 32> buffer;
@@ -16,6 +16,7 @@ void append_number(std::string& text, T value) {
     text.append(buffer.data(), end);
 }
 
+/// Returns a number as text.
 template <class T>
 std::string format_number(T value) {
     std::string text;

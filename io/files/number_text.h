@@ -1,4 +1,4 @@
-// Numbers from text: whole tokens only, whatever the locale.
+// Numbers from text: complete words only. Ignores the locale.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -18,8 +18,9 @@ constexpr bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
-/// The number that `text` spells, or nothing if any character is left over or the value does not
-/// fit T. Reals may be "nan" or "inf"; a real too small for T is zero.
+/// Returns the number in the text. Returns nothing if a character is left over, or if the value
+/// does not fit in T. A real may be "nan" or "inf". A real with a negative exponent that is too
+/// small for T is zero.
 template <class T>
 requires std::integral<T> || std::floating_point<T> std::optional<T> parse_number(
     std::string_view text) {
@@ -38,15 +39,15 @@ requires std::integral<T> || std::floating_point<T> std::optional<T> parse_numbe
     return std::nullopt;
 }
 
-/// The shortest text that parses to the same value.
+/// Returns the shortest text that parses to the same value.
 inline std::string shown(double value) {
     std::array<char, 32> buffer;
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     return {buffer.data(), end};
 }
 
-/// Behind a text that parse_number refuses, in a message: that it is a number beyond those of T, if
-/// it is one, and which there are.
+/// Returns the end of a message about a text that parse_number() refused. If the text is a number
+/// outside the range of T, the result states the range; else it is empty.
 template <class T>
 requires std::integral<T> || std::floating_point<T> std::string range_remark(
     std::string_view text) {
@@ -65,7 +66,7 @@ requires std::integral<T> || std::floating_point<T> std::string range_remark(
            in_words(Limits::max()) + " are allowed";
 }
 
-/// The value, if it is a whole number of 32 bits.
+/// Returns the value if it is a whole number of 32 bits.
 inline std::optional<int> whole_number(double value) {
     constexpr double lowest = std::numeric_limits<int>::min();
     constexpr double highest = std::numeric_limits<int>::max();

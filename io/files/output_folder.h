@@ -1,4 +1,4 @@
-// The folder of a run: its own as long as it lasts.
+// The folder of a run, locked against other runs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,13 +8,13 @@
 
 namespace incise::io {
 
-/// No two of them are there for one folder, in one process or in several: the system's lock on it
-/// goes with the object, or with the process however that ends. Where a file system has no locks,
-/// nothing is locked.
+/// A folder with a lock of the operating system. At most one OutputFolder exists for a folder, in
+/// one process or in several. The lock ends with the object, or with the process. On a file system
+/// without locks nothing is locked.
 class OutputFolder {
   public:
-    /// Makes the folder and its parents where they are missing, and removes the hidden files that
-    /// killed processes left in it (remove_unfinished_files).
+    /// Makes the folder and its missing parents, and removes the hidden files that killed processes
+    /// left in it; see remove_unfinished_files().
     /// Throws OutputError if files cannot be written there, InputError if the folder is in use.
     explicit OutputFolder(std::filesystem::path path);
 

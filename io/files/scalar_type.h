@@ -1,4 +1,4 @@
-// Number types of binary arrays, and their conversion to the types used in memory.
+// Number types of binary arrays, and conversion to the types in memory.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -35,7 +35,8 @@ constexpr bool is_integer(ScalarType type) {
     return type != ScalarType::float32 && type != ScalarType::float64;
 }
 
-/// The value whose bytes start at `bytes`; `swap`: they are in the other byte order.
+/// Returns the value that starts at `bytes`. `swap` is true if its byte order is not that of this
+/// machine.
 template <class T>
 T load_scalar(const char* bytes, bool swap) {
     std::array<char, sizeof(T)> buffer;
@@ -46,9 +47,10 @@ T load_scalar(const char* bytes, bool swap) {
     return value;
 }
 
-/// All values of `bytes`, converted to Target as by static_cast: Target must be able to hold what
-/// the type can (double or std::int64_t; a uint64 above the range of int64 becomes negative).
-/// @pre bytes.size() is a multiple of size_of(type); Target is double, or the type an integer
+/// Returns all values of the bytes, converted to Target as by static_cast. Target is double or
+/// std::int64_t. A uint64 above the range of int64 becomes negative.
+/// @pre  bytes.size() is a multiple of size_of(type)
+/// @pre  Target is double, or the type is an integer type
 template <class Target>
 std::vector<Target> convert_scalars(std::string_view bytes, ScalarType type, bool swap) {
     std::vector<Target> values(bytes.size() / size_of(type));

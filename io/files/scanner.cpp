@@ -1,4 +1,3 @@
-// Walks through a file of words and numbers, as text or binary.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/files/scanner.h"
 
@@ -108,7 +107,7 @@ std::size_t Scanner::count(std::string_view what, std::size_t bytes_each) {
 
 void Scanner::require_room(std::uint64_t count, std::size_t bytes_each,
                            std::string_view what) const {
-    // The last number of a text needs no blank behind it.
+    // Plus 1, since the last number of a text needs no blank after it.
     if (count > (remaining() + 1) / bytes_each)
         fail(std::string(what) + " is " + std::to_string(count) +
              ", more than can be in the remaining " + std::to_string(remaining()) +

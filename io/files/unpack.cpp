@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t longest_piece = std::size_t{1} << 30;  // zlib counts in 32 bits
 
+/// A stream of zlib that unpacks a zlib or gzip stream part by part.
 class Inflater {
   public:
     explicit Inflater(std::string_view packed) : rest_(packed) {
@@ -26,7 +27,7 @@ class Inflater {
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 
-    /// Unpacks until `out` is full, the stream ends or fails; how many bytes that were.
+    /// Unpacks until `out` is full, or the stream ends or fails. Returns the number of bytes.
     std::size_t take(std::span<char> out) {
         std::size_t num_taken = 0;
         while (num_taken < out.size() && !is_finished_ && !has_failed_) {
@@ -46,7 +47,7 @@ class Inflater {
             } else if (status == Z_MEM_ERROR) {
                 throw std::bad_alloc();
             } else if (status != Z_OK) {
-                has_failed_ = true;  // damaged, or ended too early
+                has_failed_ = true;  // damaged or cut short
             }
         }
         return num_taken;
@@ -78,7 +79,7 @@ std::optional<std::string> unpacked(std::string_view packed, std::size_t size) {
     std::string bytes(size, '\0');
     Inflater inflater(packed);
     if (inflater.take(bytes) != size) return std::nullopt;
-    std::array<char, 65536> ignored;  // to the end, where the sum of checks is
+    std::array<char, 65536> ignored;  // zlib verifies the checksum at the end of the stream
     while (!inflater.is_finished() && !inflater.has_failed()) inflater.take(ignored);
     if (inflater.has_failed()) return std::nullopt;
     return bytes;

@@ -1,4 +1,4 @@
-// What a run has written to its files, to know it again when it goes on.
+// Size and checksum of what a run has written to a file, to check the file when the run is resumed.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace incise::io {
 
-/// The bytes of a file so far.
+/// The size and checksum of the bytes of a file so far.
 struct BytesWritten {
     std::uint64_t size = 0;
     std::uint64_t checksum = 0;  ///< see io::checksum
@@ -18,11 +18,11 @@ struct BytesWritten {
     static void archive(auto& ar, auto& self) { ar(self.size, self.checksum); }
 };
 
-/// Throws InputError, naming the file, what has become of it and what to do, unless it begins with
-/// these bytes. Cost: that of reading them.
+/// Checks that a file begins with these bytes. Throws InputError that names the file, how it
+/// differs and a remedy. Cost: that of reading these bytes.
 void require_begins_with(const std::filesystem::path& path, const BytesWritten& bytes);
 
-/// The same, unless it has these bytes and no more.
+/// Checks that a file has exactly these bytes. Throws as require_begins_with() does.
 void require_is(const std::filesystem::path& path, const BytesWritten& bytes);
 
 }  // namespace incise::io

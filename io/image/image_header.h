@@ -1,4 +1,4 @@
-// The headers of image files: what they say about the voxels, and where their values lie.
+// The headers of image files: the form of the voxels, and where their values are in the file.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,11 +17,12 @@
 
 namespace incise::io {
 
-/// Three axes, one value a voxel, x fastest. Lengths and frame are those of the file.
+/// The header of an image with three axes and one value a voxel, x fastest. Lengths are in the unit
+/// of the file, and positions in its frame.
 struct ImageHeader {
     enum class Encoding : std::uint8_t {
         raw,
-        text,  ///< numbers, parted by blanks
+        text,  ///< numbers, separated by blanks
         hex,   ///< two digits a byte
         zlib_or_gzip
     };
@@ -37,41 +38,46 @@ struct ImageHeader {
 
     Encoding encoding = Encoding::raw;
     std::optional<std::filesystem::path> data_file;  ///< none: the file of the header
-    std::size_t data_begin = 0;  ///< bytes, then lines before the values as they are stored
-    std::size_t skip_lines = 0;
-    std::size_t skip_bytes = 0;  ///< bytes before the values, once unpacked
-    bool is_at_end = false;      ///< in place of these: the values are the last of their file
-    std::optional<double> packed_size;  ///< bytes of the values as they are packed, if stated
+    std::size_t data_begin = 0;                      ///< bytes to skip in the stored data
+    std::size_t skip_lines = 0;                      ///< lines to skip after these bytes
+    std::size_t skip_bytes = 0;  ///< bytes to skip after these lines, in the unpacked data
+    bool is_at_end = false;      ///< true if the values are the last bytes; replaces skip_bytes
+    std::optional<double> packed_size;  ///< bytes of the packed values, if the header has it
 
     std::vector<std::string> warnings;
 
-    /// Spacing and directions from the steps from voxel to voxel, one a column.
+    /// Sets spacing and directions. Column a of `steps` is the vector from a voxel to the next one
+    /// along axis a.
     void set_steps(const Eigen::Matrix3d& steps);
 };
 
-/// Whether the file begins as the format does.
+/// True if the file begins as a NIfTI image does.
 bool begins_as_nifti(const InputFile& file);
+/// True if the file begins as a MetaImage does.
 bool begins_as_meta_image(const InputFile& file);
+/// True if the file begins as a NRRD image does.
 bool begins_as_nrrd(const InputFile& file);
 
-/// NIfTI 1 and 2 in one file, also packed by gzip. The pose is the sform, else the qform, else
-/// the voxel sizes alone, with a warning.
-/// These three throw InputError that names the file, the field, its value and what to do; they
-/// refuse images of fewer or more than three axes and of several components. Positive numbers of
-/// voxels are checked here, the rest of the figures by read_label_image().
+/// Reads the header of NIfTI 1 or 2 in one file, which may be packed by gzip. The pose is the
+/// sform, or else the qform, or else the voxel sizes alone, with a warning.
+///
+/// This function and the next two throw InputError that names the file, the field, its value and a
+/// remedy. They refuse images with other than three axes or with several components. They check the
+/// numbers of voxels; read_label_image() checks the other numbers.
 ImageHeader read_nifti_header(const InputFile& file);
-/// MetaImage, the data in the same file or in another.
+/// Reads the header of a MetaImage, with the data in the same file or in another.
 ImageHeader read_meta_image_header(const InputFile& file);
-/// NRRD, the data in the same file or in another.
+/// Reads the header of a NRRD image, with the data in the same file or in another.
 ImageHeader read_nrrd_header(const InputFile& file);
 
-/// Dimensions from the numbers of a header. Throws InputError unless there are three, all positive
-/// and of a product below 2^31.
+/// Returns the dimensions that a header gives as numbers. Throws InputError unless there are three,
+/// all are positive, and their product is below 2^31.
 std::array<std::int64_t, 3> image_dimensions(const InputFile& file,
                                              const std::vector<std::int64_t>& numbers);
 
-/// The path of the data file that line `line` of a header names, which lies relative to the header.
-/// Throws InputError for what can be no name of a file, and for the header itself.
+/// Returns the path of the data file that line `line` of a header names. The name is relative to
+/// the folder of the header. Throws InputError if the name is no valid file name, or if it is that
+/// of the header itself.
 std::filesystem::path data_file_path(const InputFile& file, std::string_view name,
                                      std::size_t line);
 

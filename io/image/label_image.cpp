@@ -1,7 +1,6 @@
-// Reading of label images. VTK 9.1 has readers for these formats, which were tried and not taken:
-// its MetaImage reader makes labels of uninitialized memory, without an error, where the file is
-// cut short or its data are missing, and drops the directions; its NRRD reader takes the first of
-// three axes for components.
+// Reading of label images. The readers of VTK 9.1 are not used. If a MetaImage is cut short or has
+// no data, VTK returns labels from uninitialized memory, without an error. It also ignores the
+// directions. For NRRD, it takes the first of three axes for components.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/image/label_image.h"
 
@@ -49,10 +48,11 @@ const Format& format_of(const InputFile& file) {
                      ": begins like no image format known here; convert it to one of: " + known);
 }
 
-/// Checks spacing and directions, and makes the columns of the latter unit vectors.
+/// Checks spacing, origin and directions, and normalizes the columns of the directions. If a column
+/// has not the length 1, its length multiplies the spacing.
 void settle_pose(const InputFile& file, ImageHeader& header) {
-    constexpr double rounding = 1e-4;  // of directions that a writer meant to have length 1
-    constexpr double flattest = 1e-6;  // volume of the box of the three directions
+    constexpr double rounding = 1e-4;  // of the length of a direction, which should be 1
+    constexpr double flattest = 1e-6;  // least volume of the box of the three directions
     for (int a = 0; a < 3; ++a) {
         const auto axis = "along axis " + std::to_string(a + 1);
         double& spacing = header.spacing[a];
@@ -81,7 +81,7 @@ class LabelDecoder {
         num_voxels_ = static_cast<std::size_t>(x * y * z);
     }
 
-    /// @param stored  what the file holds from where its values or what they are packed in begin
+    /// Returns the labels. `stored` is the contents of the file after data_begin and skip_lines.
     std::vector<int> decode(std::string_view stored) {
         using enum ImageHeader::Encoding;
         if (header_.encoding == text) return from_text(stored);
@@ -189,7 +189,7 @@ class LabelDecoder {
         return {};
     }
 
-    /// For the labels, and so many bytes besides.
+    /// Throws InputError if the machine has not enough memory for the labels and `other_bytes`.
     void require_image_memory(double other_bytes) const {
         require_memory(other_bytes + 4.0 * static_cast<double>(num_voxels_),
                        file_.name() + ": the image", "crop it or make it coarser");
@@ -236,11 +236,12 @@ class LabelDecoder {
     }
 
     const InputFile& file_;
-    ImageHeader& header_;  ///< takes the warnings
+    ImageHeader& header_;  ///< not const, since warnings are added to it
     std::size_t num_voxels_;
 };
 
-/// The data of a header in another file. These are bytes, in which nothing is a mark of order.
+/// Reads the data file of a header. Binary data have no byte order mark, so that three bytes that
+/// load_input_file() removed as one are restored.
 InputFile load_data_file(const InputFile& header_file, const std::filesystem::path& path) {
     try {
         auto file = load_input_file(path);
@@ -252,7 +253,8 @@ InputFile load_data_file(const InputFile& header_file, const std::filesystem::pa
     }
 }
 
-/// Refuses fewer bytes than the header states; writers round that number to six digits.
+/// Throws InputError if there are fewer bytes than the header states. Writers round that number to
+/// six digits.
 void require_packed(const InputFile& file, const ImageHeader& header, std::size_t num_stored) {
     constexpr double rounding = 1e-5;
     if (!header.packed_size) return;
@@ -310,7 +312,7 @@ std::filesystem::path data_file_path(const InputFile& file, std::string_view nam
         refuse("the name of the data file, " + in_quotes(name) +
                ", is too long or has control characters; the header is damaged");
     const auto path = file.path.parent_path() / std::string(name);
-    std::error_code error;  // where one is not there, they are not the same
+    std::error_code error;  // if a file does not exist, the files are not the same
     if (std::filesystem::equivalent(path, file.path, error))
         refuse("names itself as the file of the data; name the file that has the values");
     return path;

@@ -1,4 +1,4 @@
-// Images in which every voxel has a label: segmentations.
+// Images in which every voxel has a label (segmentations).
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace incise::io {
 
-/// Voxel (i, j, k), from 0, has its centre at origin + directions * (i, j, k) * spacing and is a
-/// box of edges `spacing` about it. Lengths are in the file's unit, usually millimetres; the frame
-/// is the file's own, see read_label_image().
+/// An image of labels. Voxel (i, j, k), numbered from 0, is a box with edges `spacing`. Its centre
+/// is origin + directions * (i spacing[0], j spacing[1], k spacing[2]). Lengths are in the unit of
+/// the file, usually millimetres. The frame is that of the file; see read_label_image().
 struct LabelImage {
     std::array<std::int64_t, 3> dimensions{};  ///< voxels along each axis; product below 2^31
     Vec3 spacing = Vec3::Ones();               ///< positive
     Vec3 origin = Vec3::Zero();                ///< centre of voxel (0, 0, 0)
-    /// Column a is the unit vector of axis a. Not singular; left-handed ones are left so.
+    /// Column a is the unit vector of axis a. Not singular; may be left-handed.
     Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
     std::vector<int> labels;            ///< i fastest, then j; 0 is background
     std::vector<std::string> warnings;  ///< one sentence each, without the name of the file
@@ -29,20 +29,23 @@ struct LabelImage {
     }
 };
 
-/// Reads NIfTI (1 and 2, .nii and .nii.gz), MetaImage (.mha, .mhd) and NRRD (.nrrd, .nhdr); the
-/// format is told by the content first, by the suffix second.
+/// Reads NIfTI (1 and 2, .nii and .nii.gz), MetaImage (.mha, .mhd) and NRRD (.nrrd, .nhdr). The
+/// contents of the file decide its format, or else its suffix.
 ///
-/// Frames: NIfTI's x, y and z point to the right, the front and the head (RAS), the pose is the
-/// sform, else the qform. MetaImage's and NRRD's are left as they are in the file: usually to the
-/// left, the back and the head (LPS), in NRRD what the field `space` says.
+/// Frames are not converted. The axes x, y and z of NIfTI point to the right, the front and the
+/// head (RAS); its pose is the sform, or else the qform. Those of MetaImage usually point to the
+/// left, the back and the head (LPS). Those of NRRD are usually the same; its field `space` states
+/// them. Measurement frames and names of labels are not read.
 ///
-/// Floating types are read if all values are whole numbers. The contents are trusted in nothing,
-/// as in read_mesh(). Refused besides what is damaged or not there: other than three axes, more
-/// than one component a voxel, values that are no whole numbers in the range of int, spacings that
-/// are not positive and finite, directions in a plane, an image without a label, and what does not
-/// fit in memory. Left out: measurement frames, and names of labels.
-/// Throws InputError that names the file and the line, field or voxel, the value and what to do.
-/// Cost: some nanoseconds a voxel; the file, unpacked, and four bytes a voxel are in memory.
+/// Floating-point types are read if all values are whole numbers. All counts and offsets are
+/// checked, as in read_mesh(). Throws InputError that names the file and the line, field or voxel,
+/// the value and a remedy. The reasons, besides a missing or damaged file:
+/// - other than three axes, or more than one component a voxel
+/// - values that are not whole numbers in the range of int
+/// - spacings that are not positive and finite, or directions that lie in a plane
+/// - an image without a label, or one that does not fit in memory
+///
+/// Cost: some nanoseconds a voxel. Memory: the unpacked file, and four bytes a voxel.
 LabelImage read_label_image(const std::filesystem::path& path);
 
 }  // namespace incise::io

@@ -18,14 +18,14 @@ using Index3 = std::array<std::int64_t, 3>;
 using topology::CellKind;
 using topology::MeshData;
 
-constexpr double max_cells = 1e8;  // as of the boxes of scenarios
+constexpr double max_cells = 1e8;  // as for the box meshes of scenarios
 
-/// Boxes beside one another, those of [begin, end) along each axis: what becomes a mesh.
+/// A lattice of boxes that becomes a mesh. Its boxes are those of [begin, end) along each axis.
 struct Lattice {
     Index3 begin{}, end{};
     Vec3 corner;            ///< of box (0, 0, 0)
     Eigen::Matrix3d steps;  ///< edges of a box, one a column
-    /// The label of box (i, j, k).
+    /// Returns the label of box (i, j, k).
     std::function<int(std::int64_t, std::int64_t, std::int64_t)> label;
 
     std::int64_t num(std::size_t axis) const { return end[axis] - begin[axis]; }
@@ -35,7 +35,7 @@ struct Lattice {
     }
 };
 
-/// The voxels [begin, end) outside of which all labels are 0.
+/// Finds the smallest box of voxels [begin, end) outside of which all labels are 0.
 void crop(const LabelImage& image, Index3& begin, Index3& end) {
     const auto [nx, ny, nz] = image.dimensions;
     begin = image.dimensions;
@@ -67,8 +67,8 @@ Lattice voxels(const LabelImage& image) {
     return lattice;
 }
 
-/// Orthogonal unit vectors of the same handedness, the first in the direction of the image's
-/// first, the second in the plane of its first two.
+/// Returns orthogonal unit vectors with the handedness of `directions`. The first vector is that of
+/// `directions`; the second lies in the plane of its first two.
 Eigen::Matrix3d orthogonal(const Eigen::Matrix3d& directions) {
     Eigen::Matrix3d frame = directions;
     frame.col(1) -= frame.col(0) * frame.col(0).dot(frame.col(1));
@@ -78,19 +78,20 @@ Eigen::Matrix3d orthogonal(const Eigen::Matrix3d& directions) {
     return frame;
 }
 
-/// The voxel in which a place along an axis lies, counted from where the image begins; -1 if in
-/// none. A place between two is of the upper one, whichever way it was rounded.
+/// Returns the voxel at a position along an axis, or -1 if there is none. The position is in voxels
+/// from the beginning of the image. A position between two voxels belongs to the upper one,
+/// independent of rounding.
 std::int64_t voxel_at(const LabelImage& image, std::size_t axis, double place) {
     constexpr double tie = 1e-9;
     const auto voxel = static_cast<std::int64_t>(std::floor(place + tie));
     return voxel < image.dimensions[axis] ? std::max<std::int64_t>(voxel, -1) : -1;
 }
 
-/// The labels at the centres of cubes whose edges run along the image's axes, where each axis is
-/// for itself.
+/// The labels at the centres of cubes whose edges are parallel to the axes of the image. The voxel
+/// along each axis then depends on one index only.
 class AlongAxes {
   public:
-    /// @param to_voxels  the edge of a cube, in voxels
+    /// `to_voxels` is the edge of a cube along each axis, in voxels.
     AlongAxes(const LabelImage& image, const Lattice& lattice, const Vec3& to_voxels)
         : image_(&image), begin_(lattice.begin) {
         for (std::size_t a = 0; a < 3; ++a)
@@ -116,16 +117,17 @@ class AlongAxes {
     std::array<std::vector<std::int32_t>, 3> voxels_;
 };
 
-/// Cubes of edge `size`.
+/// Returns the lattice of cubes of edge `size`.
 Lattice cubes(const LabelImage& image, double size) {
-    // Directions of single precision are meant to be orthogonal.
+    // Directions in single precision are orthogonal only to rounding.
     constexpr double skew = 1e-5;
     const Eigen::Matrix3d gram = image.directions.transpose() * image.directions;
     const bool is_orthogonal = (gram - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < skew;
     const bool is_identity = image.directions == Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d frame = is_identity ? image.directions : orthogonal(image.directions);
 
-    // From voxels to cubes and back; both counted from the corner where the image begins.
+    // From coordinates in voxels to those in cubes, and back. The outer corner of the first voxel
+    // is the origin of both.
     Eigen::Matrix3d to_cubes = Eigen::Matrix3d::Identity();
     if (!is_orthogonal) to_cubes = frame.transpose() * image.directions;
     to_cubes = to_cubes * image.spacing.asDiagonal();
@@ -185,9 +187,9 @@ std::size_t count_cells(const Lattice& lattice) {
     return count;
 }
 
-/// Refuses coordinates in which rounding would be felt in the shape of cells.
+/// Throws InputError if the coordinates are so large that rounding deforms the cells.
 void require_precision(const Lattice& lattice) {
-    constexpr double finest = 1e-10;  // edge by coordinate: shapes are right to some 1e-6
+    constexpr double finest = 1e-10;  // edge over coordinate, for a relative error of about 1e-6
     double largest = 0.0;
     for (const auto i : {lattice.begin[0], lattice.end[0]})
         for (const auto j : {lattice.begin[1], lattice.end[1]})
@@ -203,8 +205,8 @@ void require_precision(const Lattice& lattice) {
                          "origin of the image");
 }
 
-/// Makes the mesh layer by layer: the points of a plane are numbered when the boxes on both of its
-/// sides are known, the cells below it are then complete.
+/// A builder of the mesh, layer by layer. The points of a plane are numbered when the labels of the
+/// layers on both sides are known. The cells below the plane then have all corners.
 class Builder {
   public:
     explicit Builder(const Lattice& lattice)
@@ -271,7 +273,7 @@ class Builder {
 
     void add_cells(const std::vector<int>& layer, const std::vector<std::int64_t>& lower,
                    const std::vector<std::int64_t>& upper) {
-        // Seen in a mirror, the layer above is below.
+        // In a left-handed frame, exchanging the layers makes the volume positive.
         const auto& first = is_left_handed_ ? upper : lower;
         const auto& second = is_left_handed_ ? lower : upper;
         for (std::size_t j = 0; j < depth_; ++j)
@@ -309,10 +311,10 @@ MeshData hex_mesh(const LabelImage& image, std::optional<double> size) {
     const std::string what = "a mesh of " + std::to_string(num_cells) + " cells";
     if (static_cast<double>(num_cells) > max_cells)
         throw InputError(what + " is too large, 1e8 are the most; " + remedy);
-    // A mesh takes some 100 bytes a cell where cells share their points. With its text, which is in
-    // memory whole when it is written, 420 were measured in the longest of the formats.
+    // A mesh takes about 100 bytes a cell if cells share their points. The text of a mesh is in
+    // memory when it is written. With that of the longest format, 420 bytes a cell were measured.
     constexpr double bytes_of_cell = 420;
-    constexpr double bytes_of_place = 2 * (8 + 4);  // of a layer
+    constexpr double bytes_of_place = 2 * (8 + 4);  // two layers of point numbers and labels
     require_memory(bytes_of_cell * static_cast<double>(num_cells) +
                        bytes_of_place * static_cast<double>(lattice.num(0) + 1) *
                            static_cast<double>(lattice.num(1) + 1),

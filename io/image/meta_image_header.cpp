@@ -1,6 +1,6 @@
-// The header of MetaImage files (.mha, and .mhd with the data in a file of their own).
-// Source: the MetaIO documentation; rows of TransformMatrix are the directions of the axes, as in
-// ITK's itkMetaImageIO.cxx.
+// The header of MetaImage files (.mha, and .mhd with the data in another file).
+// Source: the MetaIO documentation. The rows of TransformMatrix are the directions of the axes, as
+// in itkMetaImageIO.cxx of ITK.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <bit>
 #include <map>
@@ -22,7 +22,7 @@ struct Entry {
 
 class Entries {
   public:
-    /// Up to the one that is last by definition, ElementDataFile.
+    /// Reads the entries. By definition ElementDataFile is the last one.
     explicit Entries(const InputFile& file) : file_(file) {
         const std::string_view bytes = file.bytes;
         std::size_t line = 1;
@@ -135,7 +135,8 @@ void set_place(ImageHeader& header, const InputFile& file, const Entries& entrie
         const auto bytes = entries.numbers<std::int64_t>(*skip, 1)[0];
         if (bytes < -1) entries.fail(*skip, "HeaderSize cannot be " + std::to_string(bytes));
         header.is_at_end = bytes == -1;
-        if (bytes > 0) header.data_begin = static_cast<std::size_t>(bytes);  // of its file
+        // HeaderSize counts from the beginning of the file, also if the data are local.
+        if (bytes > 0) header.data_begin = static_cast<std::size_t>(bytes);
     }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t size_of_1 = 348, size_of_2 = 540;
 
-/// The bytes of the header, unpacked, and at most as many as the longer one has.
+/// Returns the bytes of the header, unpacked, and no more than the longer header has.
 std::string header_bytes(const InputFile& file) {
     return begins_as_gzip(file.bytes) ? unpacked_prefix(file.bytes, size_of_2)
                                       : file.bytes.substr(0, size_of_2);
@@ -34,7 +34,7 @@ Layout layout_of(std::string_view bytes) {
     return {0, false};
 }
 
-/// The fields of either version.
+/// The fields of the header, of either version.
 class NiftiFields {
   public:
     NiftiFields(std::string_view bytes, bool swap, bool is_second)
@@ -139,7 +139,7 @@ void set_sform(ImageHeader& header, const NiftiFields& fields) {
     }
     header.set_steps(steps);
 
-    constexpr double tolerance = 0.01;  // beyond the rounding of any writer
+    constexpr double tolerance = 0.01;  // above the rounding errors of all writers
     for (std::size_t a = 0; a < 3; ++a) {
         const double size = std::abs(fields.pixdim(a + 1));
         const double step = header.spacing[static_cast<Eigen::Index>(a)];

@@ -1,4 +1,4 @@
-// The header of NRRD files (.nrrd, and .nhdr with the data in a file of their own).
+// The header of NRRD files (.nrrd, and .nhdr with the data in another file).
 // Source: G. Kindlmann, Definition of the NRRD file format, teem.sourceforge.net/nrrd/format.html
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -31,13 +31,13 @@ class NrrdFields {
             begin = end + 1;
             data_begin_ = std::min(begin, bytes.size());
             if (text.ends_with('\r')) text.remove_suffix(1);
-            if (text.empty()) return;  // ends the header
+            if (text.empty()) return;  // end of the header
             if (line == 1 || text.front() == '#') continue;
             const auto colon = text.find(':');
             if (colon == text.npos)
                 throw InputError(file.name() + ":" + std::to_string(line) +
                                  ": expected FIELD: VALUE, found " + in_quotes(text));
-            if (text.substr(colon).starts_with(":=")) continue;  // for people
+            if (text.substr(colon).starts_with(":=")) continue;  // a key of the user, not a field
             fields_[lower_case(text.substr(0, colon))] = {trimmed(text.substr(colon + 1)), line};
         }
     }
@@ -75,7 +75,7 @@ class NrrdFields {
         for (const auto word : words(field, count)) numbers.push_back(number<T>(field, word));
         return numbers;
     }
-    /// Vectors as (x,y,z), three of components each.
+    /// Returns vectors that are written as (x,y,z).
     std::vector<Vec3> vectors(const HeaderField& field, std::size_t count) const {
         std::vector<Vec3> vectors;
         auto rest = field.value;
@@ -163,7 +163,7 @@ ScalarType type_of(const NrrdFields& fields) {
                            " is not one number a voxel; give an image of one label a voxel");
 }
 
-/// Refuses axes that are not of space: colours, vectors, segments, time.
+/// Throws InputError for axes that are not spatial: colours, vectors, segments, time.
 void require_axes_of_space(const NrrdFields& fields, std::size_t num_axes) {
     const auto refuse = [&](const HeaderField& field, std::string_view kind) {
         fields.fail(field, "has an axis " + in_quotes(kind) +

@@ -10,8 +10,8 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// By the number of nodes. Abaqus' wedge has its first triangle face the second one, VTK's has it
-// face away.
+// The code is the number of nodes. In a wedge of Abaqus, the normal of the first triangle points to
+// the second triangle; in VTK it points away.
 constexpr CellForm solids[] = {
     {4, "tetrahedron", 4, keep, CellKind::tetrahedron},
     {5, "pyramid", 5, keep, CellKind::pyramid},
@@ -49,7 +49,8 @@ constexpr OtherFamily other_families[] = {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The first `most_digits` digits behind the name of a family, or 0: not of the family.
+/// Returns the number after the name of a family, of at most `most_digits` digits. Returns 0 if the
+/// type does not belong to the family.
 int number_behind(std::string_view family, std::string_view type, std::size_t most_digits) {
     if (!type.starts_with(family)) return 0;
     int number = 0;
@@ -65,7 +66,7 @@ int number_behind(std::string_view family, std::string_view type, std::size_t mo
 const CellForm* abaqus_form(std::string_view type) {
     for (const auto family : solid_families)
         if (const int nodes = number_behind(family, type, 2)) return find_form(solids, nodes);
-    // None has ten nodes; STRI65 has six, of five degrees of freedom.
+    // One digit: no surface has ten nodes or more. STRI65 has six, with five degrees of freedom.
     for (const auto family : surface_families)
         if (const int nodes = number_behind(family, type, 1)) return find_form(surfaces, nodes);
     const auto* other = std::ranges::find_if(

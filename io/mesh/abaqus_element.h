@@ -1,4 +1,4 @@
-// What Abaqus and CalculiX call their elements.
+// The element types of Abaqus and CalculiX.
 // Source: Abaqus 6.14 Analysis User's Guide, part VI; CalculiX CrunchiX 2.20 user's manual, 6.2.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -9,8 +9,8 @@
 
 namespace incise::io {
 
-/// What is known of an element type, in upper case, such as C3D8R; null if nothing is. Letters
-/// behind the number of nodes (integration, hybrid, ...) do not matter.
+/// Returns the form of an element type, given in upper case, such as C3D8R. Letters after the
+/// number of nodes (integration, hybrid, ...) are ignored. Returns null for an unknown type.
 const CellForm* abaqus_form(std::string_view type);
 
 }  // namespace incise::io

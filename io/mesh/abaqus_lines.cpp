@@ -19,7 +19,7 @@ std::vector<std::string_view> split(std::string_view line) {
     }
 }
 
-/// Its exponent as in C.
+/// Returns the text of a real with the exponent of C (e) instead of that of Fortran (D).
 std::string as_in_c(std::string_view real) {
     std::string text(real);
     if (const auto exponent = text.find_first_of("dD"); exponent != text.npos) text[exponent] = 'e';

@@ -15,8 +15,8 @@
 
 namespace incise::io {
 
-/// *NAME, PARAMETER=VALUE, PARAMETER. All in upper case and without blanks: Abaqus sees no
-/// difference.
+/// A keyword line: *NAME, PARAMETER=VALUE, PARAMETER. All texts are in upper case and without
+/// blanks, since Abaqus ignores case and blanks.
 struct AbaqusKeyword {
     std::string name;  ///< without the asterisk
     std::map<std::string, std::string> parameters;
@@ -24,34 +24,40 @@ struct AbaqusKeyword {
     std::optional<std::string> parameter(const std::string& wanted) const;
 };
 
-/// Text as Abaqus compares it: in upper case, without blanks.
+/// Returns the text as Abaqus compares it: in upper case, without blanks.
 std::string abaqus_word(std::string_view text);
 
+/// A position in an input file that moves line by line.
 class AbaqusLines {
   public:
-    /// The file must outlive the lines.
+    /// @lifetime  the file must outlive the lines
     explicit AbaqusLines(const InputFile& file) : file_(file), scanner_(file) {}
 
-    /// Goes to the next line that is neither empty nor a comment; false if there is none.
+    /// Goes to the next line that is neither empty nor a comment. Returns false if there is none.
     bool next();
     bool is_keyword() const { return line_.starts_with('*'); }
-    /// Whether the line ends with a comma: then what it says may go on on the next one.
+    /// True if the line ends with a comma. A row or a keyword may then continue on the next line.
     bool goes_on() const { return line_.ends_with(','); }
 
-    /// The keyword of this line and of those on which it goes on. @pre is_keyword()
+    /// Reads the keyword of this line and of the lines that continue it.
+    /// @pre  is_keyword()
     AbaqusKeyword keyword();
-    /// The fields of this line, without the blanks about them.
+    /// Returns the fields of this line, without the blanks around them.
     std::vector<std::string_view> fields() const;
 
-    /// The number in a field, from 1 on; `what` it should be is said if it is none.
+    /// Returns the number in a field, 1 or more. Throws InputError if the field has none; `what`
+    /// names the expected number in the message.
     std::int64_t number(std::string_view field, std::string_view what) const;
-    /// The real in a field, with an exponent as C or Fortran (D) writes it; refused unless finite.
+    /// Returns the real in a field. Its exponent may be that of C (e) or of Fortran (D). Throws
+    /// InputError as number() does, and for a real that is not finite.
     double real(std::string_view field, std::string_view what) const;
 
-    /// Where messages point: the byte at which the line begins, unless moved elsewhere.
+    /// Returns the byte whose line location() names: the beginning of this line, or the byte of the
+    /// last point_to().
     std::size_t byte() const { return byte_; }
     void point_to(std::size_t byte) { byte_ = byte; }
     std::string location() const;
+    /// Throws InputError with location() and the message.
     [[noreturn]] void fail(const std::string& message) const;
 
   private:

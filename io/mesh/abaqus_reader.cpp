@@ -26,7 +26,7 @@ namespace {
 
 using Role = ElementSets::Role;
 
-/// Keywords that would change the mesh, and why they cannot be stepped over.
+/// Keywords that would change the mesh, and the reason in the error message.
 constexpr std::pair<std::string_view, const char*> refused_keywords[] = {
     {"INCLUDE", "other files are not read; put the lines of that file in its place"},
     {"NGEN", "nodes are not generated; export all of them"},
@@ -59,7 +59,7 @@ class AbaqusReader {
   private:
     struct Element {
         std::int64_t number;
-        std::size_t place;  ///< its byte in the file
+        std::size_t place;  ///< its first byte in the file
         const CellForm* form;
         std::size_t first_node;  ///< in nodes_
     };
@@ -103,8 +103,8 @@ class AbaqusReader {
                     "they are in the assembly");
     }
 
-    /// Whether what follows is part of the mesh. What an assembly has of its own are points of
-    /// reference and their sets.
+    /// True if this section is part of the mesh. An assembly itself has only reference points and
+    /// their sets, which are skipped. Throws InputError for a second part with nodes or elements.
     bool is_of_mesh() {
         if (scope_ == Scope::assembly) return false;
         const auto scope = scope_ == Scope::model ? 0 : num_scopes_;
@@ -149,7 +149,7 @@ class AbaqusReader {
         result_.mesh.points.push_back(point);
     }
 
-    // --- *ELEMENT: number, nodes; rows may go on on the next lines
+    // --- *ELEMENT: number, nodes; a row may continue on the next lines
 
     void begin_elements() {
         if (!is_of_mesh()) return;
@@ -169,7 +169,7 @@ class AbaqusReader {
     }
 
     void ignore_element() {
-        // The number of nodes is not known of all, but then rows that go on end in a comma.
+        // Not all forms have a number of nodes. A row that continues ends with a comma.
         if (!goes_on_) collector_.ignore(*form_);
         goes_on_ = lines_.goes_on();
     }
@@ -195,7 +195,7 @@ class AbaqusReader {
         row_.clear();
     }
 
-    /// At the end of a section: no row may be left unfinished.
+    /// Throws InputError if the last row of a section is not complete.
     void finish_element() {
         goes_on_ = false;
         if (row_.empty()) return;
@@ -209,7 +209,7 @@ class AbaqusReader {
         return "element " + std::to_string(number);
     }
 
-    // --- *ELSET: elements and sets, or with GENERATE: first, last, step
+    // --- *ELSET: elements and sets; with GENERATE: first, last, step
 
     void begin_set() {
         if (scope_ == Scope::assembly) return;
@@ -297,24 +297,24 @@ class AbaqusReader {
     const InputFile& file_;
     AbaqusLines lines_;
     CellCollector collector_;
-    AbaqusKeyword keyword_;                       ///< of the section at hand
-    void (AbaqusReader::*read_row_)() = nullptr;  ///< null: rows are stepped over
+    AbaqusKeyword keyword_;                       ///< of the current section
+    void (AbaqusReader::*read_row_)() = nullptr;  ///< null: rows are skipped
 
     Scope scope_ = Scope::model;
     int num_scopes_ = 0;             ///< parts and instances so far
-    std::optional<int> mesh_scope_;  ///< the one that has the mesh; 0: the model itself
+    std::optional<int> mesh_scope_;  ///< number of the one with the mesh; 0: the model itself
     bool has_instance_ = false;
 
     NodeTags node_tags_;
-    std::string type_;  ///< of the elements at hand, as the next two
+    std::string type_;  ///< of the current elements, as are the next two
     const CellForm* form_ = nullptr;
     std::optional<std::size_t> element_set_;
-    std::vector<std::int64_t> row_;  ///< number and nodes of an element, so far
+    std::vector<std::int64_t> row_;  ///< number and nodes of the current element, so far
     std::size_t row_place_ = 0;
-    bool goes_on_ = false;  ///< the row of an element that is left out
+    bool goes_on_ = false;  ///< true if the row of an ignored element continues
     std::vector<Element> elements_;
     std::vector<std::int64_t> nodes_;  ///< of all elements
-    std::size_t set_ = 0;              ///< that is filled
+    std::size_t set_ = 0;              ///< the current *ELSET
     ElementSets sets_;
     MeshFile result_;
 };

@@ -7,13 +7,15 @@
 
 namespace incise::io {
 
-/// See read_mesh. Reads the nodes, elements and element sets of a model without parts, or with
-/// one part and at most one instance that stays where the part is; steps over all else. What
-/// makes nodes or elements of others (*NGEN, *ELGEN, ...) or lies in other files is refused.
+/// Reads an Abaqus or CalculiX file; see read_mesh(). Reads the nodes, elements and element sets of
+/// a model without parts, or with one part and at most one instance that is not moved. Skips all
+/// other sections. Throws InputError for keywords that generate nodes or elements (*NGEN, *ELGEN,
+/// ...) and for references to other files.
 ///
-/// Elements come in the order of their numbers, nodes in the order of the file. Regions are the
-/// sets that have a *SOLID SECTION; if none has, those given with the elements; else the other
-/// element sets. A set REGION_<n> is region n, others are numbered from 1 with a warning.
+/// Elements are in the order of their numbers, nodes in the order of the file. Regions are the sets
+/// that have a *SOLID SECTION. If no set has one, regions are the sets given with the elements. If
+/// there are none, regions are the other element sets. A set REGION_<n> is region n. Other sets are
+/// numbered from 1, with a warning.
 MeshFile read_abaqus(const InputFile& file, const ReadOptions& options);
 
 }  // namespace incise::io

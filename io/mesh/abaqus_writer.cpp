@@ -1,4 +1,4 @@
-// Abaqus and CalculiX input (.inp): nodes and elements; materials and steps are the user's to add.
+// Writer of Abaqus and CalculiX input (.inp). The files have no materials and no steps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <map>
 #include <utility>

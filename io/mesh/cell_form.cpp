@@ -1,4 +1,3 @@
-// What a file format calls its kinds of cells, and what becomes of each.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/mesh/cell_form.h"
 

@@ -1,4 +1,4 @@
-// What a file format calls its kinds of cells, and what becomes of each. A format has one table.
+// The kinds of cells of a file format, and the use of each. Each format has a table of them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -16,23 +16,25 @@
 
 namespace incise::io {
 
+/// One kind of cell of a file format.
 struct CellForm {
     enum class Use : std::uint8_t {
         keep,    ///< a linear volume cell
-        ignore,  ///< of fewer than three dimensions
-        refuse   ///< a volume cell that is not supported
+        ignore,  ///< a cell of fewer than three dimensions, left out with a warning
+        refuse   ///< a volume cell that is not supported, an error
     };
 
-    int code;          ///< the format's number for the kind; 0 where it has a word
-    const char* name;  ///< singular; where ignored, the plural is the name with an s
+    int code;          ///< number of the kind in the format; 0 if the format has a word instead
+    const char* name;  ///< singular; the plural of an ignored kind is the name with an s
     int num_nodes;     ///< 0: any number
     Use use = Use::refuse;
-    topology::CellKind kind = topology::CellKind::tetrahedron;  ///< where kept
-    /// Where kept: corner i of the cell is node corner_order[i] of the file.
+    topology::CellKind kind = topology::CellKind::tetrahedron;  ///< if kept
+    /// If kept: corner i of the cell is node corner_order[i] of the file.
     std::array<std::uint8_t, topology::max_corners> corner_order = {0, 1, 2, 3, 4, 5, 6, 7};
 };
 
-/// The row of this code, or null. @pre the table ascends by code
+/// Returns the row with this code, or null.
+/// @pre  the table is in ascending order of the codes
 constexpr const CellForm* find_form(std::span<const CellForm> forms, std::int64_t code) {
     const auto row = std::lower_bound(
         forms.begin(), forms.end(), code,
@@ -40,24 +42,25 @@ constexpr const CellForm* find_form(std::span<const CellForm> forms, std::int64_
     return row != forms.end() && row->code == code ? &*row : nullptr;
 }
 
-/// Collects the volume cells of a file in a mesh and counts the cells that are left out.
+/// A collector that adds the volume cells of a file to a mesh and counts the cells that it ignores.
 class CellCollector {
   public:
-    /// `file` is its name in messages; `type_word` is what the format calls a kind's code.
+    /// @param file       the name of the file in messages
+    /// @param type_word  the word of the format for the code of a kind of cell
     CellCollector(std::string file, std::string type_word)
         : file_(std::move(file)), type_word_(std::move(type_word)) {}
 
-    /// Throws InputError about a cell of a form that cannot be used. `place` is what the message
-    /// begins with: the file and the cell.
+    /// Throws InputError about a cell of a form that cannot be used. The message begins with the
+    /// location, which is the file and the cell.
     [[noreturn]] void refuse(const CellForm& form, const std::string& location) const {
         refuse(form, location, std::to_string(form.code));
     }
-    /// The same where the format calls the kind by a word.
+    /// The same for a format in which the kind has a word instead of a number.
     [[noreturn]] void refuse(const CellForm& form, const std::string& location,
                              std::string_view code) const;
 
-    /// Appends a cell of a form that is kept; `number` is what the file calls it.
-    /// @pre nodes.size() == form.num_nodes, and they are points of the mesh
+    /// Appends a cell of a form that is kept. `number` is the number of the cell in the file.
+    /// @pre  nodes.size() == form.num_nodes, and the nodes are points of the mesh
     void keep(const CellForm& form, std::int64_t number, std::span<const std::int64_t> nodes,
               int region, topology::MeshData& mesh) const {
         std::array<std::int64_t, topology::max_corners> corners{};
@@ -66,6 +69,7 @@ class CellCollector {
         mesh.source_cells.push_back(number);
     }
 
+    /// Counts cells of a form that is ignored.
     void ignore(const CellForm& form, std::size_t count = 1) {
         auto row = std::find_if(ignored_.begin(), ignored_.end(),
                                 [&](const auto& entry) { return entry.first == &form; });
@@ -79,8 +83,9 @@ class CellCollector {
         return sum;
     }
 
-    /// To be called when all are read. Adds a warning about the cells left out, if any. Throws
-    /// InputError if none was kept.
+    /// Ends the collection. Adds a warning about ignored cells, if there are any. Clears the
+    /// numbers of the cells in the file if they are 0, 1, 2, ... Throws InputError if no cell was
+    /// kept.
     void finish(topology::MeshData& mesh, std::vector<std::string>& warnings) const;
 
   private:

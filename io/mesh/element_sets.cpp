@@ -12,13 +12,14 @@ namespace incise::io {
 
 namespace {
 
-/// Which positions are not taken yet; amortised, to go on to the next one takes constant time.
+/// The positions that are not taken yet, linked so that long runs of taken positions are skipped at
+/// once (disjoint sets with path halving).
 class FreePositions {
   public:
     explicit FreePositions(std::size_t count) : next_(count + 1) {
         std::iota(next_.begin(), next_.end(), std::size_t{0});
     }
-    /// The first free position from here on, or the end.
+    /// Returns the first free position at or after `position`, or the end.
     std::size_t first_from(std::size_t position) {
         while (next_[position] != position) {
             next_[position] = next_[next_[position]];
@@ -29,7 +30,7 @@ class FreePositions {
     void take(std::size_t position) { next_[position] = position + 1; }
 
   private:
-    std::vector<std::size_t> next_;  ///< itself where free
+    std::vector<std::size_t> next_;  ///< by position: itself if free, else a later position
 };
 
 std::optional<int> number_in(std::string_view name) {
@@ -99,7 +100,7 @@ ElementSets::Owners ElementSets::find_owners(std::span<const std::int64_t> eleme
             return (elements[p] - range.first) % range.step == 0;
         };
         for (auto p = begin; p < end; ++p) {
-            // Of a row of elements taken before, the first one is looked at.
+            // Of a run of elements that are taken, only the first is examined.
             if (is_in(p) && is_taken_by_another(p, owner)) owners.are_shared = true;
             p = free.first_from(p);
             if (p >= end || !is_in(p)) continue;
@@ -116,7 +117,7 @@ ElementSets::Owners ElementSets::find_owners(std::span<const std::int64_t> eleme
         while (!stack.empty()) {
             const auto set = stack.back();
             stack.pop_back();
-            // What is in it belongs to another owner already.
+            // If the set has an owner, its elements have that owner too.
             if (owner_of_set[set] != nobody && owner_of_set[set] != owner) owners.are_shared = true;
             if (owner_of_set[set] != nobody) continue;
             owner_of_set[set] = owner;

@@ -1,4 +1,4 @@
-// Named sets of elements, as Abaqus and CalculiX have them, and the regions that they make.
+// The named element sets of Abaqus and CalculiX, and the regions that they define.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,24 +13,28 @@
 
 namespace incise::io {
 
+/// A collection of named element sets, each of which holds elements and other sets.
 class ElementSets {
   public:
-    /// What tells regions apart, best first: sets that have a material; sets given with the
-    /// elements; all other sets, save those that programs make for themselves.
+    /// How a set is used in the file, in the order of preference for regions: sets that have a
+    /// material, sets given with the elements, other sets. Internal sets, which programs make for
+    /// their own use, are no regions.
     enum class Role : std::uint8_t { of_section, of_elements, of_list, internal };
 
-    /// Elements numbered first, first + step, ... up to `last`.
+    /// The elements with the numbers first, first + step, ... up to `last`.
     struct Range {
         std::int64_t first, last, step;
     };
 
-    /// The index of the set of this name, to which elements are added next. Of the roles that a
-    /// set is given, the best one counts.
+    /// Defines a set, if it is not defined yet, and returns its index. If a set has several roles,
+    /// the most preferred one counts.
     std::size_t define(const std::string& name, Role role);
-    /// The index of a set that byte `place` of the file refers to; it is defined somewhere.
+    /// Returns the index of a set to which byte `place` of the file refers. The set may be defined
+    /// before or after.
     std::size_t refer(const std::string& name, std::size_t place, Role role = Role::internal);
 
-    /// @pre 1 <= step, first <= last
+    /// Adds elements to a set.
+    /// @pre  1 <= step, first <= last
     void add(std::size_t set, Range range);
     void add_subset(std::size_t set, std::size_t subset) { sets_[set].subsets.push_back(subset); }
 
@@ -38,17 +42,19 @@ class ElementSets {
         std::string name;
         std::size_t place;
     };
-    /// The first set that is referred to, but nowhere defined.
+    /// Returns the first reference to a set that is not defined, if there is one.
     std::optional<Unknown> first_unknown() const;
 
     struct Regions {
         std::vector<int> of_element;
         std::vector<std::string> warnings;
     };
-    /// The regions of the elements with these numbers, which ascend. Of the sets of the best role
-    /// that there is, an element belongs to the first that holds it. Sets named REGION_<n> are
-    /// region n, others are numbered from 1 in the order of the file, which a warning tells;
-    /// elements in no set have region 0. Sets that hold themselves through others are warned of.
+    /// Returns the regions of the elements with these numbers. Regions are the sets of the most
+    /// preferred role that occurs. An element belongs to the first of these sets that holds it, or
+    /// to region 0 if none does. A set REGION_<n> is region n. Other sets are numbered from 1 in
+    /// the order of the file, with a warning. Sets that hold themselves, also through other sets,
+    /// cause a warning.
+    /// @pre  the numbers are in ascending order
     Regions regions(std::span<const std::int64_t> elements) const;
 
   private:
@@ -65,12 +71,13 @@ class ElementSets {
 
     struct Owners {
         std::vector<std::size_t> of_element;  ///< indices of sets, or nobody
-        bool are_shared = false;              ///< an element is in several sets
+        bool are_shared = false;              ///< true if an element is in several sets
     };
     Owners find_owners(std::span<const std::int64_t> elements) const;
     std::vector<int> number_sets(const Owners& owners, std::vector<std::string>& warnings) const;
     std::size_t find_or_add(const std::string& name);
-    /// Sets of which each holds the next, and the last one the first; none if there are no such.
+    /// Returns sets of which each holds the next and the last holds the first. Returns an empty
+    /// list if there are none.
     std::vector<std::size_t> find_circle() const;
 
     std::vector<Set> sets_;

@@ -24,7 +24,8 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// Gmsh's prism has its first triangle face the second one, VTK's has it face away.
+// In a prism of Gmsh, the normal of the first triangle points to the second triangle; in VTK it
+// points away.
 constexpr CellForm gmsh_forms[] = {
     {1, "line", 2, ignore},
     {2, "triangle", 3, ignore},
@@ -111,7 +112,8 @@ class GmshReader {
             if (name == "PartitionedEntities") read_entities(true);
         } else {
             const auto end = "$End" + std::string(name);
-            // Names may quote the mark; elsewhere it need not begin a line.
+            // A name may contain the mark, which then does not begin a line. In other sections the
+            // mark need not begin a line.
             const bool may_quote = name == "PhysicalNames";
             if (!(may_quote ? scanner_.skip_past_line(end) : scanner_.skip_past(end)))
                 scanner_.fail("section " + in_quotes(name) + " has no " + in_quotes(end) +
@@ -158,7 +160,7 @@ class GmshReader {
         scanner_.set_binary(true, one != 1);
     }
 
-    // Numbers of the types that MSH 4.1 calls size_t, int and double; as text or binary.
+    // The next three functions read the types size_t, int and double of MSH 4.1, as text or binary.
     std::int64_t size_value(std::string_view what) {
         const auto value = scanner_.is_binary() && has_short_sizes_
                                ? scanner_.value<std::uint32_t>(what)
@@ -171,7 +173,8 @@ class GmshReader {
     int int_value(std::string_view what) { return scanner_.value<std::int32_t>(what); }
     double real_value(std::string_view what) { return scanner_.value<double>(what); }
 
-    /// A count of things that have `numbers_each` numbers of at least `bytes_each` in binary.
+    /// Reads the count of items that follow. Each has at least `numbers_each` numbers, of at least
+    /// `bytes_each` bytes in a binary file.
     std::size_t count_value(std::string_view what, std::size_t numbers_each,
                             std::size_t bytes_each) {
         const auto count = static_cast<std::uint64_t>(size_value(what));
@@ -185,7 +188,7 @@ class GmshReader {
         for (std::size_t i = 0; i < count; ++i) real_value(what);
     }
 
-    /// The same, but written as text in binary files too, on a line before the data.
+    /// The same for a count that is text also in a binary file, on a line before the data.
     std::size_t text_count(std::string_view what, std::size_t numbers_each,
                            std::size_t bytes_each) {
         const auto count =
@@ -240,7 +243,7 @@ class GmshReader {
             collector_.refuse(form, scanner_.location() + ": " + element_name(tag));
     }
 
-    /// Keeps the element with the node tags in nodes_, which are replaced by point numbers.
+    /// Keeps the element whose node tags are in nodes_. Replaces the tags there by point numbers.
     void keep_element(const CellForm& form, std::int64_t tag, int region) {
         const auto nodes = std::span(nodes_).first(static_cast<std::size_t>(form.num_nodes));
         for (auto& node : nodes) {
@@ -253,8 +256,8 @@ class GmshReader {
         collector_.keep(form, tag, nodes, region, result_.mesh);
     }
 
-    // --- version 2: n, then n times: tag x y z; of parametric nodes also the dimension and the tag
-    // of the entity that they are on, and one parameter on a curve, two on a surface
+    // --- version 2: n, then n times: tag x y z. A parametric node also has the dimension and the
+    // tag of its entity, and one parameter on a curve or two on a surface.
     void read_nodes_2(bool are_parametric) {
         begin_nodes();
         const auto num_nodes = text_count("the number of nodes", are_parametric ? 6 : 4, 4);
@@ -271,8 +274,8 @@ class GmshReader {
         finish_nodes();
     }
 
-    // --- version 2: n, then as text n times: tag type num_tags tags nodes;
-    // in binary: type count num_tags, then count times: tag tags nodes
+    // --- version 2: n, then in a text file n times: tag type num_tags tags nodes;
+    // in a binary file blocks: type count num_tags, then count times: tag tags nodes
     void read_elements_2() {
         begin_elements();
         const auto num_elements = text_count("the number of elements", 2, 4);
@@ -307,7 +310,7 @@ class GmshReader {
         int region = 0;
         for (int i = 0; i < num_tags; ++i) {
             const int value = int_value("a tag of an element");
-            if (i == 0) region = value;  // the physical group
+            if (i == 0) region = value;  // the first tag is the physical group
         }
         if (form.use == ignore) {
             skip_ints(static_cast<std::size_t>(form.num_nodes), "a node of an element");
@@ -319,8 +322,8 @@ class GmshReader {
         keep_element(form, tag, region);
     }
 
-    // --- version 4.1: points, curves, surfaces, volumes; of these we want the physical groups of
-    // the volumes. Those of a partition say first from which entity they come.
+    // --- version 4.1: points, curves, surfaces, volumes. Only the physical groups of the volumes
+    // are kept. An entity of a partition begins with its parent entity.
     void read_entities(bool are_partitioned) {
         if (has_elements_)
             scanner_.fail(
@@ -347,7 +350,7 @@ class GmshReader {
         skip_reals(dimension == 0 ? 3 : 6, "the bounds of an entity");
         const auto num_groups = count_value("the number of physical groups", 1, 4);
         for (std::size_t i = 0; i < num_groups; ++i) {
-            // The sign tells an orientation.
+            // A negative group has the opposite orientation.
             const auto group = std::abs(std::int64_t{int_value("a physical group")});
             if (dimension != 3 || i > 0) continue;
             if (group > std::numeric_limits<int>::max())
@@ -425,7 +428,7 @@ class GmshReader {
     CellCollector collector_;
     NodeTags node_tags_;
     std::map<int, int> group_of_volume_;
-    std::array<std::int64_t, 32> nodes_{};  ///< of the element at hand; refused forms may have more
+    std::array<std::int64_t, 32> nodes_{};  ///< of the current element; refused forms may have more
     MeshFile result_;
     std::size_t num_shared_entities_ = 0;
     bool is_version_2_ = false;

@@ -7,9 +7,9 @@
 
 namespace incise::io {
 
-/// See read_mesh. Versions 2.x and 4.1, ascii and binary in either byte order; nodes may be
-/// parametric. Regions are the physical groups of the volumes, 0 where there is none. Points are
-/// numbered in the order of the file; node tags may have gaps.
+/// Reads a Gmsh file; see read_mesh(). Reads versions 2.x and 4.1, ascii and binary in either byte
+/// order. Nodes may be parametric. Regions are the physical groups of the volumes, or 0 for a
+/// volume without a group. Points are in the order of the file. Node tags may have gaps.
 MeshFile read_gmsh(const InputFile& file, const ReadOptions& options);
 
 }  // namespace incise::io

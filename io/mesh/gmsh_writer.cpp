@@ -1,4 +1,4 @@
-// Gmsh files (.msh), as text: version 2.2, which Gmsh still writes and every reader knows.
+// Writer of Gmsh files (.msh) as text of version 2.2, which all readers of the format know.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
@@ -41,7 +41,7 @@ std::string gmsh_text(const topology::MeshData& mesh) {
     append_number(text, mesh.num_cells());
     text += '\n';
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
-        // Number, type, two tags: the physical group, and the body it belongs to.
+        // Number, type, and two tags: the physical group and the geometric entity.
         append_number(text, c + 1);
         text += ' ';
         append_number(text, gmsh_element_type(mesh.kinds[c]));

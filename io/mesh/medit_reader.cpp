@@ -26,7 +26,8 @@ struct CellSection {
     CellForm form;
 };
 
-// MEDIT's prism has its first triangle face the second one, VTK's has it face away.
+// In a prism of MEDIT, the normal of the first triangle points to the second triangle; in VTK it
+// points away.
 constexpr CellSection cell_sections[] = {
     {"edges", {0, "line", 2, ignore}},
     {"triangles", {0, "triangle", 3, ignore}},
@@ -35,7 +36,7 @@ constexpr CellSection cell_sections[] = {
     {"prisms", {0, "wedge", 6, keep, CellKind::wedge, {0, 2, 1, 3, 5, 4}}},
     {"pyramids", {0, "pyramid", 5, keep, CellKind::pyramid}},
     {"hexahedra", {0, "hexahedron", 8, keep, CellKind::hexahedron}},
-    {"hexaedra", {0, "hexahedron", 8, keep, CellKind::hexahedron}},  // so in the report of 2001
+    {"hexaedra", {0, "hexahedron", 8, keep, CellKind::hexahedron}},  // as in the report of 2001
     {"edgesp2", {0, "second-order line", 3, ignore}},
     {"trianglesp2", {0, "second-order triangle", 6, ignore}},
     {"quadrilateralsq2", {0, "second-order quadrilateral", 9, ignore}},
@@ -48,7 +49,7 @@ constexpr CellSection cell_sections[] = {
     {"tetrahedrap3", {0, "third-order tetrahedron", 20}},
 };
 
-/// Sections of numbers that have no part in a volume mesh. Of others it is told that they are
+/// Sections of numbers that a volume mesh does not need. A warning reports other sections that are
 /// left out.
 constexpr std::string_view skipped_sections[] = {
     "corners",
@@ -112,7 +113,7 @@ class MeditReader {
         } else if (lower == "vertices") {
             read_vertices();
         } else if (lower == "identifier" || lower == "geometry") {
-            // A line of any text, here or below.
+            // Any text, on the rest of this line or on the next line.
             if (scanner_.rest_of_line().find_first_not_of(" \t") == std::string_view::npos)
                 scanner_.rest_of_line();
         } else {
@@ -184,7 +185,7 @@ class MeditReader {
         return vertex - 1;
     }
 
-    /// Up to the next word that is no number.
+    /// Skips all words up to the next one that is no number.
     void skip_section(std::string_view keyword, const std::string& lower) {
         if (std::ranges::find(skipped_sections, lower) == std::end(skipped_sections) &&
             num_unknown_++ < most_listed)
@@ -199,11 +200,11 @@ class MeditReader {
     const InputFile& file_;
     Scanner scanner_;
     CellCollector collector_;
-    std::array<std::int64_t, topology::max_corners> nodes_{};  ///< of the cell at hand
+    std::array<std::int64_t, topology::max_corners> nodes_{};  ///< of the current cell
     MeshFile result_;
     bool has_vertices_ = false;
-    std::size_t num_unknown_ = 0;  ///< sections
-    std::string unknown_;          ///< the first of them, as a list
+    std::size_t num_unknown_ = 0;  ///< unknown sections
+    std::string unknown_;          ///< list of the first of them
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace incise::io {
 
-/// See read_mesh. Text only, of three dimensions, versions 1 to 4. Regions are the references of
-/// the cells.
+/// Reads a MEDIT file; see read_mesh(). Reads text of three dimensions, versions 1 to 4. Regions
+/// are the references of the cells.
 MeshFile read_medit(const InputFile& file, const ReadOptions& options);
 
 }  // namespace incise::io

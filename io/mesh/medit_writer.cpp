@@ -1,4 +1,4 @@
-// MEDIT files (.mesh), as text: version 2, that is with coordinates in double precision.
+// Writer of MEDIT files (.mesh) as text of version 2, which means coordinates in double precision.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 

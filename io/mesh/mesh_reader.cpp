@@ -1,4 +1,4 @@
-// Reading of volume meshes from files. A further format is one more file and one more row here.
+// Reading of volume meshes from files. A new format needs a file and a row of `read_formats`.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/mesh/mesh_reader.h"
 
@@ -27,7 +27,7 @@ namespace {
 struct ReadFormat {
     const char* name;
     const char* suffix;
-    std::string_view magic;  ///< how its text begins, in lower case; empty: told by the suffix only
+    std::string_view magic;  ///< beginning of its text, in lower case; empty: suffix only
     MeshFile (*read)(const InputFile& file, const ReadOptions& options);
 };
 
@@ -43,8 +43,8 @@ constexpr ReadFormat read_formats[] = {
 };
 // clang-format on
 
-/// Meshes of other programs that are known by how their text begins, in lower case, with one blank
-/// where there are several.
+/// Mesh formats of other programs, recognized by the beginning of their text. It is in lower case,
+/// with each sequence of blanks as one blank.
 struct ForeignFormat {
     const char* name;
     std::string_view magic;
@@ -67,7 +67,7 @@ constexpr ForeignFormat foreign_formats[] = {
 
 constexpr std::size_t head_size = 128;  // longer than any magic
 
-/// How the text begins, in lower case, with one blank where there are several.
+/// Returns the beginning of the text, in lower case, with each sequence of blanks as one blank.
 std::string head_of(std::string_view text) {
     std::string head;
     for (const char c : text.substr(0, head_size))
@@ -85,7 +85,7 @@ std::string known_formats() {
     return known;
 }
 
-/// The format whose mark the text begins with, behind blanks. Null if there is none.
+/// Returns the format with whose mark the text begins, or null.
 const ReadFormat* marked_format_of(const std::string& head) {
     for (const auto& format : read_formats)
         if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
@@ -96,8 +96,8 @@ std::string_view behind_blanks(std::string_view text) {
     return {std::find_if_not(text.begin(), text.end(), is_blank), text.end()};
 }
 
-/// Whether the text begins as meshes of FreeFEM do: with a line of three counts, of points, cells
-/// and boundary elements. Other formats begin so too: the suffix must tell as well.
+/// True if the text begins as a mesh of FreeFEM does: with a line of three counts, of points, cells
+/// and boundary elements. Other formats begin so too, so that the suffix must be checked as well.
 bool begins_like_freefem(std::string_view text) {
     text = trimmed(text.substr(0, text.find('\n')));
     int num_counts = 0;
@@ -110,8 +110,8 @@ bool begins_like_freefem(std::string_view text) {
     return num_counts == 3;
 }
 
-/// Null if it is not known. Throws InputError for an index of other files or a mesh of another
-/// program.
+/// Returns the format of the file, or null if it is not known. Throws InputError for an index of
+/// other files or a mesh of another program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
     while (true) {
@@ -124,7 +124,7 @@ const ReadFormat* read_format_of(const InputFile& file) {
                                  "instance, to one of: " +
                                  known_formats());
         if (const auto* format = marked_format_of(head)) return format;
-        if (!text.starts_with('#')) break;  // else a comment, such as MEDIT and TetGen have
+        if (!text.starts_with('#')) break;  // MEDIT and TetGen files may begin with comments
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
     const auto suffix = lower_case(file.path.extension().string());
@@ -142,9 +142,9 @@ const ReadFormat* read_format_of(const InputFile& file) {
     return nullptr;
 }
 
-/// What every format has in common.
+/// Completes the mesh of any format: recognizes the coincidence mark and turns inverted cells.
 void finish(const InputFile& file, MeshFile& result) {
-    constexpr std::size_t longest_head = 500;  // a mark is in one of the first lines
+    constexpr std::size_t longest_head = 500;  // the mark is in one of the first lines
     if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
         std::string_view::npos)
         result.mesh.points_may_coincide = true;

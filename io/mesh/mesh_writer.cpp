@@ -24,7 +24,7 @@ std::string plain_vtu_text(const topology::MeshData& mesh) {
     Frame frame;
     frame.mesh = mesh;
     std::string text = vtu_text(frame);
-    if (mesh.points_may_coincide)  // behind the XML declaration
+    if (mesh.points_may_coincide)  // after the XML declaration
         text.insert(text.find('\n') + 1, "<!-- " + std::string(coincidence_mark) + " -->\n");
     return text;
 }

@@ -10,22 +10,25 @@
 
 namespace incise::io {
 
-/// Writes the mesh in the format of the path's suffix (in either case): cells in their order,
-/// regions, and coordinates that read back to the same bits.
-/// .vtu: VTK XML; .vtk: legacy VTK; .msh: Gmsh 2.2, regions as physical groups; .mesh: MEDIT,
-/// regions as references, cells grouped by kind; .inp: Abaqus and CalculiX, regions as element
-/// sets, cells grouped by region and kind (CalculiX itself has no pyramids).
-/// Where points may coincide, a comment says so, which read_mesh() knows again.
-/// Throws InputError if the format is not known; OutputError if the file
-/// cannot be written, which is then left as it was.
+/// Writes the cells in their order, the regions, and the coordinates with digits that read back to
+/// the same bits. The suffix of the path, in upper or lower case, decides the format:
+/// - .vtu: VTK XML
+/// - .vtk: legacy VTK
+/// - .msh: Gmsh 2.2, with regions as physical groups
+/// - .mesh: MEDIT, with regions as references and cells grouped by kind
+/// - .inp: Abaqus and CalculiX, with regions as element sets and cells grouped by region and kind.
+///   CalculiX itself has no pyramids.
+///
+/// If points may coincide, a comment says so. read_mesh() recognizes this comment.
+/// Throws InputError if the format is not known. Throws OutputError if the file cannot be written;
+/// its contents then do not change.
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);
 
-/// Throws what write_mesh() would throw at once: InputError for a suffix that is not known,
-/// OutputError where there can be no such file (require_writable). To be asked before the work, so
-/// that it is not done in vain.
+/// Checks in advance whether write_mesh() can write the file. Throws InputError for an unknown
+/// suffix, and OutputError as require_writable() does.
 void check_writable(const std::filesystem::path& path);
 
-/// With their points, in alphabetical order.
+/// Returns the suffixes that write_mesh() knows, each with its dot, in alphabetical order.
 std::vector<std::string> writable_suffixes();
 
 }  // namespace incise::io

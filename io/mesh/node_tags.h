@@ -1,4 +1,4 @@
-// From the names that a file gives its nodes to their numbers in the file's order.
+// The tags (numbers) of the nodes of a file, and a map from tags to the order of the file.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,12 +12,14 @@
 
 namespace incise::io {
 
+/// A map from the tag of a node to its number, from 0, in the order of the file.
 class NodeTags {
   public:
-    /// Names the next node.
+    /// Adds the tag of the next node.
     void add(std::int64_t tag) { sorted_.emplace_back(tag, std::ssize(sorted_)); }
 
-    /// To be called when all are added. What is wrong with the lowest tag given twice, if any is.
+    /// Sorts the tags, after all have been added. If two nodes have the same tag, returns the text
+    /// of an error message about the lowest such tag.
     std::optional<std::string> sort() {
         std::sort(sorted_.begin(), sorted_.end());
         const auto twin =
@@ -30,8 +32,9 @@ class NodeTags {
                " in the order of the file; give each node one of its own";
     }
 
-    /// The number of the node with this tag, if there is one. Cost: constant if tags have no
-    /// gaps, else the logarithm of their number.
+    /// Returns the number of the node with this tag, if there is one. Cost: constant if the tags
+    /// have no gaps, else the logarithm of their number.
+    /// @pre  sort() has been called
     std::optional<std::int64_t> find(std::int64_t tag) const {
         if (sorted_.empty() || tag < sorted_.front().first || tag > sorted_.back().first)
             return std::nullopt;
@@ -47,7 +50,8 @@ class NodeTags {
 
     std::size_t size() const { return sorted_.size(); }
 
-    /// The tags in the file's order; none if they are the numbers.
+    /// Returns the tags in the order of the file. Returns an empty list if all tags are equal to
+    /// the numbers of their nodes.
     std::vector<std::int64_t> in_order() const {
         std::vector<std::int64_t> tags(sorted_.size());
         bool are_numbers = true;

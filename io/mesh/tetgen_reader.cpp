@@ -22,18 +22,18 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// By the number of their nodes. TetGen's tetrahedra have positive volume in VTK's order too.
+// The code is the number of nodes. Tetrahedra of TetGen have positive volume in VTK's order too.
 constexpr CellForm tetrahedra_forms[] = {
     {4, "tetrahedron", 4, keep, CellKind::tetrahedron},
     {10, "second-order tetrahedron", 10},
 };
 
-/// Lines of numbers; comments and empty lines are stepped over.
+/// A position in a file of lines of numbers. Comments and empty lines are skipped.
 class NumberLines {
   public:
     explicit NumberLines(const InputFile& file) : scanner_(file) {}
 
-    /// Goes to the next line, on which `what` should be.
+    /// Goes to the next line. Throws InputError if there is none; `what` names the expected item.
     void next(std::string_view what) {
         words_.clear();
         if (scanner_.at_end()) scanner_.token(what);  // throws
@@ -50,14 +50,15 @@ class NumberLines {
         if (!parsed) scanner_.fail_expected(what, words_[column], range_remark<T>(words_[column]));
         return *parsed;
     }
-    /// The number of lines that follow, each of at least `bytes_each` bytes.
+    /// Returns the number of rows that follow, each of at least `bytes_each` bytes. Throws
+    /// InputError if so many do not fit in the rest of the file.
     std::uint64_t num_rows(std::string_view what, std::size_t bytes_each) const {
         const auto count = number<std::uint64_t>(0, what);
         scanner_.require_room(count, bytes_each, what);
         return count;
     }
-    /// @param columns  in words
-    /// @param has_more  whether further columns may follow, which are not spoken of
+    /// Throws InputError if the line has not `number` columns. `columns` describes them in the
+    /// message. If `has_more` is true, more columns may follow.
     void expect_columns(std::size_t number, std::string_view columns, bool has_more = false) const {
         if (num_columns() < number || (num_columns() > number && !has_more))
             fail("expected " + std::string(columns) + ", as the first line has it, found " +
@@ -105,7 +106,7 @@ class TetgenReader {
         if (num_markers > 1)
             nodes_.fail("the number of boundary markers is " + std::to_string(num_markers) +
                         "; it must be 0 or 1");
-        const bool has_more = nodes_.num_columns() < 4;  // the first line leaves counts out
+        const bool has_more = nodes_.num_columns() < 4;  // the first line omits counts
         const auto columns = "an index, 3 coordinates, " + std::to_string(num_attributes) +
                              " attributes" +
                              (has_more ? "" : " and " + std::to_string(num_markers) + " markers");
@@ -125,7 +126,7 @@ class TetgenReader {
         result_.mesh.source_points = tags_.in_order();
     }
 
-    /// Of the first line, which may leave it out.
+    /// Returns a count of the first line, or 0 if the line does not have it.
     static std::uint32_t count_or_0(const NumberLines& lines, std::size_t column,
                                     std::string_view what) {
         return column < lines.num_columns() ? lines.number<std::uint32_t>(column, what) : 0;

@@ -7,12 +7,13 @@
 
 namespace incise::io {
 
-/// See read_mesh. `file` is either one of the pair; the other one lies beside it under the same
-/// name. Nodes are numbered in the order of the file; their indices may begin anywhere and have
-/// gaps. Regions are the first attribute of the elements, 0 where there is none.
+/// Reads a pair of TetGen files; see read_mesh(). `file` is one of the pair. The other one is in
+/// the same folder, under the same name. Nodes are in the order of the file. Their indices may
+/// begin at any number and have gaps. Regions are the first attribute of the elements, or 0 if they
+/// have none.
 MeshFile read_tetgen(const InputFile& file, const ReadOptions& options);
 
-/// The same of both files of the pair.
+/// The same, with both files given.
 MeshFile read_tetgen_pair(const InputFile& nodes, const InputFile& elements);
 
 }  // namespace incise::io

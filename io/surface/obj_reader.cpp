@@ -19,8 +19,8 @@ namespace incise::io {
 
 namespace {
 
-/// Statements that have no part in the surface. Others are refused rather than skipped: they are
-/// damaged, or add geometry that would be missing (free-form surfaces, calls of other files).
+/// Statements that do not affect the surface. Others are an error: they are damaged, or add
+/// geometry that would be missing (free-form surfaces, calls of other files).
 constexpr std::string_view skipped_statements[] = {
     "vn",  "vt",       "vp",       "p",      "l",      "g",          "s",
     "o",   "mg",       "usemtl",   "mtllib", "usemap", "maplib",     "bevel",
@@ -46,7 +46,7 @@ class ObjReader {
     }
 
   private:
-    /// The words of the next line, and of those that continue it after a backslash.
+    /// Reads the words of the next line, and of the lines that continue it after a backslash.
     void read_words() {
         words_.clear();
         bool goes_on = true;
@@ -76,7 +76,8 @@ class ObjReader {
         collector_.add_polygon(corners_);
     }
 
-    /// The number from 0 of a point given as "index", "index/texture" or "index/texture/normal".
+    /// Returns the number, from 0, of a point given as "index", "index/texture" or
+    /// "index/texture/normal".
     std::int64_t corner_of(std::string_view text) {
         const auto index = parse_number<std::int64_t>(text.substr(0, text.find('/')));
         if (!index) scanner_.fail_expected("a point index", text);
@@ -97,11 +98,11 @@ class ObjReader {
     const InputFile& file_;
     Scanner scanner_;
     SurfaceCollector collector_;
-    std::vector<std::string_view> words_;  ///< of the statement at hand
-    std::vector<std::int64_t> corners_;    ///< of the face at hand
-    std::size_t statement_begin_ = 0;      ///< in bytes
-    std::int64_t highest_index_ = 0;       ///< of all faces so far; its points may follow
-    std::size_t highest_index_begin_ = 0;  ///< of the statement that has it, in bytes
+    std::vector<std::string_view> words_;  ///< of the current statement
+    std::vector<std::int64_t> corners_;    ///< of the current face
+    std::size_t statement_begin_ = 0;      ///< first byte of the current statement
+    std::int64_t highest_index_ = 0;       ///< of all faces so far; its point may follow
+    std::size_t highest_index_begin_ = 0;  ///< first byte of the statement with that index
 };
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 namespace incise::io {
 
-/// See read_surface. Faces may come before their points, and count points from the start of the
-/// file or back from the face. All objects and groups become one surface. Free-form curves and
-/// surfaces are refused.
+/// Reads an OBJ file; see read_surface(). A face may come before its points. It numbers points from
+/// the start of the file, or backwards from the face. All objects and groups become one surface.
+/// Throws InputError also for free-form curves and surfaces.
 SurfaceFile read_obj(const InputFile& file);
 
 }  // namespace incise::io

@@ -17,7 +17,7 @@ namespace incise::io {
 
 namespace {
 
-// The shortest lines there are: "0 0 0" and "3 0 0 0", with their ends.
+// The shortest possible lines: "0 0 0" and "3 0 0 0", each with its end.
 constexpr std::size_t bytes_of_point = 6;
 constexpr std::size_t bytes_of_face = 8;
 
@@ -27,7 +27,7 @@ class OffReader {
 
     SurfaceFile read() {
         read_keyword();
-        // The number of edges, a third one, is missing in some files and of no use.
+        // The third number, that of edges, is missing in some files and not needed.
         if (words_.size() < 2)
             scanner_.fail("expected the numbers of points, faces and edges, found " +
                           in_quotes(words_.front()) + " alone");
@@ -49,8 +49,8 @@ class OffReader {
     }
 
   private:
-    /// Up to the counts, which are in words_ then; they may stand on the line of the keyword, and
-    /// directly behind it.
+    /// Reads up to the counts, which are then in words_. The counts may be on the line of the
+    /// keyword, also without a blank between.
     void read_keyword() {
         constexpr std::string_view name = "off";
         read_line("OFF");
@@ -70,7 +70,7 @@ class OffReader {
             scanner_.fail("is binary OFF, which cannot be read; save it as text");
     }
 
-    /// The words of the next line that has any.
+    /// Reads the words of the next line that is neither empty nor a comment.
     void read_line(std::string_view what) {
         words_.clear();
         if (scanner_.at_end()) scanner_.token(what);  // throws
@@ -84,7 +84,7 @@ class OffReader {
         return *result;
     }
 
-    /// num_corners corners, and a colour that is skipped.
+    /// Reads a face: the number of corners, the corners, and a colour, which is skipped.
     void read_face() {
         const auto num_corners = parse_number<std::uint64_t>(words_.front());
         if (!num_corners) scanner_.fail_expected("the number of corners of a face", words_.front());
@@ -105,8 +105,8 @@ class OffReader {
 
     Scanner scanner_;
     SurfaceCollector collector_;
-    std::vector<std::string_view> words_;  ///< of the line at hand
-    std::vector<std::int64_t> corners_;    ///< of the face at hand
+    std::vector<std::string_view> words_;  ///< of the current line
+    std::vector<std::int64_t> corners_;    ///< of the current face
 };
 
 }  // namespace

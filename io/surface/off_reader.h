@@ -7,8 +7,9 @@
 
 namespace incise::io {
 
-/// See read_surface. OFF as text, with or without texture coordinates (ST), colours (C) and
-/// normals (N) behind the points; points of other than three dimensions are refused.
+/// Reads an OFF file as text; see read_surface(). Texture coordinates (ST), colours (C) and normals
+/// (N) may follow the coordinates of a point. Throws InputError also for points of other than three
+/// dimensions.
 SurfaceFile read_off(const InputFile& file);
 
 }  // namespace incise::io

@@ -24,7 +24,7 @@ struct Type {
     std::string_view name;
     std::size_t size;
     bool is_integer;
-    double (*read)(Scanner& scanner, std::string_view what);  ///< exact: none is wider than double
+    double (*read)(Scanner& scanner, std::string_view what);  ///< exact: double holds all types
 };
 
 template <class T>
@@ -48,8 +48,8 @@ constexpr std::array number_types = {
 struct Property {
     std::string_view name;
     const Type* type;
-    const Type* count_type = nullptr;  ///< of the length, where it is a list
-    int use = -1;  ///< x, y, z of a vertex: 0, 1, 2; corners of a face: 0; what is skipped: -1
+    const Type* count_type = nullptr;  ///< of the length of a list; null if it is no list
+    int use = -1;  ///< x, y, z of a vertex: 0, 1, 2; corners of a face: 0; skipped: -1
 
     bool is_list() const { return count_type != nullptr; }
 };
@@ -178,8 +178,8 @@ class PlyReader {
         return *std::ranges::find(elements_, name, &Element::name);
     }
 
-    /// Marks the one property of these names for use; corners are lists of whole numbers,
-    /// coordinates are not lists.
+    /// Sets the use of the property that has one of these names. Throws InputError unless there is
+    /// exactly one, which must be a list of whole numbers for corners and no list for coordinates.
     void choose_property(Element& element, std::initializer_list<std::string_view> names, int use) {
         Property* chosen = nullptr;
         for (auto& property : element.properties) {
@@ -200,7 +200,8 @@ class PlyReader {
         chosen->use = use;
     }
 
-    /// Refuses more elements than the file has room for. Those without properties have no bytes.
+    /// Throws InputError if so many elements do not fit in the rest of the file. Elements without
+    /// properties take no bytes.
     void require_room(const Element& element) const {
         std::size_t bytes_each = 0;
         for (const auto& property : element.properties)
@@ -209,7 +210,7 @@ class PlyReader {
             scanner_.require_room(element.count, bytes_each,
                                   "the number of elements " + in_quotes(element.name));
     }
-    /// In text, at least a digit and a blank.
+    /// Returns the least size of a number, in bytes. In text, that is a digit and a blank.
     std::size_t size_of(const Type& type) const { return is_binary_ ? type.size : 2; }
 
     void read_vertices(const Element& element) {
@@ -259,7 +260,8 @@ class PlyReader {
             for (std::size_t i = 0; i < count; ++i) scanner_.token("a property");
     }
 
-    /// That of a list, for which the file has room.
+    /// Reads the length of a list. Throws InputError if the list does not fit in the rest of the
+    /// file.
     std::size_t read_length(const Property& list) {
         const double length = list.count_type->read(scanner_, "the length of a list");
         if (length < 0)
@@ -272,9 +274,9 @@ class PlyReader {
 
     Scanner scanner_;
     SurfaceCollector collector_;
-    std::vector<std::string_view> words_;  ///< of the header line at hand
+    std::vector<std::string_view> words_;  ///< of the current header line
     std::vector<Element> elements_;
-    std::vector<std::int64_t> corners_;  ///< of the face at hand
+    std::vector<std::int64_t> corners_;  ///< of the current face
     std::uint64_t num_points_ = 0;
     bool has_format_ = false;
     bool is_binary_ = false;

@@ -7,9 +7,10 @@
 
 namespace incise::io {
 
-/// See read_surface. Version 1.0, ascii and binary of either byte order. Taken are x, y, z of the
-/// element `vertex` and the list `vertex_indices` (or `vertex_index`) of the element `face`, of
-/// any types and at any place among other properties and elements.
+/// Reads a PLY file of version 1.0, ascii or binary in either byte order; see read_surface(). Reads
+/// x, y, z of the element `vertex`, and the list `vertex_indices` (or `vertex_index`) of the
+/// element `face`. Skips other properties and elements. Coordinates may have any type, and indices
+/// any integer type.
 SurfaceFile read_ply(const InputFile& file);
 
 }  // namespace incise::io

@@ -20,10 +20,10 @@ namespace {
 constexpr bool must_swap = std::endian::native == std::endian::big;
 constexpr std::size_t title_size = 80;
 constexpr std::size_t head_size = title_size + sizeof(std::uint32_t);
-constexpr std::size_t triangle_size = 50;  // normal, three points, two bytes for other use
+constexpr std::size_t triangle_size = 50;  // normal, three points, two unused bytes
 
 bool is_text_stl(const InputFile& file) {
-    // A binary file of the wrong size may begin with "solid" too, but no text has zeros.
+    // A binary file of the wrong size may also begin with "solid", but no text has zero bytes.
     return !is_binary_stl(file) && Scanner(file).accept("solid") &&
            file.bytes.find('\0') == std::string::npos;
 }
@@ -53,7 +53,7 @@ class StlReader {
 
     void read_facet() {
         expect("normal", "'normal'");
-        // Not parsed: writers give the normal of a triangle without area as they please.
+        // Not parsed, since the normal of a triangle without area may be any text, such as "nan".
         for (int i = 0; i < 3; ++i) scanner_.token("a component of the normal");
         expect("outer", "'outer loop'");
         expect("loop", "'outer loop'");

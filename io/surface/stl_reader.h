@@ -7,13 +7,14 @@
 
 namespace incise::io {
 
-/// Whether the file has exactly the size, 84 + 50 n bytes, of a binary file with the n triangles
-/// that it announces. Its text may begin with anything, also with "solid" as in ascii files; a
-/// text in turn would announce so many triangles that it had to be larger than 7 GB to fit.
+/// True if the file has exactly the size of a binary file, 84 + 50 n bytes, where n is the number
+/// of triangles in its header. The title of a binary file may begin with any text, also with
+/// "solid" as in ascii files. An ascii file read as binary would have so large an n that its size
+/// could fit only above 7 GB.
 bool is_binary_stl(const InputFile& file);
 
-/// See read_surface. Several solids of an ascii file become one surface. Binary files are little
-/// endian, as all are that are called STL.
+/// Reads an STL file; see read_surface(). Several solids of an ascii file become one surface.
+/// Binary files are little endian.
 SurfaceFile read_stl(const InputFile& file);
 
 }  // namespace incise::io

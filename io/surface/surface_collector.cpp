@@ -1,4 +1,3 @@
-// Collects the points and polygons of a surface file, checked, as triangles.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/surface/surface_collector.h"
 
@@ -17,7 +16,7 @@ namespace incise::io {
 
 namespace {
 
-// Products of three such lengths, and sums of many of those, are still finite.
+// Products of three such lengths, and sums of many such products, are still finite.
 constexpr double largest_coordinate = 1e100;
 
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
@@ -64,7 +63,7 @@ void SurfaceCollector::add_polygon(std::span<const std::int64_t> corners) {
 
 void SurfaceCollector::merge_equal_points() {
     auto& [points, triangles] = surface_;
-    for (auto& point : points) point.array() += 0.0;  // turns -0 into 0, and nothing else
+    for (auto& point : points) point.array() += 0.0;  // changes -0 to 0
 
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -73,7 +72,7 @@ void SurfaceCollector::merge_equal_points() {
             if (points[a][i] != points[b][i]) return points[a][i] < points[b][i];
         return a < b;
     });
-    // Of equal points the first in `order` is the first in the file.
+    // Among equal points, the first in `order` is the first in the file.
     std::vector<std::size_t> first_equal(points.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         const bool is_new = i == 0 || points[order[i]] != points[order[i - 1]];
@@ -105,7 +104,7 @@ SurfaceFile SurfaceCollector::finish() {
             const Vec3& a = points[static_cast<std::size_t>(corners[0])];
             const Vec3& b = points[static_cast<std::size_t>(corners[1])];
             const Vec3& c = points[static_cast<std::size_t>(corners[2])];
-            return (b - a).cross(c - a).isZero(0.0);  // exactly so where corners are repeated
+            return (b - a).cross(c - a).isZero(0.0);  // exactly zero if corners are repeated
         });
     if (triangles.empty())
         throw InputError(file_.name() + ": none of the " + std::to_string(num_all) +

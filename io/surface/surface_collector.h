@@ -1,4 +1,4 @@
-// Collects the points and polygons of a surface file, checked, as triangles.
+// A collector of the points and polygons of a surface file, which checks and triangulates them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,31 +12,35 @@
 
 namespace incise::io {
 
+/// A collector of points and triangles. Its error messages name the last item of the scanner.
 class SurfaceCollector {
   public:
-    /// Both must outlive the collector. Refusals name the place of the scanner's last item.
+    /// @lifetime  the file and the scanner must outlive the collector
     SurfaceCollector(const InputFile& file, const Scanner& scanner)
         : file_(file), scanner_(scanner) {}
 
     std::size_t num_points() const { return surface_.points.size(); }
 
-    /// Throws InputError if a coordinate is not a number or too large.
+    /// Adds a point. Throws InputError if a coordinate is not a number, or beyond 1e100.
     void add_point(const Vec3& point);
-    /// The point whose coordinates are the first three words; throws InputError if they are not.
+    /// Adds the point whose coordinates are the first three words. Throws InputError also if these
+    /// are not numbers.
     void add_point(std::span<const std::string_view> words);
 
-    /// Throws InputError if a corner is none of the points 0 to num_points - 1 that the file has.
+    /// Throws InputError unless the corner is one of the points 0 to num_points - 1.
     void check_corner(std::int64_t corner, std::uint64_t num_points) const;
-    /// Throws InputError if there are fewer than three corners.
-    /// @pre the corners are points when finish() is called
+    /// Adds a polygon as a fan of triangles round its first corner. Throws InputError if there are
+    /// fewer than three corners.
+    /// @pre  the corners are numbers of points, at the latest when finish() is called
     void add_polygon(std::span<const std::int64_t> corners);
 
-    /// Makes points of equal coordinates one, numbered by their first occurrence; 0 equals -0.
-    /// Cost: O(n log n), whatever the points (a hash of them could be attacked).
+    /// Merges points with equal coordinates. The merged points are in the order of their first
+    /// occurrence; 0 equals -0. Cost: O(n log n) for any points. A hash table could be slowed down
+    /// by a file made for that.
     void merge_equal_points();
 
-    /// The surface without triangles that have no area, which are counted in a warning. Throws
-    /// InputError if no triangle is left. Afterwards the collector is empty.
+    /// Returns the surface without the triangles that have no area. A warning states their number.
+    /// Throws InputError if no triangle is left. The collector is empty afterwards.
     SurfaceFile finish();
 
   private:

@@ -1,4 +1,4 @@
-// Reading of surfaces from files. A further format is one more file and one more row here.
+// Reading of surfaces from files. A new format needs a file and a row of `surface_formats`.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/surface/surface_reader.h"
 
@@ -20,7 +20,7 @@ namespace {
 struct SurfaceFormat {
     const char* name;
     const char* suffix;
-    std::string_view magic;  ///< how its text begins, in lower case; empty: told by the suffix only
+    std::string_view magic;  ///< beginning of its text, in lower case; empty: suffix only
     SurfaceFile (*read)(const InputFile& file);
 };
 
@@ -35,7 +35,7 @@ constexpr const SurfaceFormat* stl = &surface_formats[0];
 constexpr std::size_t longest_surface_magic = 8;
 
 const SurfaceFormat* surface_format_of(const InputFile& file) {
-    // First, because the free text at its start may begin like any other format.
+    // First, because the title of a binary STL may begin like any other format.
     if (is_binary_stl(file)) return stl;
     const auto begin = std::find_if_not(file.bytes.begin(), file.bytes.end(), is_blank);
     const auto head =

@@ -1,4 +1,4 @@
-// A mesh with fields at one moment: what is written for viewers and other programs.
+// A mesh with fields at one moment, as written for viewers and other programs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace incise::io {
 
-/// Numbers at points or cells, in the order of the mesh: `components` values each, one point or
-/// cell after the other. float halves the file where its seven digits do.
+/// Numbers at points or cells, in the order of the mesh. Each point or cell has `components`
+/// consecutive values. Values of type float halve the size of the file, with seven digits.
 struct Field {
     using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>,
                                 std::vector<std::int32_t>>;
@@ -28,13 +28,14 @@ struct Field {
     }
 };
 
-/// The regions of the mesh are written as the cell array "region" and need no field.
+/// A mesh with its fields. The regions of the mesh are written as the cell array "region" and need
+/// no field.
 struct Frame {
     topology::MeshData mesh;          ///< its points are the current positions
-    std::vector<Field> point_fields;  ///< names differ
-    std::vector<Field> cell_fields;   ///< names differ, none is "region"
-    std::optional<double> time;       ///< seconds
-    std::string active_vectors;       ///< name of the point field that viewers warp by, or empty
+    std::vector<Field> point_fields;  ///< with different names
+    std::vector<Field> cell_fields;   ///< with different names, none of which is "region"
+    std::optional<double> time;       ///< s
+    std::string active_vectors;       ///< name of the point field for warping in viewers, or empty
 };
 
 enum class Compression { none, lz4, zlib, lzma };

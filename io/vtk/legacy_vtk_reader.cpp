@@ -1,6 +1,6 @@
 // Unstructured grids in VTK's legacy format (.vtk).
-// Source: "VTK File Formats", VTK User's Guide; the behaviour of VTK 9.1's writer, which splits
-// CELLS in offsets and connectivity from version 5 on.
+// Source: "VTK File Formats", VTK User's Guide; the writer of VTK 9.1, which divides CELLS into
+// offsets and connectivity from version 5 on.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/vtk/legacy_vtk_reader.h"
 
@@ -21,7 +21,7 @@ namespace incise::io {
 
 namespace {
 
-/// How the values of an array are laid down; `number` those that we can make use of.
+/// The layout of the values of an array. Only arrays of the layout `number` can be used.
 struct ValueType {
     enum class Layout : std::uint8_t { number, bits, strings };
     Layout layout = Layout::number;
@@ -45,7 +45,7 @@ ValueType value_type_of(Scanner& scanner, std::string_view name) {
          {"unsigned_long", {number, ScalarType::uint64}},
          {"vtktypeint64", {number, ScalarType::int64}},
          {"vtktypeuint64", {number, ScalarType::uint64}},
-         {"vtkidtype", {number, ScalarType::int32}},  // what VTK writes under this name
+         {"vtkidtype", {number, ScalarType::int32}},  // VTK writes 32 bits under this name
          {"float", {number, ScalarType::float32}},
          {"double", {number, ScalarType::float64}},
          {"unsigned_long_long", {number, ScalarType::uint64}}}};
@@ -55,7 +55,7 @@ ValueType value_type_of(Scanner& scanner, std::string_view name) {
     scanner.fail("type " + in_quotes(name) + " is not known; export without this array");
 }
 
-/// The name of an array, without the percent encoding that VTK gives it.
+/// Returns the name of an array without the percent encoding of VTK.
 std::string decoded_name(std::string_view name) {
     const auto digit = [](char c) -> int {
         if (c >= '0' && c <= '9') return c - '0';
@@ -221,7 +221,7 @@ class LegacyVtkReader {
              {"scalars", 1}}};
         constexpr ValueType bytes{};
         constexpr ValueType reals{ValueType::Layout::number, ScalarType::float32};
-        const auto& colors = scanner_.is_binary() ? bytes : reals;  // as the format has it
+        const auto& colors = scanner_.is_binary() ? bytes : reals;  // by definition of the format
         if (keyword == "lookup_table") {
             scanner_.token("the name of the table");
             skip_values(colors, 4 * read_count("the size of the table", 1), "the table");
@@ -254,7 +254,8 @@ class LegacyVtkReader {
                       "it has too many values, or the file is damaged");
     }
 
-    /// Behind the type of SCALARS: the number of components, if not 1, and the lookup table.
+    /// Reads what follows the type of SCALARS: the number of components, if it is not 1, and the
+    /// lookup table. Returns the number of components.
     std::size_t read_scalars_layout() {
         const auto rest = scanner_.rest_of_line();
         const auto begin = rest.find_first_not_of(" \t\r");
@@ -291,7 +292,7 @@ class LegacyVtkReader {
         }
     }
 
-    /// Takes the array if it is one that we look for, else skips it.
+    /// Reads an array if it is needed, else skips it.
     void read_array(const std::string& name, ValueType type, std::size_t num_components,
                     std::size_t num_tuples) {
         const auto count = product(num_components, num_tuples);
@@ -343,7 +344,7 @@ class LegacyVtkReader {
 
     std::size_t read_count(std::string_view what, std::size_t bytes_each) {
         if (bytes_each > 0) return scanner_.count(what, bytes_each);
-        const auto count = scanner_.number<std::uint32_t>(what);  // checked with what it multiplies
+        const auto count = scanner_.number<std::uint32_t>(what);  // its product is checked later
         return count;
     }
 
@@ -391,8 +392,8 @@ class LegacyVtkReader {
         }
     }
 
-    // Text: one a line. Binary: the two highest bits of the first byte tell in how many bytes
-    // the length of the string is written (8, 4, 2, 1).
+    // In text, one string a line. In binary, the two highest bits of the first byte give the size
+    // of the length of the string: 8, 4, 2 or 1 bytes.
     void skip_strings(std::size_t count, std::string_view what) {
         scanner_.require_room(count, 1, "the number of values of " + std::string(what));
         if (!scanner_.is_binary()) {
@@ -408,7 +409,7 @@ class LegacyVtkReader {
         }
     }
 
-    /// Up to the next blank line.
+    /// Skips all lines up to the next blank line.
     void skip_metadata() {
         scanner_.rest_of_line();
         while (scanner_.remaining() > 0 &&
@@ -422,18 +423,18 @@ class LegacyVtkReader {
     const ReadOptions& options_;
     Scanner scanner_;
     VtkPiece piece_;
-    std::vector<std::string> other_cell_arrays_;    ///< of whole numbers, one a cell
-    std::vector<std::string> other_vector_arrays_;  ///< of three components a cell
+    std::vector<std::string> other_cell_arrays_;    ///< with one whole number a cell
+    std::vector<std::string> other_vector_arrays_;  ///< with three components a cell
     Association association_ = Association::none;
     std::size_t num_tuples_ = 0;
-    bool has_offsets_ = false;  ///< the file is of version 5
+    bool has_offsets_ = false;  ///< true for version 5
     bool has_points_ = false;
     bool has_cells_ = false;
     bool has_types_ = false;
     bool has_regions_ = false;
     bool has_rest_positions_ = false;
     bool has_node_ids_ = false;
-    bool is_at_data_ = false;  ///< the line before the data is already read
+    bool is_at_data_ = false;  ///< true if the line before the data has been read
 };
 
 }  // namespace

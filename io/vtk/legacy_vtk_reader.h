@@ -7,8 +7,9 @@
 
 namespace incise::io {
 
-/// See read_mesh. Versions 1 to 5.x, ascii and binary; binary data are big-endian by definition,
-/// and `long` has 64 bits. Arrays of type `variant` cannot be read, nor skipped.
+/// Reads a legacy VTK file of version 1 to 5.x, ascii or binary; see read_mesh(). Binary data are
+/// big-endian by definition, and `long` has 64 bits. Throws InputError also if there is an array of
+/// an unknown type, such as `variant`, which cannot be skipped.
 MeshFile read_legacy_vtk(const InputFile& file, const ReadOptions& options);
 
 }  // namespace incise::io

@@ -1,4 +1,4 @@
-// In location of vtu_writer.cpp in a build without VTK.
+// Replacement of vtu_writer.cpp in a build without VTK.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/base/error.h"
 #include "incise/io/vtk/vtu_writer.h"

@@ -1,4 +1,4 @@
-// Compressed blocks that one file has and the next may have again.
+// A cache of compressed blocks, which consecutive files have in common.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,16 +11,19 @@
 
 namespace incise::io {
 
-/// Much of a frame is that of the frame before, to the byte, and compressing takes far longer than
-/// comparing: so the blocks of the last file are kept, as they are and compressed. Memory: that of
-/// the arrays of a file, and of the file.
+/// A cache of the blocks of the last file, unpacked and compressed. Consecutive frames have many
+/// equal blocks, and to compress a block takes far longer than to compare it. Memory: that of the
+/// arrays of a file, and of the file.
 class PackedBlocks {
   public:
-    /// What comes now belongs to the next file.
+    /// Begins the next file. Blocks from the file before the last one are dropped.
     void begin_file() { last_ = std::exchange(these_, {}); }
 
-    /// The block compressed: by pack(), unless this file or the last had it.
-    /// @param pack gives the same for the same block
+    /// Returns the compressed block. Calls pack() only if neither this file nor the last one had
+    /// the block.
+    /// @param block  the unpacked block
+    /// @param pack   must return the same result for the same block
+    /// @lifetime  the result is valid until the next begin_file()
     template <class Pack>
     std::string_view packed(std::string_view block, Pack pack) {
         if (const auto found = these_.find(block); found != these_.end()) return found->second;
@@ -31,8 +34,8 @@ class PackedBlocks {
 
   private:
     struct Hash {
-        using is_transparent = void;  // looks up a view without a copy
-        /// Of a part, which tells blocks apart well enough: those found are compared anyway.
+        using is_transparent = void;  // to look up a view without a copy
+        /// Returns the hash of 512 bytes. Blocks with the same hash are compared completely.
         std::size_t operator()(std::string_view block) const {
             return std::hash<std::string_view>()(block.substr(block.size() / 2, 512));
         }

@@ -55,7 +55,7 @@ std::string escape_json(std::string_view text) {
     return out;
 }
 
-/// The character that the text begins with, which is taken off it; nothing if it is no UTF-8.
+/// Removes the first character from a text and returns it. Returns nothing if it is not UTF-8.
 std::optional<char32_t> next_character(std::string_view& text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const std::size_t size = byte(0) < 0x80   ? 1
@@ -77,7 +77,7 @@ std::optional<char32_t> next_character(std::string_view& text) {
     return character;
 }
 
-/// In the folder of the run.
+/// Returns the path of a frame, relative to the folder of the run.
 std::string frame_name(const std::string& series, std::size_t index) {
     constexpr std::size_t num_digits = 6;  // at least
     auto digits = std::to_string(index);
@@ -87,8 +87,8 @@ std::string frame_name(const std::string& series, std::size_t index) {
 
 }  // namespace
 
-// What is no UTF-8, control characters and the last two of the first plane have no location in XML,
-// a slash has none in a name.
+// XML cannot contain text that is not UTF-8, most control characters, U+FFFE and U+FFFF. A file
+// name cannot contain a slash.
 void require_series_name(std::string_view name) {
     bool is_fit = !name.empty();
     for (std::string_view rest = name; is_fit && !rest.empty();) {
@@ -117,7 +117,8 @@ Series::Series(fs::path folder, std::string name, Compression compression,
     make_output_folder(folder_);
     make_output_folder(folder_ / "frames");
     remove_unfinished_files(folder_ / "frames");
-    // First out of the indexes, then off the disk: a kill in between leaves valid indexes.
+    // Frames are removed from the indexes before they are removed from the disk. A kill in between
+    // then leaves valid indexes.
     if (frames_.empty()) {
         remove_output_file(pvd_path());
         remove_output_file(folder_ / (name_ + ".vtu.series"));
@@ -140,7 +141,7 @@ void Series::add(const Frame& frame) {
 
 fs::path Series::pvd_path() const { return folder_ / (name_ + ".pvd"); }
 
-/// Removes the frames of this name (NAME_, digits, suffix) that are numbered `first` and above.
+/// Removes the frames of this name (NAME_, digits, suffix) with the number `first` or a higher one.
 void Series::remove_frames_from(std::size_t first) {
     const auto frames = folder_ / "frames";
     const auto prefix = name_ + "_";

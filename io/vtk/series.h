@@ -1,4 +1,4 @@
-// The frames of a run, and the indexes by which ParaView opens them as a film.
+// The frames of a run, and the indexes with which ParaView opens them as an animation.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,38 +15,41 @@
 
 namespace incise::io {
 
-/// A frame of a run that goes on.
+/// A frame that a run has written.
 struct FrameWritten {
     double time = 0.0;  ///< s
     BytesWritten file;
     static void archive(auto& ar, auto& self) { ar(self.time, self.file); }
 };
 
-/// Throws InputError unless files can be called so, and an index in XML can name them.
+/// Throws InputError unless the name is a valid file name and can be written in XML.
 void require_series_name(std::string_view name);
 
-/// Throws InputError, naming the file, what has become of it and what to do, unless these are the
-/// first frames of the series of that name. Cost: that of reading them, which is small beside what
-/// it took to compress them.
+/// Checks that these are the first frames of the series with this name. Throws InputError that
+/// names the file, how it differs and a remedy. Cost: that of reading the frames, which is small
+/// compared with that of compressing them.
 void require_frames(const std::filesystem::path& folder, const std::string& name,
                     std::span<const FrameWritten> frames);
 
-/// FOLDER/frames/NAME_000000.vtu and so on, and the indexes FOLDER/NAME.pvd and
-/// FOLDER/NAME.vtu.series. Every file is written whole or not at all, a frame before the indexes:
-/// at any moment, also after a kill, they name only frames that are there.
-/// Paths in the indexes are relative, so that the folder may be moved.
-/// Every function throws OutputError if a file cannot be written or removed.
+/// A writer of the files FOLDER/frames/NAME_000000.vtu and so on, and of the indexes
+/// FOLDER/NAME.pvd and FOLDER/NAME.vtu.series.
+///
+/// Every file is written as write_file() does, a frame before the indexes. At any moment, also
+/// after a kill, the indexes name only frames that exist. Paths in the indexes are relative, so
+/// that the folder can be moved. Every function throws OutputError if a file cannot be written or
+/// removed.
 class Series {
   public:
-    /// Makes the folders. `kept` are the first frames of a former run that goes on here, which
-    /// require_frames() has found; all other frames and indexes of that name are removed, so that
-    /// no stale frame mixes in. Throws InputError if the name does not do.
+    /// Makes the folders, and removes all frames with this name except `kept`. These are the first
+    /// frames of a run that is resumed. The indexes then name only the kept frames. Throws
+    /// InputError as require_series_name() does.
+    /// @pre  require_frames() has succeeded for the kept frames
     Series(std::filesystem::path folder, std::string name,
            Compression compression = Compression::zlib, std::span<const FrameWritten> kept = {});
 
-    /// Writes the frame and the indexes. Time of a frame without one: 0.
+    /// Writes the frame and the indexes. A frame without a time has the time 0. Throws
+    /// std::invalid_argument if the time is not finite, or not later than that of the last frame.
     /// Cost: that of the frame, and of an index line for each frame so far.
-    /// @pre the time is finite, and later than that of the last frame
     void add(const Frame& frame);
 
     std::span<const FrameWritten> frames() const { return frames_; }

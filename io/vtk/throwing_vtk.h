@@ -1,7 +1,6 @@
-// VTK's writer of unstructured grids and its compressors, made safe where memory ends: as VTK has
-// them, the writer goes on to free pointers that it never set when its stream in memory is full,
-// and the compressors write through a null pointer. These throw std::bad_alloc at once. And made
-// faster where runs that write many frames would wait.
+// VTK's writer of unstructured grids and its compressors, with a defined failure if memory is
+// exhausted. VTK's own classes free uninitialized pointers or write through a null pointer. The
+// classes here throw std::bad_alloc. They are also faster, for runs that write many frames.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -27,7 +26,7 @@
 
 namespace incise::io {
 
-/// As long as it lives, VTK does not print its complaints: exceptions say them.
+/// An object that disables VTK's printed warnings during its lifetime. Errors are exceptions here.
 class SilentVtk {
   public:
     SilentVtk() : before_(vtkObject::GetGlobalWarningDisplay()) {
@@ -41,8 +40,8 @@ class SilentVtk {
     int before_;
 };
 
-/// As long as it lives, VTK makes no threads: the other cores are the simulation's, and where no
-/// more threads can be had VTK would fail.
+/// An object that keeps VTK from creating threads during its lifetime. The other cores are for the
+/// simulation, and VTK fails if it cannot create a thread.
 class SequentialVtk {
   public:
     SequentialVtk() : before_(vtk_threads().GetBackend()) {
@@ -53,14 +52,14 @@ class SequentialVtk {
     SequentialVtk& operator=(const SequentialVtk&) = delete;
 
   private:
-    // What vtkSMPTools calls, whose header is no C++20.
+    // The functions that vtkSMPTools calls. The header of vtkSMPTools does not compile as C++20.
     static vtk::detail::smp::vtkSMPToolsAPI& vtk_threads() {
         return vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
     }
     std::string before_;
 };
 
-/// VTK's stream of base64, but for writing more than four digits at a time.
+/// A replacement for VTK's base64 stream, which writes only four digits at a time.
 class FastBase64Stream final : public vtkOutputStream {
   public:
     static vtkSmartPointer<FastBase64Stream> make() {
@@ -74,7 +73,7 @@ class FastBase64Stream final : public vtkOutputStream {
     }
     int Write(const void* data, std::size_t size) override {
         waiting_.append(static_cast<const char*>(data), size);
-        const std::size_t count = waiting_.size() / 3 * 3;  // of one array, padded at its end only
+        const std::size_t count = waiting_.size() / 3 * 3;  // padding only at the end of an array
         const int is_written = encode(std::string_view(waiting_).substr(0, count));
         waiting_.erase(0, count);
         return is_written;
@@ -90,6 +89,7 @@ class FastBase64Stream final : public vtkOutputStream {
     std::string waiting_, text_;
 };
 
+/// A grid writer that throws if its stream in memory fails.
 class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
   public:
     static vtkSmartPointer<ThrowingGridWriter> make() {
@@ -100,19 +100,22 @@ class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
     }
 
   protected:
-    /// The first thing that is written.
+    // Called after the stream is created and before any array is written.
     int WriteHeader() override {
         Stream->exceptions(std::ios::badbit);
         return vtkXMLUnstructuredGridWriter::WriteHeader();
     }
 };
 
-/// Of a compressor of VTK, which has room enough: it fails only for lack of memory. The name of its
-/// class stays VTK's, since files have it.
+/// A compressor of VTK that throws std::bad_alloc if it fails. Its buffer is large enough, so that
+/// it fails only for lack of memory. It keeps VTK's class name, which is written to files.
 template <class VtkCompressor>
 class ThrowingCompressor final : public VtkCompressor {
   public:
-    /// @param known blocks that need not be compressed again, if any; must outlive it
+    /// Makes a compressor.
+    /// @param level  the compression level of VTK
+    /// @param known  blocks that need not be compressed again, or null
+    /// @lifetime  `known` must outlive the compressor
     static vtkSmartPointer<ThrowingCompressor> make(int level, PackedBlocks* known) {
         const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor(known));
         made->InitializeObjectBase();
@@ -143,15 +146,15 @@ class ThrowingCompressor final : public VtkCompressor {
     PackedBlocks* known_;
 };
 
-/// VTK's compressor of zlib streams, by libdeflate, which takes half the time. The name of its
-/// class stays VTK's, since files have it.
+/// A compressor of zlib streams with libdeflate, which takes half the time of VTK's. It keeps VTK's
+/// class name, which is written to files.
 class FastZlibCompressor : public vtkZLibDataCompressor {
   protected:
     std::size_t CompressBuffer(const unsigned char* data, std::size_t size, unsigned char* packed,
                                std::size_t space) override {
         if (!compressor_) compressor_.reset(libdeflate_alloc_compressor(CompressionLevel));
         if (!compressor_) throw std::bad_alloc();
-        // It wants some bytes more than VTK gives it, and leaves them free.
+        // libdeflate requires a buffer some bytes larger than VTK's, but does not fill it.
         bytes_.resize(libdeflate_zlib_compress_bound(compressor_.get(), size));
         const auto num_packed =
             libdeflate_zlib_compress(compressor_.get(), data, size, bytes_.data(), bytes_.size());

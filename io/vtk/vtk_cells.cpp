@@ -1,4 +1,3 @@
-// The cells of VTK's unstructured grids, in XML or legacy files, turned into a mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/vtk/vtk_cells.h"
 

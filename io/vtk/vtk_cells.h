@@ -1,4 +1,4 @@
-// The cells of VTK's unstructured grids, in XML or legacy files, turned into a mesh.
+// Conversion of the cells of VTK's unstructured grids, from XML or legacy files, to a mesh.
 // Source: vtkCellType.h of VTK 9.1; "VTK File Formats", VTK User's Guide.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -14,41 +14,42 @@
 
 namespace incise::io {
 
-/// The arrays of one piece of an unstructured grid, with lengths that fit one another and
-/// contents unchecked.
+/// The arrays of one piece of an unstructured grid. Their lengths are consistent. Their contents
+/// are not checked.
 struct VtkPiece {
     std::vector<double> coordinates;                     ///< three a point
     std::vector<std::int64_t> types;                     ///< one a cell
     std::vector<std::int64_t> offsets;                   ///< #cells + 1, from 0
     std::vector<std::int64_t> connectivity;              ///< points of the cells
-    std::vector<double> regions;                         ///< one a cell, or empty: all 0
+    std::vector<double> regions;                         ///< one a cell; if empty, all are 0
     std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
-    /// A frame of a run, which may have been cut: points have a rest_position and a node_id.
+    /// True for a frame of a run, in which the mesh may be cut. Its points have the arrays
+    /// rest_position and node_id.
     bool is_frame = false;
 };
 
-/// Throws InputError unless offsets ascend from 0: then all are in range if the last is.
-/// `location` is what the message begins with.
+/// Throws InputError unless the offsets begin with 0 and do not decrease. All offsets are then in
+/// range if the last one is. The message begins with `location`.
 void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& location);
 
-/// Appends the points, the volume cells and their vectors of the piece; checks kinds, sizes, point
-/// numbers and regions. `location` is what messages begin with: the file, and the piece if there
-/// are several.
-/// @pre check_offsets has passed, and the last offset is connectivity.size()
+/// Appends the points, the volume cells and the vectors of a piece. Checks kinds, sizes, point
+/// numbers and regions, and throws InputError. Messages begin with `location`: the file, and the
+/// piece if there are several.
+/// @pre  check_offsets() has passed, and the last offset is connectivity.size()
 void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& file,
                   CellCollector& collector);
 
-/// Throws InputError: the file has no cell array `name`, which was asked for. `others` are those
-/// from which regions could be taken: of whole numbers, one a cell.
+/// Throws InputError: the file has no cell array `name`, which the user wants as regions. `others`
+/// are the cell arrays that could be regions: one whole number a cell.
 [[noreturn]] void refuse_missing_regions(const std::string& location, const std::string& name,
                                          const std::vector<std::string>& others);
 
-/// Throws InputError: the file has no cell array `name` of vectors, which was asked for. `others`
-/// are those that it has.
+/// Throws InputError: the file has no cell array `name` of vectors, which the user wants. `others`
+/// are the cell arrays of vectors in the file.
 [[noreturn]] void refuse_missing_vectors(const std::string& location, const std::string& name,
                                          const std::vector<std::string>& others);
 
-/// A collector with VTK's words.
+/// Makes a collector whose messages have the words of VTK.
 CellCollector make_vtk_collector(const std::string& file);
 
 }  // namespace incise::io

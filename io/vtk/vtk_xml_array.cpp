@@ -1,4 +1,3 @@
-// The DataArray elements of VTK's XML files, in every encoding.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/vtk/vtk_xml_array.h"
 
@@ -35,7 +34,7 @@ std::optional<ScalarType> scalar_type_of(std::string_view name) {
     return std::nullopt;
 }
 
-/// The text of an element: comments and child elements may divide it.
+/// Returns the text of an element, which comments and child elements may divide into parts.
 std::string text_of(pugi::xml_node element) {
     std::string text;
     for (const auto child : element.children())
@@ -54,7 +53,7 @@ std::string_view next_word(std::string_view& text) {
     return word;
 }
 
-/// How many bytes the text can stand for, at most.
+/// Returns an upper bound on the number of bytes that the text encodes.
 std::size_t capacity(std::string_view text, bool is_raw) {
     return is_raw ? text.size() : text.size() / 4 * 3 + 3;
 }
@@ -99,7 +98,7 @@ std::vector<T> VtkXmlArrays::values(pugi::xml_node array, std::size_t count) con
     if (!type) fail(array, "type " + in_quotes(type_name) + " is not a number type of VTK");
     if (std::integral<T> && !is_integer(*type))
         fail(array, "holds " + std::string(type_name) + ", but must hold whole numbers");
-    if (count == 0) return {};  // writers differ in what they leave in an empty array
+    if (count == 0) return {};  // the contents of an empty array depend on the writer
     if (std::string_view(array.attribute("format").as_string("ascii")) == "ascii")
         return parse_text<T>(array, count);
     return convert_scalars<T>(binary(array, count * size_of(*type)), *type, encoding_.swap_bytes);
@@ -184,8 +183,8 @@ std::string VtkXmlArrays::read_plain(pugi::xml_node array, std::string_view text
     return bytes;
 }
 
-// Layout: the number of blocks, the unpacked size of a block, that of the last block if it is
-// another (else 0), the packed size of each block; then the blocks.
+// Layout: the number of blocks, the unpacked size of a block, the size of the last block if it
+// differs (else 0), the packed size of each block; then the blocks.
 std::string VtkXmlArrays::read_blocks(pugi::xml_node array, std::string_view text, bool is_raw,
                                       std::size_t num_bytes) const {
     const auto word_size = size_of(encoding_.header_type);

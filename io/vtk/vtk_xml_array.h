@@ -16,29 +16,32 @@
 
 namespace incise::io {
 
-/// How the arrays of one file are laid down.
+/// The encoding of the arrays of a file.
 struct VtkXmlEncoding {
     bool swap_bytes = false;
     ScalarType header_type = ScalarType::uint32;  ///< of the byte counts before binary data
     Compressor compressor = Compressor::none;
-    std::string_view appended;  ///< what follows the underscore of AppendedData
+    std::string_view appended;  ///< the data after the underscore of AppendedData
     bool is_appended_raw = false;
 };
 
+/// A reader of the DataArray elements of one file.
 class VtkXmlArrays {
   public:
-    /// The file, and what `encoding` points to, must outlive this.
+    /// @lifetime  the file, and the data of `encoding.appended`, must outlive this object
     VtkXmlArrays(const InputFile& file, VtkXmlEncoding encoding)
         : file_(file), encoding_(encoding) {}
 
-    /// Exactly `count` values of the array, real or whole. Throws InputError if it holds another
-    /// number of them, or is damaged; nothing is allocated that the file cannot fill.
+    /// Returns the `count` values of an array of numbers. Throws InputError if the
+    /// array has another number of values, or is damaged. The memory is bounded by the size of the
+    /// file.
     std::vector<double> reals(pugi::xml_node array, std::size_t count) const;
+    /// The same for an array of whole numbers.
     std::vector<std::int64_t> integers(pugi::xml_node array, std::size_t count) const;
 
-    /// An attribute that counts something; a missing one is an error.
+    /// Returns the value of an attribute that is a count. Throws InputError if it is missing.
     std::size_t count_attribute(pugi::xml_node element, const char* name) const;
-    /// NumberOfComponents, 1 if not given.
+    /// Returns NumberOfComponents, or 1 if it is missing.
     std::size_t num_components(pugi::xml_node array) const;
 
     /// Throws InputError with the line and the name of the element.

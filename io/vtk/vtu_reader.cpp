@@ -21,14 +21,14 @@ namespace incise::io {
 
 namespace {
 
-/// A file cut in two: the head is XML, the appended data need not be.
+/// A file in two parts: the head, which is XML, and the appended data, which may be binary.
 struct VtuText {
-    std::string_view head;  ///< up to and with the start tag of AppendedData
+    std::string_view head;  ///< up to the start tag of AppendedData, inclusive
     std::string_view appended;
     bool is_cut = false;
 };
 
-/// Where the start tag of AppendedData begins, or npos. In comments anything may stand.
+/// Returns the beginning of the start tag of AppendedData outside comments, or npos.
 std::size_t find_appended(std::string_view bytes) {
     auto at = bytes.find('<');
     while (at != bytes.npos && !bytes.substr(at).starts_with("<AppendedData")) {
@@ -43,7 +43,7 @@ VtuText cut_appended(const InputFile& file) {
     const auto tag = find_appended(bytes);
     if (tag == bytes.npos) return {bytes, {}, false};
     const auto tag_end = bytes.find('>', tag);
-    if (tag_end == bytes.npos) return {bytes, {}, false};  // the XML parser will complain
+    if (tag_end == bytes.npos) return {bytes, {}, false};  // the XML parser reports it
     auto begin = tag_end + 1;
     while (begin < bytes.size() && is_blank(bytes[begin])) ++begin;
     if (begin == bytes.size() || bytes[begin] != '_')
@@ -153,7 +153,7 @@ class VtuReader {
             const auto ends = arrays.integers(required(arrays, cells, node, "offsets"), num_cells);
             piece.offsets.insert(piece.offsets.end(), ends.begin(), ends.end());
             check_offsets(piece.offsets, location);
-            // Bounds the size asked for next; no compressor packs more densely.
+            // Bounds the allocation below. LZMA has the highest compression ratio.
             const auto most = file_.bytes.size() * max_expansion(Compressor::lzma);
             if (static_cast<std::uint64_t>(piece.offsets.back()) > most)
                 throw InputError(location + ": the last cell ends at offset " +
@@ -185,7 +185,7 @@ class VtuReader {
         append_piece(piece, location, result_, collector_);
     }
 
-    /// The array of the points at rest: those of a frame of a run are in rest_position.
+    /// Returns the array of the rest positions: rest_position in a frame of a run, else Points.
     static pugi::xml_node points_of(const VtkXmlArrays& arrays, pugi::xml_node piece) {
         const auto rest = named(piece.child("PointData"), "rest_position");
         if (rest && arrays.num_components(rest) == 3) return rest;
@@ -201,7 +201,7 @@ class VtuReader {
         return parent.find_child_by_attribute("DataArray", "Name", name.c_str());
     }
 
-    /// The names of the arrays with one whole number a cell.
+    /// Returns the names of the arrays with one whole number a cell.
     static std::vector<std::string> whole_number_arrays(const VtkXmlArrays& arrays,
                                                         pugi::xml_node cell_data) {
         std::vector<std::string> names;

@@ -7,8 +7,9 @@
 
 namespace incise::io {
 
-/// See read_mesh. Encodings: ascii, base64 inline or appended, raw appended; plain or compressed
-/// with zlib, LZ4 or LZMA. Several pieces are put one behind the other, their points unmerged.
+/// Reads a .vtu file; see read_mesh(). Encodings: ascii, base64 inline or appended, raw appended;
+/// plain or compressed with zlib, LZ4 or LZMA. Several pieces are put one after the other, without
+/// merging their points.
 MeshFile read_vtu(const InputFile& file, const ReadOptions& options);
 
 }  // namespace incise::io

@@ -50,7 +50,8 @@ constexpr unsigned char vtk_cell_type(CellKind kind) {
     return VTK_EMPTY_CELL;
 }
 
-/// A VTK array that shares the memory of `values`, which must outlive it and is only read.
+/// Returns a VTK array that shares the memory of `values` and only reads it.
+/// @lifetime  the values must outlive the array
 template <class T>
 vtkSmartPointer<vtkAOSDataArrayTemplate<T>> view_as_array(std::span<const T> values,
                                                           int components) {
@@ -127,7 +128,7 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     points->SetData(view_as_array<double>({coordinates, 3 * mesh.points.size()}, 3));
     grid->SetPoints(points);
 
-    // 32 bits save a fifth of the file, and hold whatever mesh fits in memory today.
+    // With 32 bits the file is a fifth smaller.
     const auto largest = std::max(mesh.points.size(), mesh.corners.size());
     if (largest <= std::numeric_limits<std::int32_t>::max())
         set_cells<vtkTypeInt32Array>(*grid, mesh);
@@ -169,8 +170,8 @@ vtkSmartPointer<vtkDataCompressor> make_compressor(Compression compression, Pack
     return nullptr;
 }
 
-/// The text without VTK's notes on arrays (ranges of norms): nobody needs them, and VTK writes them
-/// as the process's locale would have it.
+/// Returns the text without the InformationKey elements (ranges of norms). They are not needed, and
+/// VTK writes their numbers in the locale of the process.
 std::string without_notes(std::string_view text) {
     constexpr std::string_view end_mark = "</InformationKey>";
     std::string result;

@@ -28,14 +28,14 @@ const Record* find_record(const std::vector<Record>& records, Id id) {
     return it != records.end() && it->id == id ? &*it : nullptr;
 }
 
-/// The parts that an edit has made, by the element that there was before it.
+/// Returns the parts that an edit has added, by the element that existed before the edit.
 std::map<ElementId, std::vector<ElementId>> parts_by_ancestor(const ChangeSet& changes) {
     std::map<ElementId, std::vector<ElementId>> parts;
     std::map<ElementId, ElementId> ancestors;  // of the parts
     for (const ElementRecord& record : changes.elements_added) {
         if (record.id.index() < changes.element_capacity_before || !record.parent.is_valid())
             continue;
-        // The parent may be such a part itself, of a lower id.
+        // The parent may itself be such a part; it then has a lower id.
         const auto known = ancestors.find(record.parent);
         const ElementId ancestor = known == ancestors.end() ? record.parent : known->second;
         ancestors[record.id] = ancestor;
@@ -44,8 +44,9 @@ std::map<ElementId, std::vector<ElementId>> parts_by_ancestor(const ChangeSet& c
     return parts;
 }
 
-/// An element before an edit that divided it: tells where in it the nodes of its parts lie. Places
-/// at rest tell its corners, as the same edit may have copied or merged their nodes.
+/// An element as it was before the edit that divided it. It tells where in the element the nodes of
+/// its parts lie. Corners are compared by rest position, since the same edit may have copied or
+/// merged their nodes.
 class Ancestor {
   public:
     Ancestor(const Mesh& mesh, const ChangeSet& changes, ElementId e)
@@ -62,8 +63,8 @@ class Ancestor {
         for (const NodeId n : corners) rest_positions_.push_back(mesh.rest_position(n));
     }
 
-    /// Whether a part's face lies in the ancestor's face of the same number. It cannot lie in
-    /// another one: parts keep the numbers of corners.
+    /// True if a face of a part lies in the face of the ancestor with the same number. It cannot
+    /// lie in another face, since parts keep the local numbers of corners.
     bool has_in_face(FaceId part) {
         unsigned face = 0, corners = 0;
         for (const int k : traits(mesh_.kind(part.element)).face(part.face)) {
@@ -74,7 +75,8 @@ class Ancestor {
     }
 
   private:
-    // The corners of the ancestor between which the node lies, as bits; all bits for a stranger.
+    // Returns the corners of the ancestor between which the node lies, as bits. All bits are set
+    // if the node does not come from the corners.
     unsigned surrounding(NodeId n) {
         const auto corner =
             std::find(rest_positions_.begin(), rest_positions_.end(), mesh_.rest_position(n));
@@ -104,8 +106,8 @@ void ElementSet::apply(const Mesh&, const ChangeSet& changes) {
     while (!members_.empty() && members_.back().index() >= changes.element_capacity_after)
         members_.pop_back();
     for (const ElementRecord& record : changes.elements_added)
-        // New ids lie above all others, so the list stays sorted. One that comes back is a member
-        // if it is still listed.
+        // New ids are above all others, so that the list stays sorted. An element that an undo
+        // brings back is still in the list if it was a member.
         if (record.id.index() >= changes.element_capacity_before &&
             std::binary_search(members_.begin(), members_.end(), record.parent))
             members_.push_back(record.id);
@@ -118,7 +120,7 @@ FaceSet::FaceSet(std::vector<FaceId> faces) {
 
 void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.element_capacity_after < changes.element_capacity_before) {
-        // Undone: the parts go, and what they took comes back.
+        // The edit is an undo: the parts are removed, and their faces return to the members.
         const ElementId end(changes.element_capacity_after);
         while (!members_.empty() && members_.back().face.element >= end) members_.pop_back();
         for (Member& member : members_)
@@ -140,13 +142,12 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
             if (!ancestor.has_in_face(member->face)) member->left_to = parts.front();
         }
     }
-    // New ids lie above all others.
+    // New ids are above all others, so that the list stays sorted.
     std::sort(born.begin(), born.end());
     for (const FaceId f : born) members_.push_back({f, {}});
 }
 
-// Members that an undone edit took back may be listed beyond what is there: who asks passes over
-// them.
+// Members may have ids above those of the mesh; their users skip them.
 void ElementSet::require_fit() const {
     if (!std::ranges::all_of(members_, &ElementId::is_valid) || !std::ranges::is_sorted(members_))
         throw InputError("a selection has elements that cannot be");

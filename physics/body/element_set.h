@@ -9,18 +9,19 @@
 
 namespace incise::physics {
 
-/// The parts of a divided member are members. Members that die stay listed, so that an undone edit
-/// finds them again: ask the mesh who is alive.
+/// A set of elements. The parts of a divided member become members. Dead members stay in the set,
+/// so that an edit can be undone: Mesh::is_alive tells which members are alive.
 class ElementSet {
   public:
     ElementSet(std::vector<ElementId> elements = {});
 
-    /// In ascending order.
+    /// Returns the members in ascending order.
     const std::vector<ElementId>& members() const { return members_; }
 
+    /// Follows an edit; `mesh` is the mesh after the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    /// Throws InputError if a member cannot be an element.
+    /// Throws InputError if an id is invalid or if the members are not in ascending order.
     void require_fit() const;
     static void archive(auto& ar, auto& self) { ar(self.members_); }
 
@@ -28,24 +29,25 @@ class ElementSet {
     std::vector<ElementId> members_;
 };
 
-/// Where an edit divides the element of a face, the set goes on to just the faces of the parts that
-/// lie in that face. Members that are gone or inside stay listed: ask the mesh.
+/// A set of faces. If an edit divides the element of a member, the faces of its parts that lie in
+/// that face become members. Faces of dead elements and faces inside the body stay in the set:
+/// the mesh tells which members are on the boundary.
 class FaceSet {
   public:
     struct Member {
         FaceId face;
-        /// Valid when a division took the face to other elements as a whole: the first part that
-        /// the edit made. What now has the member's number lies inside the former element.
+        /// Valid if a division moved the whole face to other elements: the first new part. The face
+        /// that now has the number of the member lies inside the former element.
         ElementId left_to;
         static void archive(auto& ar, auto& self) { ar(self.face, self.left_to); }
     };
 
     FaceSet(std::vector<FaceId> faces = {});
 
-    /// In ascending order of faces.
+    /// Returns the members in ascending order of faces.
     const std::vector<Member>& members() const { return members_; }
 
-    /// @param mesh after the edit
+    /// Follows an edit; `mesh` is the mesh after the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     /// Throws InputError if a member cannot be a face of the mesh.

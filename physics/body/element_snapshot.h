@@ -1,4 +1,4 @@
-// The elements of a model at one moment, whose results another thread can work out.
+// A copy of the elements of a model at one time, from which another thread can compute results.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,14 +11,16 @@
 
 namespace incise::physics {
 
-/// Stays as it is while the model moves on and is edited. It is made and destroyed on the thread
-/// that does this: see ElementStore::share_blocks. Cost: copies of positions and history.
+/// The state of all elements at one time. Later steps and edits of the model do not change it.
+/// @thread It must be created and destroyed on the thread that edits the model; see
+/// ElementStore::share_blocks. Other threads may call results().
 class ElementSnapshot {
   public:
+    /// Cost: copies of the positions and of the history.
     explicit ElementSnapshot(const Model& model);
 
-    /// Of all elements.
-    /// @param elements all of them, in ascending order
+    /// Returns the results of all elements, in the order of `elements`: all living elements of the
+    /// model at the time of the snapshot, in ascending order.
     std::vector<ElementResult> results(std::span<const ElementId> elements) const;
 
   private:

@@ -1,4 +1,4 @@
-// Forces on the nodes of a body other than those of its own elements: what acts from outside.
+// Interface of outer forces: forces on the nodes of a body other than those of its elements.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,43 +12,51 @@
 
 namespace incise::physics {
 
-/// What a term of the forces may read of the body.
+/// The parts of a body that a force term may read.
 struct BodyView {
     const topology::Mesh& mesh;
     const ElementStore& elements;
     std::span<const double> masses;  ///< lumped, kg, by node id
 };
 
-/// One term of the forces from outside, such as the loads. Its work counts as external work. It is
-/// a function of positions and time alone, so that each solver can ask for it anywhere. Statics
-/// does not take it for what holds a piece of the body: constraints must do that.
+/// One term of the outer forces, such as the loads.
+///
+/// The forces depend only on positions and time, so that each solver can compute them at any
+/// positions. Their work counts as external work. Statics does not regard a force term as a support
+/// of a connected component: only constraints can hold it.
 class ForceTerm {
   public:
     virtual ~ForceTerm() = default;
 
-    /// Prepares for add_forces() and visit_tangents() on the body as it is; called before these
-    /// after each edit, and before each step.
+    /// Prepares add_forces() and visit_tangents() for the current body. The model calls it before
+    /// these, at least once after each edit and once in each step.
     virtual void update(const BodyView&) {}
 
-    /// Adds the forces, N, at `time`, s, on the nodes of a range.
-    /// @param positions current, m, by node id
-    /// @param forces    N, by node id
-    /// @thread different ranges at the same time
+    /// Adds the forces at `time`, s, on the nodes of a range.
+    /// @param body       the body
+    /// @param range      the nodes
+    /// @param positions  current, m, by node id
+    /// @param time       s
+    /// @param forces     N, by node id; added to
+    /// @thread Several threads may call it at the same time, for different ranges.
     virtual void add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
                             double time, std::span<Vec3> forces) const = 0;
 
-    /// Hands over the symmetric part of minus the derivative of the forces by the positions; for
-    /// implicit steps and statics. Nothing if the forces do not depend on positions.
+    /// Passes the symmetric part of the tangent (minus the derivative of the forces by the
+    /// positions) to the sink, for implicit steps and statics. By default, it passes nothing, as is
+    /// right for forces that do not depend on positions.
     virtual void visit_tangents(std::span<const Vec3> /*positions*/, double /*time*/,
                                 TangentSink&) const {}
 
-    /// What the term adds to the bound on the stiffness of a node, N/m, of which the stable step of
-    /// explicit steps is found: at least the sum of a row of absolute values of the derivative. It
-    /// may change with edits only.
+    /// Returns the contribution of the term to the bound on the stiffness of a node, N/m, which
+    /// gives the stable step. For each component of the node, it must be at least the sum of the
+    /// absolute values in that row of the derivative. It may change only with edits.
     virtual double stiffness_bound(NodeId) const { return 0.0; }
 
     /// Follows an edit that the body has followed.
-    /// @param touched nodes whose mass may have changed, in ascending order
+    /// @param body     the body after the edit
+    /// @param changes  the record of the edit
+    /// @param touched  nodes whose mass may have changed, in ascending order
     virtual void apply(const BodyView& body, const topology::ChangeSet& changes,
                        std::span<const NodeId> touched) = 0;
 };

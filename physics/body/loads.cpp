@@ -17,7 +17,7 @@ bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
            !mesh.neighbor(f).is_valid();
 }
 
-/// Area vector of a face that ends there, outwards; for a quadrilateral that of its bilinear patch.
+/// Returns the outward area vector of a face; for a quadrilateral that of its bilinear patch.
 Vec3 area_vector(const PressedCorner& face, std::span<const Vec3> x) {
     const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p]]; };
     if (face.num_corners == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
@@ -33,19 +33,20 @@ PressedCorner first_corner(const topology::Mesh& mesh, FaceId f) {
     return corner;
 }
 
+/// Calls visit(face) for the members that carry a load: whole faces that are on the boundary.
 template <class Visit>
 void for_loaded(const FaceSet& faces, const topology::Mesh& mesh, Visit visit) {
     for (const FaceSet::Member& member : faces.members())
         if (!member.left_to.is_valid() && is_on_boundary(mesh, member.face)) visit(member.face);
 }
 
-/// Shares of nodes, added up by node in the order in which they come.
+/// Sums of shares by node, in the order in which the shares are added.
 class ShareSums {
   public:
     void add(NodeId n, double share) {
         shares_.push_back({static_cast<std::uint32_t>(n.index()), share});
     }
-    /// In ascending order of nodes, each once.
+    /// Returns one sum for each node, in ascending order of nodes.
     std::vector<NodalContribution> sums() && {
         std::stable_sort(
             shares_.begin(), shares_.end(),
@@ -65,7 +66,7 @@ class ShareSums {
     std::vector<NodalContribution> shares_;
 };
 
-/// What the nodes have of a load, in its own order of summation: that of its members.
+/// Computes the shares of the nodes in a load. They are summed in the order of its members.
 struct ShareFinder {
     const BodyView& body;
 
@@ -100,7 +101,7 @@ struct ShareFinder {
     std::vector<NodalContribution> operator()(const PressureLoad&) const { return {}; }
 };
 
-/// N for a share of one.
+/// The force on a node with a share of 1, N.
 struct ForcePerShare {
     Vec3 operator()(const NodalLoad& load) const { return load.force; }
     Vec3 operator()(const TractionLoad& load) const { return load.traction; }
@@ -123,7 +124,7 @@ std::vector<PressedCorner> pressed_corners(const FaceSet& faces, const topology:
     return pressed;
 }
 
-/// Those of a list in ascending order of nodes that are of the range.
+/// Returns the entries of a list, in ascending order of nodes, whose nodes are in the range.
 template <class Entry>
 std::span<const Entry> entries_of(const std::vector<Entry>& entries, NodeRange range) {
     const auto is_before = [](const Entry& entry, std::size_t node) { return entry.node < node; };
@@ -131,12 +132,13 @@ std::span<const Entry> entries_of(const std::vector<Entry>& entries, NodeRange r
     return {begin, std::lower_bound(begin, entries.end(), range.end, is_before)};
 }
 
-/// Tangents of one pressure load on one face, found by the first of its corners.
+/// Passes the tangent of a pressure on one face, which is given by its first corner.
 void visit_tangent(const PressedCorner& face, double pressure, std::span<const Vec3> x,
                    TangentSink& sink) {
     const std::size_t size = face.num_corners, num_rows = 3 * size;
     const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p % size]]; };
-    // With the area vector's derivative by corner p, v -> edge x v / 2, in all rows alike.
+    // The derivative of the area vector by corner p is v -> edge x v / 2. All corners of the face
+    // have the same force, so that all rows are equal.
     constexpr int most = 12;
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most> K(num_rows,
                                                                                          num_rows);
@@ -158,7 +160,8 @@ double factor_of(const Load& load, double time) {
     return load.factor.is_empty() ? 1.0 : load.factor.at(time);
 }
 
-// Anew for every family of copies with a member among `touched`.
+// Computes the shares again for every family of copies with a member among `touched`. A family has
+// all copies of one node of the first selection.
 void share(NodalLoad& load, const BodyView& body, std::span<const NodeId> touched) {
     const auto& members = load.nodes.members();
     load.shares.resize(members.size(), 0.0);

@@ -1,4 +1,4 @@
-// Forces from outside: on nodes, on faces of the surface, on the volume.
+// Gravity and loads: forces on nodes, on faces of the boundary and on the volume.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -17,66 +17,68 @@
 
 namespace incise::physics {
 
-/// The same force, N, on each selected node. Copies of a node share its force by mass, so that
-/// opening a face neither adds force nor tears the copies apart. A node born between selected ones
-/// has no share: the force stays what it was, and where it was.
+/// The same force on each selected node. Copies of a node share its force in proportion to their
+/// masses, so that opening a face neither adds force nor pulls the copies apart. A new node between
+/// selected nodes has no share, so that the total force and its distribution stay the same.
 struct NodalLoad {
     NodeSet nodes = {};
-    Vec3 force = Vec3::Zero();
-    std::vector<double> shares = {};  ///< of the nodes' members; Loads keeps it
+    Vec3 force = Vec3::Zero();        ///< N, on each node of the first selection
+    std::vector<double> shares = {};  ///< of the force, by member; maintained by Loads
     static void archive(auto& ar, auto& self) { ar(self.nodes, self.force, self.shares); }
 };
 
-/// Force per rest area, Pa, in a fixed direction, on faces of the boundary.
+/// A force per rest area, in a fixed direction, on faces of the boundary.
 struct TractionLoad {
     FaceSet faces = {};
-    Vec3 traction = Vec3::Zero();
+    Vec3 traction = Vec3::Zero();  ///< Pa
     static void archive(auto& ar, auto& self) { ar(self.faces, self.traction); }
 };
 
-/// Pressure, Pa, positive inwards, on the current area along the current normal.
+/// A pressure on faces of the boundary: a force per current area, against the current normal.
 struct PressureLoad {
     FaceSet faces = {};
-    double pressure = 0.0;
+    double pressure = 0.0;  ///< Pa, positive inwards
     static void archive(auto& ar, auto& self) { ar(self.faces, self.pressure); }
 };
 
-/// Force per rest volume, N/m3.
+/// A force per rest volume of elements.
 struct BodyLoad {
     ElementSet elements = {};
-    Vec3 force = Vec3::Zero();
+    Vec3 force = Vec3::Zero();  ///< N/m3
     static void archive(auto& ar, auto& self) { ar(self.elements, self.force); }
 };
 
+/// A load on a body, with a factor that depends on time.
 struct Load {
     std::string name = {};
     std::variant<NodalLoad, TractionLoad, PressureLoad, BodyLoad> kind = {};
-    TimeCurve<double> factor = {};  ///< scales the load in time; empty: 1
+    TimeCurve<double> factor = {};  ///< scales the load; empty: 1
 
-    /// Throws InputError if it acts on what cannot be in the mesh.
+    /// Throws InputError if the load acts on nodes, faces or elements that cannot be in the mesh.
+    /// It also throws if a nodal load has another number of shares than of nodes.
     void require_fit(const topology::Mesh& mesh) const;
     static void archive(auto& ar, auto& self) { ar(self.name, self.kind, self.factor); }
 };
 
-/// What one node has of all that a load acts on: a part of the members (nodal forces), m2
-/// (traction) or m3 (body forces).
+/// The share of one node in a load: a number (nodal loads), m2 (tractions) or m3 (body forces).
+/// The nodal load is the share times the force of the load.
 struct NodalContribution {
     std::uint32_t node;
     double share;
 };
 
-/// A corner of a face under pressure, with all of the face's corners.
+/// One corner of a face under pressure, with all corners of the face.
 struct PressedCorner {
-    std::uint32_t node;
-    std::uint32_t num_corners;  ///< 3 or 4
-    std::array<std::uint32_t, 4> corners;
+    std::uint32_t node;                    ///< of this corner
+    std::uint32_t num_corners;             ///< 3 or 4
+    std::array<std::uint32_t, 4> corners;  ///< nodes of the face; its normal points outwards
 };
 
 /// Gravity and all loads on a body.
 class Loads final : public ForceTerm {
   public:
-    /// Nodal loads that have shares keep them: those of a body that goes on.
-    /// @param gravity m/s2
+    /// Takes gravity, m/s2, and the loads of a body. Nodal loads without shares get their shares
+    /// from the masses; those of a restored body keep theirs.
     Loads(const Vec3& gravity, std::vector<Load> loads, const BodyView& body);
 
     const Vec3& gravity() const { return gravity_; }  ///< m/s2
@@ -88,27 +90,29 @@ class Loads final : public ForceTerm {
         loads_[i].factor = std::move(factor);
     }
 
-    /// Finds what nodes bear, if there were edits.
-    /// Cost: nothing without edits, else in proportion to the selections.
+    /// Computes the shares of the nodes again after edits and changes of the list of loads.
+    /// Cost: proportional to the selections; O(1) if nothing has changed.
     void update(const BodyView& body) override;
 
-    /// Faces and elements that are gone, and faces that have come to lie inside, carry nothing.
+    /// Adds gravity and the nodal loads. Removed elements, faces of removed elements, and faces
+    /// that are no longer on the boundary carry no load.
     /// Cost: proportional to the nodes of the range.
+    /// @pre  update() was called since the last edit or change of the list of loads
     void add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
                     double time, std::span<Vec3> forces) const override;
 
-    /// Of pressure, as the others do not depend on positions.
+    /// Passes the tangents of pressure loads. The other loads do not depend on positions.
+    /// @pre  as for add_forces()
     void visit_tangents(std::span<const Vec3> positions, double time,
                         TangentSink& sink) const override;
 
-    /// Carries the selections through an edit: parts of loaded faces and elements are loaded as
-    /// these were.
+    /// Follows an edit: parts of loaded faces and elements carry the same load as the whole did.
     void apply(const BodyView& body, const topology::ChangeSet& changes,
                std::span<const NodeId> touched) override;
 
   private:
     static void share_out(Load& load, const BodyView& body);
-    /// What nodes bear of a load, in ascending order of these: a step does not look into the mesh.
+    /// A load by nodes, in ascending order, so that a step does not need to read the mesh.
     struct AssembledLoad {
         std::vector<NodalContribution> shares;
         std::vector<PressedCorner> pressed;
@@ -117,8 +121,8 @@ class Loads final : public ForceTerm {
 
     Vec3 gravity_;
     std::vector<Load> loads_;
-    std::vector<AssembledLoad> assembled_;  // of each load
-    bool is_up_to_date_ = false;            // the burdens, with the mesh
+    std::vector<AssembledLoad> assembled_;  // by load
+    bool is_up_to_date_ = false;            // true if assembled_ agrees with loads_ and the mesh
 };
 
 }  // namespace incise::physics

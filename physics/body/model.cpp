@@ -22,7 +22,7 @@ double diagonal(const topology::Mesh& mesh) {
     return box.diagonal().norm();
 }
 
-/// Throws InputError, as the next one does.
+/// Reads the fibres into the table. Throws InputError if their number does not suit the mesh.
 MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh, ArchiveReader& ar) {
     const bool has_fibres = std::ranges::any_of(table.materials, &Material::has_fibres);
     ar(table.fibres);
@@ -69,8 +69,8 @@ void Model::resize(std::size_t num_nodes) {
     stable_step_.truncate(num_nodes);
 }
 
-// Mass and stiffness of a node, summed over its star in ascending order of elements: the same
-// terms in the same order as in a model built afresh, hence the same bits.
+// Mass and stiffness of a node are summed over its star in ascending order of elements. This is the
+// order of a new model, so that the result is the same bit for bit.
 void Model::gather(NodeId n) {
     double mass = 0.0, stiffness = 0.0;
     mesh_.star(n, star_);
@@ -140,7 +140,7 @@ void Model::edit_elements(const ChangeSet& changes) {
     }
 }
 
-/// Those whose mass or stiffness may have changed, in ascending order.
+/// Returns the nodes whose mass or stiffness may have changed, in ascending order.
 std::vector<NodeId> Model::touched_nodes(const ChangeSet& changes) const {
     std::vector<NodeId> touched;
     const auto touch = [&](std::span<const NodeId> nodes) {
@@ -148,7 +148,7 @@ std::vector<NodeId> Model::touched_nodes(const ChangeSet& changes) const {
     };
     const auto touch_all_of = [&](const topology::ElementRecord& record) {
         touch(record.corners);
-        // What it was divided from, or joins again, has another shape and mass now.
+        // A division, or the undo of one, also changes the shape and mass of the parent.
         const ElementId parent = record.parent;
         if (parent.is_valid() && parent.index() < changes.element_capacity_after)
             touch(mesh_.corners(parent));
@@ -161,7 +161,8 @@ std::vector<NodeId> Model::touched_nodes(const ChangeSet& changes) const {
     }
     for (const NodeRecord& record : changes.nodes_removed) {
         touched.push_back(record.id);
-        // What it was merged into has its mass, even if the elements have parted from it since.
+        // State::apply has added the mass of a merged node to that of its survivor. The mass of the
+        // survivor must be summed again, even if its elements have been separated from it since.
         if (record.num_sources == 1) touched.push_back(record.sources[0].node);
     }
     std::sort(touched.begin(), touched.end());
@@ -234,7 +235,7 @@ void Model::save(ArchiveWriter& ar) const {
 }
 
 Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time)
-    // Braces, as they read the archive from left to right.
+    // Braces guarantee that the arguments read the archive from left to right.
     : Model{mesh, read_fibres(std::move(table), mesh, ar), read_boundary_conditions(mesh, ar)} {
     restore_state(ar, time);
 }

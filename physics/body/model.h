@@ -1,4 +1,5 @@
-// The body in motion: state, masses, forces, integrator. It follows the mesh through edits.
+// The mechanical model of a body: state, lumped masses, forces and the explicit step. It follows
+// the edits of its mesh. Source: HEML 2015, section 3; docs/theory.md, Masses and time steps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -24,7 +25,7 @@
 
 namespace incise::physics {
 
-/// What acts on a body besides its own elasticity.
+/// The gravity, damping, constraints and loads of a body.
 struct BoundaryConditions {
     Vec3 gravity = Vec3::Zero();  ///< m/s2
     double damping = 0.0;         ///< mass-proportional, 1/s
@@ -32,23 +33,23 @@ struct BoundaryConditions {
     std::vector<Load> loads;
 };
 
-/// Totals over the body. Angular momentum is about the origin.
+/// Sums over the body.
 struct Totals {
-    double mass = 0.0;            ///< kg
-    double rest_volume = 0.0;     ///< m3
-    double kinetic_energy = 0.0;  ///< J, of the velocities as they stand
-    double elastic_energy = 0.0;  ///< J; of viscous elements that of the long-time moduli
-    double gravity_energy = 0.0;  ///< J, zero at the origin
-    Vec3 momentum = Vec3::Zero();
-    Vec3 angular_momentum = Vec3::Zero();
-    Vec3 centre_of_mass = Vec3::Zero();  ///< m
+    double mass = 0.0;                     ///< kg
+    double rest_volume = 0.0;              ///< m3
+    double kinetic_energy = 0.0;           ///< J, of the current velocities
+    double elastic_energy = 0.0;           ///< J; of viscous elements that of the long-time moduli
+    double gravity_energy = 0.0;           ///< J, zero at the origin
+    Vec3 momentum = Vec3::Zero();          ///< kg m/s
+    Vec3 angular_momentum = Vec3::Zero();  ///< kg m2/s, about the origin
+    Vec3 centre_of_mass = Vec3::Zero();    ///< m
     static void archive(auto& ar, auto& self) {
         ar(self.mass, self.rest_volume, self.kinetic_energy, self.elastic_energy,
            self.gravity_energy, self.momentum, self.angular_momentum, self.centre_of_mass);
     }
 };
 
-/// What a constraint does to the body: force, N, and moment about the constraint's point, N m.
+/// The force that a constraint exerts on the body, N, and its moment about Constraint::point, N m.
 struct Reaction {
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
 
@@ -60,24 +61,29 @@ struct Reaction {
     static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
 };
 
-/// Lumped masses at the nodes of a mesh, elastic elements between them. All arrays are indexed by
-/// node id; slots of dead nodes keep their last values, so that an undone edit finds them again.
+/// A body with lumped masses at the nodes of a mesh and elastic elements between them.
+///
+/// All arrays are indexed by node id. Dead nodes have no mass. They keep their last positions and
+/// velocities, so that an edit can be undone.
 class Model {
   public:
-    /// Starts at rest in the rest positions, with the forces of that state.
-    /// @param mesh must outlive the model, which reads it and never changes it
-    /// Throws InputError: see ElementStore, Constraints.
+    /// Builds a body at rest in the rest positions, and computes the forces of this state.
+    /// The model reads the mesh and never changes it.
+    /// Throws InputError as ElementStore and Constraints do.
+    /// @lifetime The mesh must outlive the model.
     Model(const topology::Mesh& mesh, const MaterialTable& table,
           BoundaryConditions boundary_conditions = {});
 
-    /// Goes on from what save() has written of a model of this mesh.
-    /// @param table  of that model; its fibres come from the archive
-    /// @param time   of the state, s
-    /// To the bit the same model then.
+    /// Restores a model from the bytes that save() has written. The result equals the saved model
+    /// bit for bit.
     /// Throws InputError for the data of another mesh. Cost: that of a new model.
+    /// @param mesh   the mesh of the saved model
+    /// @param table  the materials of the saved model; the fibres are read from the archive
+    /// @param ar     the reader, at the beginning of the model
+    /// @param time   the time of the saved state, s
     Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time);
 
-    /// How many threads compute, at least 1; of no influence on any result. At first one.
+    /// Sets the number of threads, at least 1. It does not change any result. A new model has one.
     void set_num_threads(int n) { workers_ = Workers(n); }
     int num_threads() const { return workers_.num_threads(); }
 
@@ -87,204 +93,238 @@ class Model {
     std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
     std::span<const double> masses() const { return masses_; }                ///< kg
 
-    /// Replaces the state; sizes are those of node_capacity. The forces follow. Viscous elements
-    /// take it for an instantaneous strain, to which the moduli as entered answer.
+    /// Replaces the state and computes its forces. Viscous elements treat the change as an
+    /// instantaneous strain, so that they respond with their instantaneous moduli.
+    /// @param positions   by node id, Mesh::node_capacity() of them, m
+    /// @param velocities  likewise, m/s
+    /// @param time        the time for the loads, s
     void set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities, double time);
 
-    /// What viscous elements remember; empty if there are none. Like the positions it belongs to
-    /// the state: integrate() brings it to the positions that it leaves.
+    /// Returns the history of the viscous elements; empty if there are none. It is a part of the
+    /// state, and each step advances it together with the positions.
     const ViscousHistory& history() const { return state_.history(); }
-    /// Replaces it after set_state(); values as of history().values(). Forces are those of before
-    /// until compute_forces is called.
+    /// Replaces the history, for example after set_state(). The forces stay as they are until
+    /// compute_forces() is called.
+    /// @param values  in the order of ViscousHistory::values()
     void set_history(std::span<const double> values) { state_.change().history.set_values(values); }
 
-    /// Elastic, viscous and outer forces at the present positions and `time`: functions of these
-    /// and of the history as it stands.
+    /// Computes the elastic, viscous and outer forces at the current state and at `time`, s.
     void compute_forces(double time);
 
-    /// Does the work of totals() and min_volume_ratio() and, on elements that no edit touches
-    /// before it is called, of compute_forces() in one pass: for who needs both, as an edit's books
-    /// and the step around it do. Results are to the bit what they are without.
+    /// Computes in one pass what totals(), min_volume_ratio() and compute_forces() need of the
+    /// elements. It saves time if both energies and forces are needed, as in a step with an edit.
+    /// If an edit follows, compute_forces() computes the forces of the changed blocks again. All
+    /// results are the same bit for bit as without this call.
     void compute_totals_and_forces();
 
-    /// One step of semi-implicit Euler, from the forces last computed:
-    /// v += dt f / m, damped implicitly; x += dt v. Supported components go to where they have
-    /// to be at time + dt. Source: HEML 2015, eq. (32).
-    /// Throws MotionFailure, naming an element, the time and the likely cause, if the state is no
-    /// longer finite or a node has moved by more than the body's size in this step.
+    /// Makes one step of symplectic (semi-implicit) Euler with the forces last computed:
+    /// v += dt f / m, damped implicitly; x += dt v. Prescribed components move to their targets at
+    /// time + dt. Source: HEML 2015, eq. (32).
+    /// Throws MotionFailure if the state is no longer finite, or if a node has moved by more than
+    /// size() in this step. The message names an element, the time and the likely cause.
     void integrate(double time, double dt);
-    /// The same step in two stages, between which somebody else may change the velocities. The
-    /// first: velocities of the end of the step, those of prescribed components too; the second:
-    /// positions and all else. With nothing between them the bits are those of integrate().
+    /// Makes the first of two stages that together equal integrate(): sets the velocities to those
+    /// of the end of the step. The velocities may be changed before the second stage, drift().
+    /// Without such changes, the results are those of integrate() bit for bit.
     void kick(double time, double dt);
-    /// Changes the velocities of free components between kick() and drift().
-    /// @param impulses N s, by node id. Work of their mean power counts as external; those on
-    ///                 prescribed components change the reaction of their constraints instead
+    /// Changes the velocities of free components between kick() and drift(). The work of an impulse
+    /// counts as external; it is the impulse times the mean of the velocities before and after it.
+    /// An impulse on a prescribed component changes the reaction of the constraint instead.
+    /// @param impulses  N s, by node id
     void give_impulses(std::span<const Vec3> impulses);
+    /// Makes the second stage of the step: sets the positions and everything else. It throws as
+    /// integrate() does.
+    /// @pre  kick() was called with the same arguments
     void drift(double time, double dt);
 
-    /// For implicit integration and statics, which find the end of a step by themselves and hand it
-    /// over. A step may come in several parts: begin_step() goes before the first.
+    /// Begins a step of an implicit solver or of statics, which finds the end of the step itself.
+    /// Such a step may consist of several parts; see take_step().
     void begin_step();
-    /// Goes to the given positions and velocities (m, m/s, by node id), dt after the present ones;
-    /// infinite in statics. Viscous elements follow, whose energy comes back, J; forces are those
-    /// of before until compute_forces is called.
-    /// @param reactions of constraints on their nodes, N, by node id, zero in free components
+    /// Moves to the end of a step, or of a part of it, and advances the history. Returns the energy
+    /// that viscosity dissipated, J. The forces stay as they are until compute_forces() is called.
+    /// @param positions   at the end, m, by node id
+    /// @param velocities  at the end, m/s, by node id
+    /// @param reactions   forces of the constraints on their nodes, N, by node id; zero in free
+    ///                    components
+    /// @param dt          time since the present state, s; infinite in statics
+    /// @pre  begin_step() was called before the first part
     double take_step(std::span<const Vec3> positions, std::span<const Vec3> velocities,
                      std::span<const Vec3> reactions, double dt);
     /// Adds to external_work() and dissipated_energy(), J.
     void record_work(double external_work, double dissipated_energy);
 
-    /// Follows an edit of the mesh; incremental, and equal bit for bit to a model built afresh on
-    /// the edited mesh with the same state and history. Copied nodes copy their state, a node
-    /// between others takes a mean of theirs with the weights of the record, merged ones keep
-    /// momentum. Dividing an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of
-    /// mass and the elastic energy of all laws (not of springs), but lumped masses lose angular
-    /// momentum m t (1 - t) (x_b - x_a) x (v_b - v_a) and kinetic energy m t (1 - t) |v_b - v_a|^2
-    /// / 2, m being a quarter of the mass of the elements round the edge. Parts of an element
-    /// inherit its fibres and its history of viscosity. The inverse of an edit, applied before
-    /// anything moved, gives the former state back to the bit. Forces are those of before until
-    /// compute_forces is called. Throws InputError for a change out of turn. Cost: proportional to
-    /// the stars touched.
-    /// @param mesh  of the model
+    /// Follows an edit of the mesh. The update is incremental. The result equals bit for bit a
+    /// model that is built on the edited mesh with the same state and history.
+    ///
+    /// A copy of a node gets the state of that node. A node between others gets the weighted mean
+    /// of their states, with the weights of its record. Merged nodes keep their momentum. Parts of
+    /// a divided element inherit its fibres and its viscous history.
+    ///
+    /// Division of an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of mass and,
+    /// except for springs, the elastic energy. The lumped masses lose the angular momentum
+    /// m t (1 - t) (x_b - x_a) x (v_b - v_a). They lose the kinetic energy
+    /// m t (1 - t) |v_b - v_a|^2 / 2. Here m is a quarter of the mass of the elements at the edge.
+    ///
+    /// The inverse of an edit, applied before any motion, restores the former state bit for bit.
+    /// The forces stay as they are until compute_forces() is called.
+    /// Throws InputError for an edit out of turn. Cost: proportional to the touched stars.
+    /// @param mesh     the mesh of the model, after the edit
+    /// @param changes  the record of the edit
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    /// Adds a constraint at the end of the list. Throws InputError, and changes nothing, if it
-    /// prescribes what another one does. Cost: O(#nodes) of it.
+    /// Appends a constraint to the list. Throws InputError, and changes nothing, if another
+    /// constraint prescribes the same component of a node. Cost: O(n) in the nodes of the mesh and
+    /// of all constraints.
     void add_constraint(Constraint constraint);
-    /// Removes constraint `i`; those behind it move up. Cost: O(n) in the nodes of all constraints.
+    /// Removes constraint `i`; the indices of later constraints decrease by one. Cost as for
+    /// add_constraint().
     void remove_constraint(std::size_t i);
-    /// Gives the grip of constraint `i` another way; see Constraint::grip.
+    /// Replaces the motion of the grasp that is constraint `i`; see Constraint::grip.
     void set_grip(std::size_t i, TimeCurve<Pose> grip) {
         constraints_.set_grip(i, std::move(grip));
     }
 
-    /// Adds a load at the end of the list. Forces are those of before until compute_forces is
-    /// called, as with the next two.
+    /// Appends a load to the list. The forces stay as they are until compute_forces() is called.
     void add_load(Load load);
-    /// Removes load `i`; those behind it move up.
+    /// Removes load `i`; the indices of later loads decrease by one. The forces stay as they are
+    /// until compute_forces() is called.
     void remove_load(std::size_t i);
-    /// Gives load `i` another factor of time.
+    /// Replaces the factor of load `i`. The forces stay as they are until compute_forces() is
+    /// called.
     void set_load_factor(std::size_t i, TimeCurve<double> factor) {
         loads_.set_factor(i, std::move(factor));
     }
     const Loads& loads() const { return loads_; }
 
-    /// Adds a term to the forces from outside. Archives do not hold it: who restores a model adds
-    /// it again. Cost: O(n), for the stable step.
+    /// Adds a term to the outer forces. Archives do not contain added terms: after a restore, the
+    /// caller must add them again. Cost: O(n), for the stable step.
     void add_force_term(std::unique_ptr<ForceTerm> term);
     /// Takes the added terms of a model that this one replaces, and computes the forces anew: for
     /// a model that was just read from an archive. Cost: O(n).
     void take_force_terms(Model& former, double time);
 
-    /// Everything but the mesh and the materials: state, history, work, reactions, fibres,
-    /// constraints and loads. Cost: O(n).
+    /// Writes everything but the mesh, the materials and the added force terms: state, history,
+    /// work, reactions, fibres, constraints and loads. Cost: O(n).
     void save(ArchiveWriter& ar) const;
 
     const ElementStore& elements() const { return elements_; }
     const Constraints& constraints() const { return constraints_; }
     double damping() const { return damping_; }  ///< 1/s
-    double size() const { return body_size_; }   ///< diagonal of the box around it at the start, m
+    double size() const { return body_size_; }   ///< diagonal of the box around the rest mesh, m
     std::span<const Vec3> outer_forces() const {
         return outer_forces_;
-    }  ///< N, of loads, gravity and added terms
-    /// Sets `forces` (N, by node id) to those from outside at other positions (m) and `time`.
-    /// @pre compute_forces or begin_step was called since the last edit
+    }  ///< N, of gravity, loads and added terms
+    /// Sets `forces` (N, by node id) to the outer forces at other positions (m) and at `time`, s.
+    /// @pre  compute_forces() or begin_step() was called since the last edit or change of loads
     void outer_forces_at(std::span<const Vec3> positions, double time,
                          std::span<Vec3> forces) const;
-    /// See ForceTerm::visit_tangents; @pre likewise.
+    /// Passes the tangents of the outer forces to `sink`; see ForceTerm::visit_tangents.
+    /// @pre  compute_forces() or begin_step() was called since the last edit or change of loads
     void visit_outer_tangents(std::span<const Vec3> positions, double time,
                               TangentSink& sink) const;
-    /// J; of viscous elements that of the long-time moduli.
+    /// Returns the elastic energy, J; of viscous elements that of the long-time moduli.
+    /// @thread One thread at a time.
     double elastic_energy() const;
-    /// Grows with every change of what the body consists of: edits (undone ones count twice),
-    /// constraints and loads that are added or removed.
+    /// Returns a number that grows with each edit, also with each undo of an edit. It also grows
+    /// when a constraint, a load or a force term is added, or a constraint or a load is removed.
     std::uint64_t structure_version() const { return structure_version_; }
 
-    /// How far the fastest node went in the last step, m.
+    /// Returns the largest distance that a node moved in the last step, m. If the step had several
+    /// parts, it is the sum over the parts.
     double largest_move() const { return largest_move_; }
 
-    /// Bound on dt at rest, seconds; see StableStep. With damping the bound only grows.
+    /// Returns the bound on explicit steps at rest, s; see StableStep. The bound ignores damping,
+    /// which only increases the stable step.
     double stable_step() const { return stable_step_.value(); }
 
-    /// What bounds the stiffness of a living node at rest, by which the stable step is found, N/m.
+    /// Returns the bound on the stiffness of a living node at rest, N/m, from which the stable step
+    /// is computed.
     double stiffness_bound(std::size_t node) const {
         return stable_step_.quotient(node) * masses_[node];
     }
 
-    /// The same bound for the element alone, were its nodes no other's, seconds.
+    /// Returns the stable step of one element if its nodes had no other element, s.
     double element_stable_step(ElementId e) const;
 
-    /// The element with the lowest id at the node that sets the stable step.
+    /// Returns the element with the lowest id at the node that sets the stable step.
     ElementId limiting_element() const {
         return mesh_.incident_element(NodeId(stable_step_.limiting_node()));
     }
-    /// Energy that a strain of the order of one would take, J: what rounding errors of the elastic
-    /// energy are small against.
+    /// Returns the sum of modulus times rest volume over the elements, J. This is the order of the
+    /// elastic energy at a strain of one. Rounding errors of the elastic energy are small against
+    /// it.
     double stiffness_energy() const;
 
-    /// Not by several threads at the same time. Cost: O(#nodes + #elements) after nodes have moved;
-    /// after an edit without that what it touched, and a look at each range and block.
+    /// Returns the sums over the body. Cost: O(#nodes + #elements) after a motion. After an edit
+    /// without motion, only the touched ranges of nodes and blocks of elements are computed again.
+    /// @thread One thread at a time.
     Totals totals() const;
+    /// Returns the least volume ratio of all elements. Cost and threads as for totals().
     double min_volume_ratio() const;
-    /// Present volume over that at rest, less 1. Not a number without elements.
+    /// Returns current volume / rest volume - 1. Not a number without elements.
     double volume_change() const;
-    /// Of the node that is farthest from where it is at rest, m.
+    /// Returns the largest distance of a node from its rest position, m.
     double max_displacement() const;
     ElementResult element_result(ElementId e) const {
         return elements_.block_of(mesh_, e).result(e, positions(), history());
     }
 
-    /// By element id, the direction of the fibres at rest, zero where there are none; empty if no
-    /// material has fibres. Parts of a divided element have that of the whole.
+    /// Returns the direction of the fibres at rest, by element id. It is zero where there are none.
+    /// Parts of a divided element have the direction of the whole. Empty if no material has fibres.
     std::span<const Vec3> fibres() const { return elements_.fibres(); }
 
-    /// Density of what the elements of a region are made of, kg/m3.
+    /// Returns the density of the material of a region, kg/m3.
     double density(int region) const { return elements_.density(region); }
 
-    /// Work since the start, joules: of gravity, loads and constraints; and what damping and
-    /// viscosity took. What viscous elements can still give back counts as taken until they do.
+    /// Returns the work of gravity, loads, added terms and constraints since the start, J.
     double external_work() const { return external_work_; }
+    /// Returns the energy that damping, viscosity and the rules of implicit steps and statics have
+    /// taken since the start, J. Energy that viscous elements can still return counts as dissipated
+    /// until they return it.
     double dissipated_energy() const { return dissipated_energy_; }
 
     std::size_t num_constraints() const { return constraints_.size(); }
     const std::string& constraint_name(std::size_t i) const { return constraints_.name(i); }
-    /// What each constraint did to the body during the last step.
+    /// Returns the reaction of each constraint in the last step, or in the last part of it.
     std::span<const Reaction> reactions() const { return reactions_; }
 
     const topology::Mesh& mesh() const { return mesh_; }
 
   private:
+    /// The motion of one node in a step.
     struct NodeStep {
-        Vec3 x, v;    ///< at its end
-        double work;  ///< that constraints do, J
+        Vec3 x, v;    ///< at the end of the step, m and m/s
+        double work;  ///< of constraints, J
     };
-    /// Takes the body through a step by move_range(range, reactions), which returns the sums of its
-    /// nodes and adds to the reactions of all constraints; then adds up, and viscosity follows.
+    /// Makes a step by calls of move_range(range, reactions), which returns the sums over the nodes
+    /// of the range and adds to the reactions of all constraints. Then adds up the ranges and
+    /// advances the viscous history.
     template <class MoveRange>
     void step_ranges(double time, double dt, MoveRange move_range);
-    /// Integrates the nodes of a range, which touches no others.
-    /// @param reactions of all constraints; added to
+    /// Moves the nodes of a range, and no others. Adds to `reactions`, those of all constraints.
     StepSums move_nodes(NodeRange range, const State::Values& values, double time, double dt,
                         std::span<Reaction> reactions);
-    /// Likewise one that is alive.
-    /// @param slowing 1/(1 + damping dt)
+    /// Moves one living node; see move_nodes(). `slowing` is 1/(1 + damping dt).
     StepSums move_node(std::size_t n, const State::Values& values, double time, double dt,
                        double slowing, std::span<Reaction> reactions);
-    /// How many nodes from the given one on, a multiple of nodes_together, are alive and held by
-    /// nothing, before `end`.
+    /// Returns the number of consecutive nodes from `n` on, before `end`, that are alive and have
+    /// no constraint, rounded down to a multiple of nodes_together.
     std::size_t num_free_nodes(std::size_t n, std::size_t end) const;
-    /// Leads the constrained components of node `n` to where they have to be at time + dt.
-    /// @param v     m/s, of the beginning of the step
-    /// @param free  what the node does without constraints
-    /// @param force N, on the node without the constraints
+    /// Moves the prescribed components of node `n` to their targets at time + dt.
+    /// @param n          the node
+    /// @param v          velocity at the beginning of the step, m/s
+    /// @param time       beginning of the step, s
+    /// @param dt         length of the step, s
+    /// @param force      force on the node without constraints, N
+    /// @param free       motion of the node without constraints
+    /// @param reactions  of all constraints; added to
     NodeStep constrain_node(std::size_t n, const Vec3& v, double time, double dt, const Vec3& force,
                             NodeStep free, std::span<Reaction> reactions) const;
-    /// Constraints also bear what an impulse does to prescribed components: `force`, N, over the
-    /// step.
+    /// Adds the reactions that balance an impulse on the prescribed components of node `n` at `x`.
+    /// `force` is the impulse divided by the length of the step, N.
     void add_reactions_to_impulse(std::size_t n, const Vec3& force, const Vec3& x,
                                   std::span<Reaction> reactions) const;
-    /// Adds what a constraint does to a component of a node at x, N, to its reaction.
+    /// Adds a force, N, along one axis on a node at `x` to the reaction of a constraint.
     void add_reaction(int constraint, int component, double force, const Vec3& x,
                       std::span<Reaction> reactions) const;
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
@@ -315,14 +355,14 @@ class Model {
     Constraints constraints_;
     Loads loads_;
     std::vector<std::unique_ptr<ForceTerm>> added_terms_;
-    std::vector<Reaction> reactions_;  // of each constraint
+    std::vector<Reaction> reactions_;  // by constraint
     double external_work_ = 0.0, dissipated_energy_ = 0.0, largest_move_ = 0.0;
     std::vector<StepSums> step_sums_;        // scratch, by range of nodes
-    std::vector<Reaction> range_reactions_;  // scratch, of all constraints by range of nodes
+    std::vector<Reaction> range_reactions_;  // scratch, by range of nodes, then by constraint
     std::vector<ElementId> star_;            // scratch
     std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
     std::vector<Vec3> previous_velocities_;  // from kick to drift, by node id
-    std::vector<Vec3> impulses_;             // likewise, N s; empty: none
+    std::vector<Vec3> impulses_;             // from kick to drift, by node id, N s; empty: none
 };
 
 }  // namespace incise::physics

@@ -1,5 +1,5 @@
-// How a model moves by a step: explicitly in one pass over its nodes, the same in stages, or to
-// where an implicit solver has found it to go.
+// The steps of a model: the explicit step in one pass over the nodes, the same step in stages, and
+// the step to a state that an implicit solver has found.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ StepSums Model::move_nodes(NodeRange range, const State::Values& values, double 
         }
         const std::size_t end = std::min(n + nodes_together, range.end);
         for (; n < end; ++n)
-            if (masses_[n] != 0.0)  // else dead
+            if (masses_[n] != 0.0)  // else the node is dead
                 sums += move_node(n, values, time, dt, slowing, reactions);
     }
     return sums;
@@ -70,7 +70,7 @@ std::size_t Model::num_free_nodes(std::size_t n, std::size_t end) const {
     return count - count % nodes_together;
 }
 
-// Returned by value, so that the step of a node stays in registers.
+// The sums are returned by value, so that they stay in registers.
 StepSums Model::move_node(std::size_t n, const State::Values& values, double time, double dt,
                           double slowing, std::span<Reaction> reactions) {
     const double mass = masses_[n];
@@ -100,8 +100,8 @@ Model::NodeStep Model::constrain_node(std::size_t n, const Vec3& v, double time,
         step.v[c] = (step.x[c] - x[c]) / dt;
         const double reaction = mass * ((step.v[c] - v[c]) / dt + damping_ * step.v[c]) - force[c];
         add_reaction(s, c, reaction, step.x, reactions);
-        // At the mean velocity: a constraint that sets off at once gives the node just the kinetic
-        // energy that it then has.
+        // The inertial part of the reaction does its work at the mean velocity, (v + v')/2. If a
+        // constraint starts to move a node at once, this is exactly the kinetic energy of the node.
         step.work +=
             reaction * (step.x[c] - x[c]) - 0.5 * mass * (step.v[c] - v[c]) * (step.v[c] - v[c]);
     }

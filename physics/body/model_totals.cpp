@@ -1,5 +1,5 @@
-// What a model's nodes and elements add up to. Sums are those of ranges and blocks, in order: the
-// same bits for any number of threads.
+// The totals of a model. Ranges of nodes and blocks of elements are summed in a fixed order, so
+// that the results are the same bit for bit with any number of threads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <limits>
@@ -11,7 +11,7 @@ namespace incise::physics {
 
 namespace {
 
-/// Of three components, from the given one on.
+/// Returns the vector whose first component has the index `first`.
 Vec3 vector_of(const NodeSums& sums, std::size_t first) {
     return {sums[first].value(), sums[first + 1].value(), sums[first + 2].value()};
 }

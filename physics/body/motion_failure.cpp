@@ -13,7 +13,7 @@ namespace incise::physics {
 
 namespace {
 
-/// Of the elements at the node the one with the lowest volume ratio before the step.
+/// Returns the element at the node with the lowest volume ratio before the step, and that ratio.
 std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, double dt) {
     std::vector<Vec3> before(model.positions().begin(), model.positions().end());
     for (std::size_t i = 0; i < before.size(); ++i) before[i] -= dt * model.velocities()[i];
@@ -32,10 +32,10 @@ std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, d
 
 struct Lost {
     NodeId node;
-    double speed;  // m/s, not a number if it is nowhere
+    double speed;  // m/s; not finite if the velocity is not finite
 };
 
-/// The first node that is not finite, or else the fastest.
+/// Returns the first node whose velocity is not finite, or else the fastest node.
 Lost lost_node(const Model& model) {
     Lost lost{NodeId(0), -1.0};
     for (const NodeId n : model.mesh().nodes()) {
@@ -46,7 +46,7 @@ Lost lost_node(const Model& model) {
     return lost;
 }
 
-/// Adds the likely cause to the text.
+/// Returns the likely cause and appends it to the text.
 FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& text) {
     const double stable_step = model.stable_step();
     const Vec3 &outer = model.outer_forces()[n.index()],

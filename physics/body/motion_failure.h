@@ -1,4 +1,4 @@
-// Why a body could not be moved on.
+// The error that is thrown when a body cannot be moved on, with its likely cause.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,29 +11,33 @@ namespace incise::physics {
 
 class Model;
 
-/// What is most likely to blame.
+/// The most likely cause of a failure. The lost node is MotionFailure::node.
 enum class FailureCause {
-    step_above_bound,       ///< an explicit step is longer than is stable at rest
-    constraint_too_fast,    ///< a constraint moved the node that is lost
-    load_too_large,         ///< the load on that node is larger than the elastic force
-    crushed_element,        ///< an element at that node was crushed or inverted
+    step_above_bound,       ///< an explicit step was above the stable step
+    constraint_too_fast,    ///< a constraint moved the lost node
+    load_too_large,         ///< the outer force on the lost node was larger than the elastic force
+    crushed_element,        ///< an element at the lost node was crushed or inverted
     stiffened_tissue,       ///< strain has stiffened the tissue
-    no_implicit_step,       ///< an implicit step was not solved, nor parts of it
-    no_equilibrium,         ///< statics found no equilibrium, nor in small increments
-    free_component_loaded,  ///< statics: loads move a connected component that nothing holds
+    no_implicit_step,       ///< neither an implicit step nor parts of it were solved
+    no_equilibrium,         ///< statics found no equilibrium, even in small increments
+    free_component_loaded,  ///< statics: loads move a connected component without constraints
 };
 
-/// The motion is lost, or there is none. The text says where, when and why. What to do about it is
-/// the caller's to say, who knows what the user can change.
+/// Thrown if a step fails: the state is no longer finite, a node has moved too far, or a solver
+/// finds no solution. The text tells where and when this happened, and the likely cause. The caller
+/// adds the remedy.
 struct MotionFailure : PhysicsError {
     MotionFailure(FailureCause why, const std::string& text) : PhysicsError(text), cause(why) {}
     FailureCause cause;
-    ElementId element = {};  ///< one at the place of the failure; invalid if not known
-    NodeId node = {};        ///< the node that is lost; invalid if there is none
+    ElementId element = {};  ///< an element at the failure; invalid if not known
+    NodeId node = {};        ///< the node that is not finite or moved too far; invalid if none
 };
 
-/// The failure of an explicit step that began at `time` and took `dt`, s: of a body whose state is
-/// no longer finite, or of which a node has moved too far. Cost: O(#nodes).
+/// Returns the failure of an explicit step after which the state is not finite or a node has moved
+/// too far. Cost: O(#nodes).
+/// @param model  after the step
+/// @param time   the beginning of the step, s
+/// @param dt     the length of the step, s
 MotionFailure failure_of_step(const Model& model, double time, double dt);
 
 }  // namespace incise::physics

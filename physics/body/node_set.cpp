@@ -24,13 +24,14 @@ void NodeSet::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
     while (!members_.empty() && members_.back().node.index() >= changes.node_capacity_after)
         members_.pop_back();
     for (const topology::NodeRecord& record : changes.nodes_added) {
-        // One that comes back is a member if it is still listed, whatever its sources.
+        // A node that an undo brings back is still in the list if it was a member. Its sources do
+        // not matter.
         if (record.id.index() < changes.node_capacity_before) continue;
         bool all = true;
         for (int s = 0; s < record.num_sources && all; ++s)
             all = contains(record.sources[static_cast<std::size_t>(s)].node);
         if (!all) continue;
-        // New ids lie above all others, so the list stays sorted.
+        // New ids are above all others, so that the list stays sorted.
         const bool is_copy = record.num_sources == 1;
         members_.push_back({record.id, is_copy ? find(record.sources[0].node)->origin : NodeId()});
     }

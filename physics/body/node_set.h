@@ -10,15 +10,15 @@
 
 namespace incise::physics {
 
-/// A node born between members is one itself; one between a member and another node is none.
-/// Members that die stay listed, so that an undone edit finds them again: ask the mesh who is
-/// alive.
+/// A set of nodes. A new node becomes a member if all its sources are members: so a copy of a
+/// member, and a node between members. Dead members stay in the set, so that an edit can be undone:
+/// Mesh::is_alive tells which members are alive.
 class NodeSet {
   public:
     struct Member {
         NodeId node;
-        /// The member of the first selection that it is, or is a copy of; invalid for one born
-        /// between others and for its copies.
+        /// The node of the first selection that the member is, or of which it is a copy. Invalid
+        /// for a node between others and for its copies.
         NodeId origin;
         static void archive(auto& ar, auto& self) { ar(self.node, self.origin); }
     };
@@ -26,15 +26,17 @@ class NodeSet {
     NodeSet() = default;
     NodeSet(std::vector<NodeId> nodes);
 
-    /// In ascending order of nodes.
+    /// Returns the members in ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }
-    /// Null for a node that is no member.
+    /// Returns the member of a node; null if the node is no member.
     const Member* find(NodeId n) const;
     bool contains(NodeId n) const { return find(n) != nullptr; }
 
+    /// Follows an edit; `mesh` is the mesh after the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    /// Throws InputError if a member is no node of the mesh.
+    /// Throws InputError if a member is no node of the mesh or if the members are not in strictly
+    /// ascending order.
     void require_fit(const topology::Mesh& mesh) const;
     static void archive(auto& ar, auto& self) { ar(self.members_); }
 

@@ -1,4 +1,4 @@
-// What the nodes of a body add up to: for the books.
+// Sums over the nodes of a body, for the body totals.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace incise::physics {
 
-/// Where what nodes add up to stands among their sums; of vectors the first of three components.
+/// The index of each quantity in NodeSums; of a vector, that of the first of its three components.
 struct NodeSum {
     enum Index : std::size_t {
         mass,                                   ///< kg
@@ -26,22 +26,22 @@ struct NodeSum {
 };
 using NodeSums = Sums<NodeSum::count>;
 
-/// By range of nodes, kept until one of the range changes: so another look beside an edit costs
-/// what that touched.
+/// A cache of the sums by range of nodes. After an edit, only the touched ranges are summed again.
 class KeptNodeSums {
   public:
-    /// A node has another mass, position or velocity.
+    /// Discards the sum with a node whose mass, position or velocity has changed.
     void forget(std::size_t node) {
         if (const std::size_t r = node / nodes_per_range; r < ranges_.size()) ranges_[r].reset();
     }
-    /// There are so many now; those that are gone count no more.
+    /// Sets the number of nodes.
     void resize(std::size_t num_nodes) {
-        forget(num_nodes);  // the range that has lost some, if any has
+        forget(num_nodes);  // if nodes were removed, the last range has fewer nodes than before
         ranges_.resize(num_node_ranges(num_nodes));
     }
 
-    /// The sum over all ranges, in order; sums_of(range) of those that are not known.
-    /// @param version of the state
+    /// Returns the sum over all ranges, in ascending order. Calls sums_of(range) for each range
+    /// whose sum is not in the cache. The cache is cleared if `version`, the version of the state,
+    /// is not that of the last call.
     template <class SumsOf>
     NodeSums value(std::uint64_t version, std::size_t num_nodes, const Workers& workers,
                    SumsOf sums_of) {
@@ -58,7 +58,7 @@ class KeptNodeSums {
 
   private:
     std::vector<std::optional<NodeSums>> ranges_;
-    std::uint64_t version_ = 0;  // of the state that they are of
+    std::uint64_t version_ = 0;  // of the state to which the sums belong
 };
 
 }  // namespace incise::physics

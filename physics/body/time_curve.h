@@ -1,4 +1,4 @@
-// Values given at times, linear between them.
+// Piecewise linear functions of time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,24 +8,27 @@
 
 namespace incise::physics {
 
-/// Between a (s = 0) and b (s = 1). Poses have one of their own: topology/pose.h.
+/// Returns the linear interpolation between a (s = 0) and b (s = 1). topology/pose.h has an
+/// overload for poses.
 template <class Value>
 Value interpolate(const Value& a, const Value& b, double s) {
     return a + s * (b - a);
 }
 
-/// Piecewise linear in time (see interpolate), constant before the first key and after the last.
+/// A function of time that interpolates between keys; see interpolate(). It is constant before the
+/// first key and after the last one.
 template <class Value>
 class TimeCurve {
   public:
     TimeCurve() = default;
-    /// @param keys times (s) in strictly ascending order with their values
+    /// Takes the keys: times, s, in strictly ascending order, with their values.
     explicit TimeCurve(std::vector<std::pair<double, Value>> keys) : keys_(std::move(keys)) {}
 
     bool is_empty() const { return keys_.empty(); }
     const std::vector<std::pair<double, Value>>& keys() const { return keys_; }
 
-    /// @pre not empty
+    /// Returns the value at `time`, s.
+    /// @pre  the curve is not empty
     Value at(double time) const {
         const auto after = std::upper_bound(
             keys_.begin(), keys_.end(), time,

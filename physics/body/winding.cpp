@@ -14,14 +14,14 @@ namespace incise::physics {
 
 namespace {
 
-/// What one element brings to one of its edges.
+/// One element at one of its edges.
 struct Wedge {
     NodeId a, b;  // a < b
     ElementId element;
-    double angle;  // not a number if the element has none
+    double angle;  // dihedral, rad; not a number for a flat or inverted element
 };
 
-/// Between the two faces of the tetrahedron that meet in the edge from corner 0 to 1, radians.
+/// Returns the angle between the two faces at the edge from corner 0 to corner 1, rad.
 double dihedral_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
     const Vec3 edge = x1 - x0, m = edge.cross(x2 - x0), n = edge.cross(x3 - x0);
     return std::atan2(m.cross(n).norm(), m.dot(n));
@@ -30,7 +30,7 @@ double dihedral_angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3
 }  // namespace
 
 Winding find_winding(const topology::Mesh& mesh, std::span<const Vec3> positions) {
-    // The other two corners beside each edge.
+    // Both corners of each edge, then the other two corners.
     constexpr std::array<std::array<std::size_t, 4>, 6> edges = {
         {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
     constexpr double none = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
-// Bodies that are wound up: every element in order, but more of them round an edge than there is
-// room for.
+// Detection of bodies that are wound up: no element is inverted, but the elements at an edge go
+// round it twice. See docs/theory.md, Beyond inversion.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,17 +10,19 @@
 
 namespace incise::physics {
 
-/// Edges of tetrahedra round which dihedral angles add up to more than one and a half turns: inside
-/// a body they make whole turns, so two there. Elements lie in each other then, though none need be
-/// inverted, and no law of an element's own strain undoes it. Lips of a cut that overlap, which
-/// nothing keeps apart, make somewhat more than one turn round the cut's end and are not meant.
+/// The edges of tetrahedra at which the dihedral angles add up to more than one and a half turns.
+///
+/// Inside a body the sum is a whole number of turns, so it is two turns at such an edge. Elements
+/// then overlap, although none of them needs to be inverted. No law can undo this, since a law
+/// depends only on the strain of one element. The faces of a cut may also overlap, as there is no
+/// contact. This gives somewhat more than one turn at the cut front, which is below the limit.
 struct Winding {
     std::size_t num_edges = 0;
-    ElementId element;  ///< the one of the lowest id at such an edge; if there are any
+    ElementId element;  ///< with the lowest id at such an edge; invalid if there is no edge
 };
 
-/// At the given positions (m, by node id). Edges of other kinds of cells, and of flat or inverted
-/// elements, are left out. Cost: O(#elements log #elements).
+/// Returns the winding at the given positions (m, by node id). Edges of flat or inverted elements
+/// and of other kinds of cells are left out. Cost: O(#elements log #elements).
 Winding find_winding(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
 }  // namespace incise::physics

@@ -5,7 +5,7 @@ namespace incise::physics {
 
 std::span<const LocalVector> ElementBlock::local_positions(
     std::span<const Vec3> positions, std::vector<LocalVector>& offsets) const {
-    offsets.reserve(max_elements * topology::max_corners + 1);  // of any block
+    offsets.reserve(max_elements * topology::max_corners + 1);  // enough for any block
     offsets.resize(nodes_.size() + 1);
     for (std::size_t i = 0; i < nodes_.size(); ++i) offsets[i] = positions[nodes_[i]];
     offsets.back() = {};
@@ -46,7 +46,7 @@ void ElementBlock::number_nodes(std::span<std::uint16_t> local_numbers) {
     const std::size_t num_had = nodes_.size();
     for (std::size_t i = 0; i < num_had; ++i)
         local_numbers[nodes_[i]] = static_cast<std::uint16_t>(i);
-    // For now nodes that it did not have come behind those that it had.
+    // New nodes are appended for now and sorted in below.
     std::vector<std::size_t> changed;
     for (std::size_t s = 0; s < elements_.size(); ++s) {
         const std::span<std::uint16_t> numbers = local_corners(s);
@@ -63,7 +63,7 @@ void ElementBlock::number_nodes(std::span<std::uint16_t> local_numbers) {
     }
 
     std::vector<std::uint16_t> new_numbers(nodes_.size(), unnumbered);
-    for (const std::uint16_t number : local_corners_) new_numbers[number] = 0;  // it is in use
+    for (const std::uint16_t number : local_corners_) new_numbers[number] = 0;  // still in use
     const auto first_new = nodes_.begin() + static_cast<std::ptrdiff_t>(num_had);
     std::sort(first_new, nodes_.end());
     std::inplace_merge(nodes_.begin(), first_new, nodes_.end());

@@ -1,4 +1,5 @@
-// Elements of one kind and one material, a few hundred at a time: what the force loop walks.
+// Blocks of elements: up to 512 elements of one kind and one material, over which the force loop
+// runs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -20,34 +21,39 @@
 
 namespace incise::physics {
 
-/// What one element brings to its corners for good; a pure function of its rest shape.
+/// The constant contributions of one element to its corners. They depend only on the rest shape and
+/// the material.
 struct NodalContributions {
-    double mass = 0.0;                  ///< kg, to each corner alike
-    std::array<double, 8> stiffness{};  ///< N/m, by corner: part of the nodal bound
+    double mass = 0.0;                  ///< kg, the same to each corner
+    std::array<double, 8> stiffness{};  ///< N/m, by corner, to the bound of stable_step.h
 };
 
-/// The state at the end of a step that implicit integration looks for.
+/// A trial state at the end of a step of an implicit solver or of statics.
 struct EndOfStep {
     std::span<const Vec3> positions;  ///< m, by node id
-    const ViscousHistory& history;    ///< of the beginning of the step
-    double dt;                        ///< s; infinite: all relaxed, as in statics
+    const ViscousHistory& history;    ///< at the beginning of the step
+    double dt;                        ///< s; infinite: all terms are relaxed, as in statics
 };
 
-/// Takes the tangents of elements, one after the other.
+/// Interface of a receiver of tangents, one call for each element or face.
 class TangentSink {
   public:
     virtual ~TangentSink() = default;
-    /// @param tangent symmetric, N/m, of three rows for each of the nodes, column by column
+    /// Takes one tangent.
+    /// @param nodes    ids of its nodes
+    /// @param tangent  symmetric, N/m; three rows for each node, column by column
     virtual void add(std::span<const std::uint32_t> nodes, std::span<const double> tangent) = 0;
 };
-enum class TangentKind { exact, positive };  ///< see positive_part
+enum class TangentKind { exact, positive };  ///< for `positive` see positive_part()
 
-/// Interface of a block; one virtual call serves a whole block. Elements stand in ascending
-/// order of their ids, so that a block's sums do not depend on how it came about. Its nodes have
-/// local numbers, which order them as their ids do.
+/// Interface of a block of elements. One virtual call works on a whole block.
 ///
-/// An edit touches many blocks, but few elements of each. What it costs a block follows these, but
-/// for local numbers, and for elements that come or go: then all stand in other slots.
+/// The elements are in slots in ascending order of ids, so that sums over a block do not depend on
+/// the edits that led to it. The nodes of a block have local numbers, in ascending order of ids.
+///
+/// An edit touches many blocks, but only a few elements of each. Its cost in a block is
+/// proportional to these elements, with two exceptions. Local numbers cost O(block). Insertion and
+/// removal of elements shift the slots of all later ones.
 class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
@@ -57,67 +63,83 @@ class ElementBlock {
     virtual ~ElementBlock() = default;
     virtual std::shared_ptr<ElementBlock> clone() const = 0;
 
+    /// Returns the ids of the elements, by slot, in ascending order.
     std::span<const ElementId> elements() const { return elements_; }
 
-    /// Ids of the nodes of its elements, by local number, in ascending order.
+    /// Returns the ids of the nodes of the elements, by local number, in ascending order.
     std::span<const std::uint32_t> nodes() const { return nodes_; }
 
-    /// Brings nodes(), and what goes by local numbers, up to the elements as they are: after
-    /// insert, replace and erase, before forces, energy or volumes are asked for or the history
-    /// advances.
-    /// @param local_numbers scratch, by node id; `unnumbered` before and after
+    /// Updates nodes(), and everything that depends on local numbers, after insert(), replace() and
+    /// erase(). Without it, forces, energies and volumes must not be read, and the history must not
+    /// be advanced. `local_numbers` is scratch, by node id; it holds `unnumbered` before and after
+    /// the call.
     void number_nodes(std::span<std::uint16_t> local_numbers);
 
-    /// Those of its nodes by local number, and a place more, in `offsets`: the caller's thread
-    /// keeps that from block to block, so that it takes memory once and never again.
+    /// Returns the positions of the nodes of the block, m, by local number, and one spare entry.
+    /// @param positions  by node id, m
+    /// @param offsets    buffer for the result; a thread that uses the same buffer for all blocks
+    ///                   allocates memory only once
     std::span<const LocalVector> local_positions(std::span<const Vec3> positions,
                                                  std::vector<LocalVector>& offsets) const;
-    /// The same in the thread's own place for them, until the next call.
+    /// Returns the same, in a buffer of the calling thread.
+    /// @lifetime Until the next call on this thread.
     std::span<const LocalVector> local_positions(std::span<const Vec3> positions) const;
 
-    /// Sets `forces` to the sums of the elements' elastic forces, N, at `positions`, m, with those
-    /// of viscosity as far as the history goes. Both by local number; each has one place more than
-    /// there are nodes, for the block's own use.
-    /// @param next  of the block that the thread most likely takes then
+    /// Sets `forces` to the sums of the forces of the elements, N: the elastic forces, and the
+    /// viscous forces that follow from the history.
+    /// @param positions  m, by local number, with one spare entry
+    /// @param history    of all elements of the body
+    /// @param forces     N, by local number, with one spare entry
+    /// @param next       bytes_of_elements() of the block that the thread probably computes next,
+    ///                   for prefetching; may be empty
     virtual void compute_forces(std::span<const LocalVector> positions,
                                 const ViscousHistory& history, std::span<LocalVector> forces,
                                 std::span<const std::byte> next) const = 0;
-    /// What compute_forces reads first of its elements.
+    /// Returns the memory of the elements that compute_forces() reads first.
     virtual std::span<const std::byte> bytes_of_elements() const = 0;
-    /// Adds the forces (N) at the end of a step, viscous ones by the exact rule of advance().
+    /// Adds the forces at the end of a step, N, by node id. Viscous forces follow the rule of
+    /// advance().
     virtual void add_forces(const EndOfStep& end, std::span<Vec3> forces) const = 0;
-    /// Whose gradient by the positions are minus these forces, J; without viscosity the energy.
+    /// Returns the potential whose negative gradient are the forces of add_forces(), J. Without
+    /// viscosity it is the elastic energy.
     virtual double potential(const EndOfStep& end) const = 0;
-    /// Hands over the derivatives of minus these forces, in the order of elements.
+    /// Passes the tangents of the forces of add_forces() to the sink, in the order of elements().
     virtual void visit_tangents(const EndOfStep& end, TangentKind kind,
                                 TangentSink& sink) const = 0;
-    /// Whether its elements remember anything.
+    /// True if the elements have a viscous history.
     virtual bool has_history() const = 0;
-    /// Brings the history of the elements from the positions `before` to `positions`, dt later
-    /// (s); these as for compute_forces. Returns the energy that viscosity took, J; 0 if the
-    /// material has none.
+    /// Advances the history of the elements from the positions `before` to `positions`, `dt` (s)
+    /// later; both are as for compute_forces(). Returns the energy that viscosity dissipated, J, or
+    /// 0 for a material without viscosity.
     virtual double advance(std::span<const LocalVector> before,
                            std::span<const LocalVector> positions, double dt,
                            ViscousHistory& history) = 0;
-    /// What the elements come to at `positions`.
+    /// Returns the totals of the elements at `positions`, m, by node id.
     virtual BlockState state(std::span<const Vec3> positions) const = 0;
-    /// Sum of their rest volumes, m3.
+    /// Returns the sum of the rest volumes, m3.
     virtual Sum rest_volume() const = 0;
-    /// Sum over the elements of modulus times rest volume, J.
+    /// Returns the sum of modulus times rest volume over the elements, J.
     virtual double stiffness_energy() const = 0;
+    /// Returns the result of one element at `positions`, m, by node id.
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
-    /// Those of all, in the order of elements(); within rounding of those one by one.
+    /// Sets the results of all elements, in the order of elements(). They equal those of result()
+    /// within rounding.
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
                          std::span<ElementResult> results) const = 0;
     virtual const NodalContributions& contributions(ElementId e) const = 0;
+    /// Returns the rest volume of one element, m3.
     virtual double rest_volume(ElementId e) const = 0;
 
-    /// Takes the element in and precomputes it from the rest positions (by node id).
-    /// @param fibre  direction of its fibres at rest; of no account without fibres
+    /// Inserts an element and precomputes its values.
+    /// @param e               the element
+    /// @param corners         its nodes
+    /// @param rest_positions  by node id, m
+    /// @param fibre           direction of the fibres at rest, of unit length; ignored by a law
+    ///                        without fibres
     virtual void insert(ElementId e, std::span<const NodeId> corners,
                         std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
-    /// Recomputes an element that it has, with other corners.
+    /// Precomputes an element of the block again, with other corners; arguments as for insert().
     virtual void replace(ElementId e, std::span<const NodeId> corners,
                          std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
     virtual void erase(ElementId e) = 0;
@@ -125,14 +147,14 @@ class ElementBlock {
   protected:
     explicit ElementBlock(std::size_t num_corners) : num_corners_(num_corners) {}
 
-    /// Node ids of the element in the given slot.
+    /// Returns the node ids of the element in slot s.
     virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
-    /// Brings what follows elements and their local numbers up to them.
-    /// @param changed  slots whose elements are not what they were when this was last called; if
-    ///                 have_moved_, all may stand in other slots than then
+    /// Updates everything in the derived class that depends on the elements and their local
+    /// numbers. `changed` has the slots whose elements have changed since the last call. If
+    /// have_moved_ is true, other elements may also be in other slots than before.
     virtual void use_numbers(std::span<const std::size_t> changed) = 0;
 
-    /// Local numbers of the nodes of the element in slot s.
+    /// Returns the local numbers of the nodes of the element in slot s.
     std::span<std::uint16_t> local_corners(std::size_t s) {
         return std::span(local_corners_).subspan(s * num_corners_, num_corners_);
     }
@@ -140,12 +162,13 @@ class ElementBlock {
         return std::span(local_corners_).subspan(s * num_corners_, num_corners_);
     }
 
-    /// Returns where the new element stands.
+    /// Adds a slot for a new element and returns its index.
     std::size_t add_slot(ElementId e);
     void change_slot(std::size_t s);
     void remove_slot(std::size_t s);
     std::size_t slot_of(ElementId e) const {
-        // Ids ascend: it stands no farther from the first than its id does, and seldom nearer.
+        // Ids ascend and have few gaps. The slot is therefore at most, and mostly exactly, the
+        // difference between this id and the first one.
         const auto from_first = static_cast<std::size_t>(e.value - elements_.front().value);
         const auto last = elements_.begin() +
                           static_cast<std::ptrdiff_t>(std::min(from_first, elements_.size() - 1));
@@ -157,7 +180,7 @@ class ElementBlock {
     std::size_t num_corners_;
     std::vector<ElementId> elements_;  // by slot
     std::vector<std::uint32_t> nodes_;
-    // Local numbers, by slot; unnumbered those of elements that changed.
+    // By slot, local numbers of the nodes; `unnumbered` for an element that has changed.
     std::vector<std::uint16_t> local_corners_;
     bool is_numbered_ = true, have_moved_ = false;
 };

@@ -1,5 +1,5 @@
-// Between lanes and elements: what the fast kernels find of eight elements at a time, for the books
-// and for frames.
+// Results of the SIMD kernels for groups of eight elements, and their conversion to totals of a
+// block and to results of single elements.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,24 +14,26 @@
 
 namespace incise::physics {
 
-/// Elements of a group, for these purposes always in doubles. Those of a block lie in groups as
-/// set_offsets_of_lanes has them; lanes that are left over have anything.
+/// The number of elements in a group. These results are always in doubles. For the order of the
+/// elements of a block in groups see set_offsets_of_lanes(). Lanes without an element have
+/// arbitrary values.
 inline constexpr std::size_t elements_together = 8;
 
-/// What the elements of a group have at given positions.
+/// Energies and volume ratios of the elements of a group.
 struct ElementEnergies {
     double energy[elements_together];        ///< J
-    double volume_ratio[elements_together];  ///< present over rest volume
+    double volume_ratio[elements_together];  ///< current over rest volume
 };
+/// Energies, volume ratios and virials of the elements of a group.
 struct ElementStates : ElementEnergies {
-    /// Sum of the corners' forces times positions, f x^T, by rows: J.
+    /// Sum over the corners of force times position, f x^T, by rows, J.
     double virial[9][elements_together];
 };
 
-/// What all elements of a block come to.
+/// Totals of the elements of a block.
 struct BlockState {
     Sum elastic_energy;                                                 ///< J
-    double min_volume_ratio = std::numeric_limits<double>::infinity();  ///< if it has any
+    double min_volume_ratio = std::numeric_limits<double>::infinity();  ///< infinite if empty
 
     BlockState& operator+=(const BlockState& o) {
         elastic_energy += o.elastic_energy;
@@ -40,7 +42,9 @@ struct BlockState {
     }
 };
 
-/// Room for so many groups, until the thread asks again: it takes memory once for all blocks.
+/// Returns a buffer of `num_groups` groups that belongs to the calling thread. All blocks use the
+/// same buffer, so that memory is allocated only once.
+/// @lifetime Until the next call on this thread with the same type of group.
 template <class Group>
 std::span<Group> room_for(std::size_t num_groups) {
     thread_local std::vector<Group> groups;
@@ -48,10 +52,11 @@ std::span<Group> room_for(std::size_t num_groups) {
     return groups;
 }
 
-/// In the order of elements, but for rounding of the sum. What lanes have that are left over is
-/// lost.
+/// Returns the totals of a block. Energies are summed lane by lane, so that the sum differs within
+/// rounding from one in the order of the elements. Lanes without an element are overwritten.
 BlockState state_of_block(std::span<ElementEnergies> groups, std::size_t num_elements);
-/// Sets what the elements have, in their order, but volumes at rest, which are read.
+/// Sets energy, volume ratio and stress of each element, in the order of the block.
+/// @pre  the rest volumes in `results` are set
 void set_results(std::span<const ElementStates> groups, std::span<ElementResult> results);
 
 }  // namespace incise::physics

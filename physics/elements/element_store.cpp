@@ -35,7 +35,7 @@ std::shared_ptr<ElementBlock> make_block(const Material& material, Precision pre
                                                         material.density);
 }
 
-/// Numbers that an element of the material remembers, whatever its law.
+/// Returns how many values an element of the material stores; the law does not matter.
 std::size_t history_size(const HyperElasticLinks& links) {
     if (links.prony.empty()) return 0;
     return links.prony_rule == PronyRule::nodal
@@ -43,7 +43,7 @@ std::size_t history_size(const HyperElasticLinks& links) {
                : ViscousKernel::history_size(links.prony.size());
 }
 
-/// What to do where a material's method is not for this kind of cell.
+/// Returns the remedy if the method of a material does not suit this kind of cell.
 std::string remedy(CellKind kind) {
     switch (kind) {
         case CellKind::tetrahedron:
@@ -57,8 +57,8 @@ std::string remedy(CellKind kind) {
     }
 }
 
-/// Calls visit(range, begin, end) for each range of node ids of which there are some, with where
-/// they stand among `nodes`, which ascend.
+/// Calls visit(range, begin, end) for each range of node ids that has some of `nodes`. These are
+/// nodes[begin] to before nodes[end], and `nodes` is in ascending order.
 template <class Visit>
 void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
     for (std::size_t begin = 0; begin < nodes.size();) {
@@ -228,7 +228,8 @@ void ElementStore::fetch(const Piece& piece) const {
 
 void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const {
     for (std::size_t n = range.begin; n < range.end; ++n) forces[n].setZero();
-    // What pieces read lies apart: of a body that the caches do not hold each would be waited for.
+    // Pieces read memory at distant places. If the body is larger than the caches, each read would
+    // have to wait for the memory, so that it is prefetched.
     constexpr std::size_t ahead = 2;
     const std::vector<Piece>& pieces = ranges_[range.number];
     for (std::size_t p = 0; p < pieces.size(); ++p) {

@@ -1,4 +1,4 @@
-// All elements of a body, in blocks of one kind and material each.
+// All elements of a body, in blocks. Each block has one material.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -24,100 +24,107 @@
 
 namespace incise::physics {
 
-/// The materials of a body and which region has which.
+/// The materials of a body and of its regions.
 struct MaterialTable {
     std::vector<Material> materials;
-    std::map<int, std::size_t> of_region;  ///< region -> index of its material
-    /// By element id, the direction of the fibres at rest, of unit length; zero where the material
-    /// has none, empty if no material has any.
+    std::map<int, std::size_t> of_region;  ///< by region, the index of its material
+    /// By element id, the direction of the fibres at rest, of unit length. It is zero where the
+    /// material has no fibres. Empty if no material has fibres.
     std::vector<Vec3> fibres = {};
-    /// Of the forces that explicit steps take (Model::compute_forces). Energies, stresses, viscous
-    /// parts, tangents and the forces of implicit steps and statics are in doubles throughout.
+    /// Precision of the elastic forces in explicit steps (Model::compute_forces). Energies,
+    /// stresses, viscous parts, tangents, and the forces of implicit steps and statics are always
+    /// in doubles.
     Precision precision = Precision::double_precision;
 };
 
-/// The material of a region has no forces for one of its elements.
+/// Thrown if a region has no material, or if its material does not suit one of its elements.
 struct UnsuitableMaterial : InputError {
     UnsuitableMaterial(int of_region, const std::string& text)
         : InputError(text), region(of_region) {}
     int region;
 };
 
-/// Elements whose ids share all but their lowest bits and that have the same material form a
-/// block. The division is a function of the ids alone: a body that has been edited is divided,
-/// and so summed, exactly as one built afresh from the same mesh.
+/// The elements of a body in blocks.
+///
+/// A block has the elements of one material whose ids agree in all but their lowest bits, that is
+/// in a range of ElementBlock::max_elements ids. The division depends only on ids and materials. An
+/// edited body is therefore divided and summed exactly as a new body with the same mesh.
 class ElementStore {
   public:
-    /// Throws UnsuitableMaterial for a region without material, for a kind of element for which the
-    /// material has no force law and for an element without the fibres that its material has;
-    /// InputError for mass springs in single precision, which they have no forces in.
+    /// Builds the blocks of a mesh. Throws UnsuitableMaterial for a region without material and for
+    /// an element that its material does not suit. The kind or the shape of the element may be
+    /// wrong, or it may lack the fibres that the material needs.
+    /// Throws InputError for mass springs in single precision.
     ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
 
-    /// What elements keep by their ids follows an edit: parts of a divided element inherit its
-    /// fibres. Before the elements themselves do.
+    /// Follows an edit with the values by element id: parts of a divided element inherit its
+    /// fibres. It must be called before insert(), replace() and erase() for this edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
         if (fibres_) fibres_->apply(mesh, changes);
     }
 
     void insert(const topology::Mesh& mesh, ElementId e);
-    /// Recomputes an element whose corners are others now.
+    /// Precomputes an element again whose corners have changed.
     void replace(const topology::Mesh& mesh, ElementId e);
-    /// @param region of the element, which the mesh may have forgotten by now
+    /// Erases an element. The mesh may no longer know its region, which is therefore an argument.
     void erase(ElementId e, int region);
 
-    /// Brings the blocks that have changed, and whose nodes they share, up to date: at the end of
-    /// an edit, before anything is asked of the elements but their shares and rest volumes.
+    /// Numbers the nodes of the changed blocks, at the end of an edit. Before this call, only
+    /// contributions and rest volumes of elements may be read. `num_nodes` is the node capacity of
+    /// the mesh.
     void number_nodes(std::size_t num_nodes);
 
+    /// Returns the block of an element.
     const ElementBlock& block_of(const topology::Mesh& mesh, ElementId e) const {
         return *blocks_[block_index(e, mesh.region(e))];
     }
 
-    /// kg/m3
+    /// Returns the density of the material of a region, kg/m3.
     double density(int region) const {
         return table_.materials[table_.of_region.at(region)].density;
     }
 
-    /// What the store was built from, without the fibres.
+    /// Returns the table of the constructor, without the fibres.
     const MaterialTable& materials() const { return table_; }
-    /// As MaterialTable has them, also of the elements that edits added.
+    /// Returns the fibres as in MaterialTable, including those of the elements that edits added.
     std::span<const Vec3> fibres() const {
         return fibres_ ? fibres_->values() : std::span<const Vec3>();
     }
 
-    /// The most numbers that an element of any of the materials remembers; 0 if none is viscous.
+    /// Returns the size of ViscousHistory: the largest number of values that an element of any of
+    /// the materials stores; 0 if none is viscous.
     std::size_t history_size() const;
 
-    /// Brings the history of all elements from the positions `before` to `positions`, dt later;
-    /// see ElementBlock. Returns the energy that viscosity took, J: the same bits for any number
-    /// of workers.
+    /// Advances the history of all elements from the positions `before` to `positions` (m, by node
+    /// id), `dt` (s) later. Returns the energy that viscosity dissipated, J. It is the same bit for
+    /// bit with any number of threads.
     double advance(std::span<const Vec3> before, std::span<const Vec3> positions, double dt,
                    Workers& workers, ViscousHistory& history);
 
-    /// Computes what each block comes to, if that is not known, for totals(), and right after it
-    /// the block's forces, for compute_forces: so what both read comes from memory once.
+    /// Computes the totals and the forces of each block whose totals are not known, for totals()
+    /// and compute_forces(). What both need is thus read from memory only once.
     void compute_totals_and_forces(const State& state, const Workers& workers);
-    /// Computes the forces of each block, with those of viscosity as far as the history goes, for
-    /// gather_forces. Those that compute_totals_and_forces computed stand, if neither an edit
-    /// changed the block nor the state is another.
+    /// Computes the elastic and viscous forces of each block, for gather_forces(). Forces of
+    /// compute_totals_and_forces() are used if the state has the same version and no edit has
+    /// changed the block since.
     void compute_forces(const State& state, const Workers& workers);
-    /// Sets `forces` (N, by node id) to those last computed, for one range of nodes: a node's force
-    /// is the sum of those of the blocks, in ascending order. For different ranges at the same
-    /// time.
+    /// Sets `forces` (N, by node id) to the forces of compute_forces(), for one range of nodes. The
+    /// force on a node is the sum over the blocks in ascending order.
+    /// @thread Several threads may call it at the same time, for different ranges.
     void gather_forces(NodeRange range, std::span<Vec3> forces) const;
 
-    /// Adds the forces at the end of a step, N, by node id; see ElementBlock.
+    /// Adds the forces at the end of a step, N, by node id; see ElementBlock::add_forces.
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
-    /// What all elements come to. Blocks keep theirs until an edit changes them or the state is
-    /// another, so that another call beside an edit costs what that touched.
-    /// @thread not by several at the same time
+    /// Returns the totals of all elements. The totals of a block are stored until an edit changes
+    /// the block or the state changes. After an edit, only touched blocks are computed again.
+    /// @thread One thread at a time.
     BlockState totals(const State& state, const Workers& workers) const;
 
-    /// add(compute(block)) for each block in ascending order: computed at the same time, and so
-    /// added up in the same order whatever the number of workers. Takes no memory.
+    /// Calls add(compute(block)) for each block. The threads compute at the same time. The results
+    /// are added in ascending order of blocks, with any number of threads. Allocates no memory.
     template <class Compute, class Add>
     void add_up_blocks(const Workers& workers, Compute compute, Add add) const {
         constexpr std::size_t at_once = 256;
@@ -139,31 +146,33 @@ class ElementStore {
             if (block) visit(*block);
     }
 
-    /// In ascending order, as they are now: edits work on copies of those that are shared. Whoever
-    /// has them lets go of them on the thread that edits, which counts who shares a block.
+    /// Returns the present blocks in ascending order. Later edits do not change them, since an edit
+    /// replaces a shared block by a copy.
+    /// @thread The pointers must be destroyed on the thread that edits, as its test whether a block
+    /// is shared reads the use count.
     std::vector<std::shared_ptr<const ElementBlock>> share_blocks() const;
 
   private:
-    /// The nodes that a block has in one range, by local number.
+    /// The nodes of a block in one range of node ids, as a range of local numbers.
     struct Piece {
         std::size_t block, begin, end;
     };
 
-    /// Of a block, until an edit changes it or the state is another.
+    /// Results of a block, valid until an edit changes the block or the state changes.
     struct Known {
         std::optional<BlockState> totals;
-        bool has_forces = false;  ///< which nobody has asked for yet
+        bool has_forces = false;  ///< the forces were computed, and compute_forces() not called yet
     };
 
     void note_change(std::size_t block);
-    /// Forgets what was known of another state.
+    /// Discards the results that belong to another version of the state.
     void take_note_of(const State& state) const;
     void compute_forces_of(std::size_t block, const State& state);
-    /// Has the processor fetch what gather_forces reads of a piece.
+    /// Prefetches the memory that gather_forces() reads for a piece.
     void fetch(const Piece& piece) const;
-    /// Those of the elements of the first block from the given number on, if there is one.
+    /// Returns bytes_of_elements() of the first block from number `block` on; empty if none.
     std::span<const std::byte> bytes_from(std::size_t block) const;
-    /// The block, or a copy that takes its place if somebody shares it.
+    /// Returns the block. If it is shared, a copy replaces it first.
     ElementBlock& editable(std::size_t block);
 
     std::size_t block_index(ElementId e, int region) const;
@@ -172,14 +181,14 @@ class ElementStore {
 
     MaterialTable table_;  // without the fibres
     std::optional<topology::ElementField<Vec3>> fibres_;
-    std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by chunk of ids, then material
+    std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by range of ids, then by material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
-    std::vector<std::vector<Piece>> ranges_;       // of node ids; in ascending order of blocks
+    std::vector<std::vector<Piece>> ranges_;  // by range of nodes; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
     std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
-    std::vector<double> energies_taken_;           // scratch, by block
+    std::vector<double> energies_taken_;           // scratch, by block, J
     mutable std::vector<Known> known_;             // by block
-    mutable std::uint64_t known_version_ = 0;      // of the state that they are of
+    mutable std::uint64_t known_version_ = 0;      // of the state to which known_ belongs
 };
 
 }  // namespace incise::physics

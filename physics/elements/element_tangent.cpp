@@ -7,14 +7,14 @@ namespace incise::physics {
 
 namespace {
 
-/// v -> u x v.
+/// Returns the matrix of the map v -> u x v.
 Mat3 cross_matrix(const Vec3& u) {
     Mat3 m;
     m << 0.0, -u[2], u[1], u[2], 0.0, -u[0], -u[1], u[0], 0.0;
     return m;
 }
 
-/// A S A^T. By loops, since products of Eigen of these sizes take the compiler long.
+/// Returns A S A^T. It uses loops, since products of these sizes by Eigen take long to compile.
 template <int m, int n>
 Eigen::Matrix<double, m, m> congruent(const Eigen::Matrix<double, m, n>& A,
                                       const Eigen::Matrix<double, n, n>& S) {
@@ -29,8 +29,8 @@ Eigen::Matrix<double, m, m> congruent(const Eigen::Matrix<double, m, n>& A,
     return result;
 }
 
-/// Of a tetrahedron, from the derivatives by its corners 1 to 3: a shift of all four changes
-/// nothing.
+/// Returns the tangent of a tetrahedron from the part of its corners 1 to 3. The rest follows,
+/// since a translation of all four corners changes no force.
 ElementTangent<4> with_first_corner(const Eigen::Matrix<double, 9, 9>& inner) {
     ElementTangent<4> K;
     K.bottomRightCorner<9, 9>() = inner;
@@ -41,13 +41,13 @@ ElementTangent<4> with_first_corner(const Eigen::Matrix<double, 9, 9>& inner) {
     return K;
 }
 
-/// Adds s_ij times the identity at corners i and j, from 1 on.
+/// Adds s_ij times the identity to the blocks of corners i + 1 and j + 1.
 void add_scalars(const Mat3& s, Eigen::Matrix<double, 9, 9>& inner) {
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) inner.block<3, 3>(3 * i, 3 * j).diagonal().array() += s(i, j);
 }
 
-/// Adds a spring between the corners i and j; one without length has no tangent.
+/// Adds the tangent of a spring between the corners i and j. A spring of zero length has none.
 template <std::size_t n>
 void add_spring(std::size_t i, std::size_t j, double stiffness, double rest_length,
                 const std::array<Vec3, n>& x, ElementTangent<n>& K) {
@@ -79,8 +79,9 @@ Eigen::Matrix<double, n, n> without_negative_modes(const Eigen::Matrix<double, n
 
 }  // namespace
 
-// With the invariants p of strain: Vol (sum of w_pq grad p grad q^T + sum of w_p grad grad p). By
-// gradients g_i of N_i, whose products do not cancel in thin elements as those of links do.
+// With the invariants p of strain, the tangent is
+// Vol (sum of w_pq grad p grad q^T + sum of w_p grad grad p). It is computed from the gradients g_i
+// of the shape functions, whose products do not cancel in thin elements as those of links do.
 ElementTangent<4> element_tangent(const HemlKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x) {
     const Deformation d = deformation(e, x);
@@ -137,7 +138,8 @@ ElementTangent<4> element_tangent(const ViscousKernel& kernel, const LinkElement
     return end.share * element_tangent(elastic, e, x) + tangent_of_stress(end.stress, e);
 }
 
-// The constant stress of the nodal rule does not depend on the positions.
+// The constant first Piola-Kirchhoff stress of the nodal rule gives forces that do not depend on
+// the positions.
 ElementTangent<4> element_tangent(const NodalViscousKernel& kernel, const LinkElement& e,
                                   const std::array<Vec3, 4>& x,
                                   const NodalViscousKernel::EndOfStep& end) {
@@ -155,7 +157,7 @@ ElementTangent<4> element_tangent(const MassSpringKernel&, const MassSpringKerne
     return K;
 }
 
-/// Of the volume term: kappa/V (grad V' grad V'^T + (V' - V) grad grad V').
+// The tangent of the volume term is kappa/V (grad V' grad V'^T + (V' - V) grad grad V').
 ElementTangent<8> element_tangent(const HybmssKernel& kernel, const HybmssKernel::Element& e,
                                   const std::array<Vec3, 8>& x) {
     ElementTangent<8> K = ElementTangent<8>::Zero();
@@ -164,7 +166,8 @@ ElementTangent<8> element_tangent(const HybmssKernel& kernel, const HybmssKernel
             add_spring(i, j, e.springs.stiffnesses[g], e.springs.lengths[g], x, K);
     const double kappa = kernel.material.volume_modulus;
     if (kappa == 0.0) return K;
-    // By the edges a, b and c of the frame, of which each corner moves a quarter.
+    // Derivatives by the mean edges a, b and c. A motion of one corner changes each of them by plus
+    // or minus a quarter of the motion.
     const BoxFrame now(x);
     Eigen::Matrix<double, 9, 1> gradient;
     gradient << now.b.cross(now.c), now.c.cross(now.a), now.a.cross(now.b);

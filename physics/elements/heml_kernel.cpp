@@ -20,8 +20,8 @@ Mat3 edge_matrix(const std::array<Vec3, 4>& x) {
     return v;
 }
 
-// With full pivoting, as needles have edges that are nearly parallel: cofactors would lose the
-// square of what that costs.
+// Needles have edges that are nearly parallel, so that V is inverted with full pivoting. An inverse
+// by cofactors would have the square of this loss of accuracy.
 LinkElement link_element(const std::array<Vec3, 4>& X, const Vec3& fibre) {
     const Mat3 V = edge_matrix(X);
     return {topology::tetrahedron_volume(X[0], X[1], X[2], X[3]), squared_links(X), V,
@@ -92,7 +92,7 @@ std::array<Vec3, 4> HemlKernel::forces(const Element& e, const Corners& x) const
 std::array<double, 4> HemlKernel::stiffness_bounds(const Element& e, const Corners& X) const {
     const RestFibres fibres = rest_fibres(law);
     const double kappa = fibres.dispersion;
-    std::array<double, 4> inverse_altitude, fibre_part;  // fibre_part: |H g_i|
+    std::array<double, 4> inverse_altitude, fibre_part;  // 1/h_i and |H g_i|
     double sum = 0.0, fibre_sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 &a = X[(i + 1) % 4], &b = X[(i + 2) % 4], &c = X[(i + 3) % 4];

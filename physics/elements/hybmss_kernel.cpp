@@ -8,11 +8,12 @@ namespace incise::physics {
 
 namespace {
 
-/// Corners off a box by less than this share of its shortest edge are taken to be on it.
+/// The largest accepted distance of a corner from a box, over the shortest edge of the box.
 constexpr double shape_tolerance = 1e-5;
 
-/// Longest over shortest edge: beyond, some springs of an isotropic box are so weak, or would have
-/// to push when pulled, that the lattice loses its stability at strains of some 10 %.
+/// The largest accepted ratio of the longest to the shortest edge. Above it, some springs of an
+/// isotropic box are so weak, or even negative, that the lattice is unstable at strains of some
+/// 10 %.
 constexpr double largest_aspect = 1.42;
 
 Vec3 edge_lengths(const BoxFrame& frame) {
@@ -23,12 +24,12 @@ bool is_cube(const Vec3& edges) {
     return edges.maxCoeff() - edges.minCoeff() <= shape_tolerance * edges.minCoeff();
 }
 
-/// How far the corner is from where it would be in a box, m.
+/// Returns the largest distance of a corner from its place in the nearest box, m.
 double distance_from_box(const std::array<Vec3, 8>& x) {
     const BoxFrame frame(x);
     Vec3 centre = Vec3::Zero();
     for (const Vec3& corner : x) centre += 0.125 * corner;
-    // The nearest frame of right angles that keeps a and the plane of a and b.
+    // The axes of the box keep the direction of a and the plane of a and b.
     const Vec3 e0 = frame.a.normalized();
     const Vec3 e1 = (frame.b - e0.dot(frame.b) * e0).normalized();
     const Vec3 e2 = e0.cross(e1);
@@ -54,7 +55,8 @@ std::optional<SpringContributions> spring_contributions(const Vec3& edges, doubl
     const double inner_square = squares.sum();
     const auto others = [](int c) { return std::array<int, 2>{(c + 1) % 3, (c + 2) % 3}; };
 
-    // Between these values of k_c no edge and no face diagonal is negative.
+    // Between `low` and `high`, the values of k_c, no spring of an edge or face diagonal has a
+    // negative stiffness.
     double mean = 0.0, low = -std::numeric_limits<double>::infinity(),
            high = std::numeric_limits<double>::infinity();
     for (int c = 0; c < 3; ++c) {
@@ -67,7 +69,7 @@ std::optional<SpringContributions> spring_contributions(const Vec3& edges, doubl
     }
     double inner = std::isinf(ratio) ? 0.0 : 3.0 * mean / (4.0 + 3.0 * ratio);
     if (!is_cube(edges)) {
-        // At the ends springs vanish, and a lattice that lacks them wrinkles.
+        // At the ends of the range some springs vanish, and the lattice wrinkles without them.
         const double range = high - low;
         inner = std::clamp(inner, std::max(low + 0.5 * range, 0.0), high - 0.1 * range);
     }
@@ -122,11 +124,12 @@ HybmssKernel::Element HybmssKernel::precompute(const Corners& X) const {
     return {frame.volume(), shares.value_or(SpringContributions{})};
 }
 
-// A cube's highest frequency is omega^2 = 12 max(K, 5 G / 3) / (rho l^2), which is that of its own
-// stretching or, for negative kappa, of its springs alone; 3/2 of modulus times length at each
-// corner says the same. Other boxes by Gershgorin's theorem: a spring k adds 2 k to the rows of
-// its ends, the volume term kappa / V |g_i| sum_j |g_j|, g the gradients of the volume; where
-// kappa is negative the term only lowers frequencies.
+// The highest frequency of a cube is omega^2 = 12 max(K, 5 G / 3) / (rho l^2): that of its change
+// of volume or, for negative kappa, that of its springs alone. A bound of 3/2 of modulus times
+// length at each corner gives this frequency.
+// Other boxes have bounds by Gershgorin's theorem. A spring k adds 2 k to the rows of its ends. The
+// volume term adds kappa / V |g_i| sum_j |g_j|, with the gradients g of the volume. If kappa is
+// negative, the volume term only lowers frequencies and is left out.
 std::array<double, 8> HybmssKernel::stiffness_bounds(const Element& e, const Corners& X) const {
     const double kappa = std::max(material.volume_modulus, 0.0);
     const BoxFrame frame(X);
@@ -140,7 +143,7 @@ std::array<double, 8> HybmssKernel::stiffness_bounds(const Element& e, const Cor
     for (std::size_t g = 0; g < springs.size(); ++g)
         for (const auto& ends : springs[g])
             for (const std::size_t i : ends) s[i] += 2.0 * e.springs.stiffnesses[g];
-    // All corners of a box are alike.
+    // |g_i| is the same for all corners of a box.
     const double gradient = 0.25 * std::sqrt(frame.b.cross(frame.c).squaredNorm() +
                                              frame.c.cross(frame.a).squaredNorm() +
                                              frame.a.cross(frame.b).squaredNorm());

@@ -1,4 +1,4 @@
-// A block whose elements all use one kernel.
+// Implementation of a block of elements with one kernel, and the requirements on kernels.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -11,27 +11,27 @@
 
 namespace incise::physics {
 
-/// A kernel whose elements have a history: ViscousKernel.
+/// A kernel whose elements have a viscous history, such as ViscousKernel.
 template <class Kernel>
 concept HasHistory = requires(Kernel& kernel) {
     kernel.begin_step(0.0);
 };
 
-/// A kernel that has to know the direction of fibres.
+/// A kernel that needs the direction of fibres.
 template <class Kernel>
 concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, Vec3 fibre) {
     kernel.precompute(X, fibre);
 };
 
-/// A kernel with a fast twin, `Kernel::Lanes`, that does the elastic forces of all elements of a
-/// block: SimdHemlElements. What a history adds to them comes from the kernel itself or, if it has
-/// any, its MemoryLanes.
+/// A kernel with a SIMD version `Kernel::Lanes`, such as SimdHemlElements, which computes the
+/// elastic forces of all elements of a block. The viscous forces come from `Kernel::MemoryLanes`
+/// if there are any, else from the kernel.
 template <class Kernel>
 concept HasLanes = requires {
     typename Kernel::Lanes;
 };
 
-/// One whose fast twin, in double precision, also has their energies, volumes and stresses.
+/// A kernel whose SIMD version also computes energies, volumes and stresses, in double precision.
 template <class Kernel>
 concept HasLanesOfResults = HasLanes<Kernel> &&
     requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
@@ -39,15 +39,16 @@ concept HasLanesOfResults = HasLanes<Kernel> &&
     lanes.set_results(kernel, x, std::span<ElementResult>());
 };
 
-/// A kernel with a fast twin of its history, `Kernel::MemoryLanes`, that advances it and does its
-/// forces for all elements of a block: SimdViscousElements.
+/// A kernel with a SIMD version of its history, `Kernel::MemoryLanes`, such as SimdViscousElements.
+/// It advances the history and computes the viscous forces of all elements of a block.
 template <class Kernel>
 concept HasMemoryLanes = requires {
     typename Kernel::MemoryLanes;
 };
 
-/// A block whose elements all use one kernel: HemlKernel or MassSpringKernel (which see for what
-/// a kernel has to have, and element_tangent.h), or ViscousKernel for what it has besides.
+/// A block whose elements all use one kernel. A kernel must have the members of MassSpringKernel,
+/// and an overload of element_tangent(). ViscousKernel shows the further members of a kernel with
+/// history. docs/architecture.md, A kernel, lists the places to change for a new one.
 template <class Kernel>
 class KernelBlock final : public ElementBlock {
   public:
@@ -132,7 +133,8 @@ class KernelBlock final : public ElementBlock {
         assert(is_numbered_);
         double energy = 0.0;
         if constexpr (HasHistory<Kernel>) {
-            // The values of which only this function uses: others may share the block.
+            // Other threads may read this block if it is shared. They do not read the values that
+            // begin_step() sets, which only this function uses.
             kernel_.begin_step(dt);
             const auto advance_one = [&](std::size_t s) {
                 return kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
@@ -221,7 +223,7 @@ class KernelBlock final : public ElementBlock {
 
     void erase(ElementId e) override {
         const std::size_t s = slot_of(e);
-        // The last row takes the place of the one that goes.
+        // The last row replaces the erased one.
         const auto last = static_cast<std::uint32_t>(rows_.size() - 1);
         rows_[row_of_[s]] = rows_[last];
         *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
@@ -271,13 +273,14 @@ class KernelBlock final : public ElementBlock {
 
     const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
 
-    /// By set(s), which sets the element in slot s.
+    /// Sets all elements by calls of set(s), which sets the element in slot s.
     template <class Lanes, class Set>
     void fill(Lanes& lanes, const Kernel& kernel, Set set) const {
         lanes.assign(elements_.size(), kernel);
         for (std::size_t s = 0; s < elements_.size(); ++s) set(s);
         lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
     }
+    /// Sets the changed elements, or all elements if some are in other slots than before.
     template <class Lanes, class Set>
     void update(Lanes& lanes, std::span<const std::size_t> changed, Set set) const {
         if (have_moved_) return fill(lanes, kernel_, set);
@@ -285,7 +288,8 @@ class KernelBlock final : public ElementBlock {
         lanes.set_nodes(local_corners_, static_cast<std::uint16_t>(nodes_.size()));
     }
 
-    /// use(lanes), these made anew where those for forces are in floats.
+    /// Returns use(lanes), with lanes in doubles. They are built for this call if those for forces
+    /// are in floats.
     template <class Use>
     auto lanes_in_doubles(Use use) const {
         if (kernel_.precision == Precision::double_precision) return use(lanes_);
@@ -315,7 +319,8 @@ class KernelBlock final : public ElementBlock {
         return row;
     }
 
-    /// evaluate(corners), or for a kernel with history evaluate(corners, kernel's end of step).
+    /// Returns evaluate(corners). For a kernel with history it returns evaluate(corners, end), with
+    /// the end of the step of this kernel.
     template <class Evaluate>
     auto at_end_of_step(std::size_t s, const EndOfStep& end, Evaluate evaluate) const {
         if constexpr (HasHistory<Kernel>)
@@ -352,7 +357,7 @@ class KernelBlock final : public ElementBlock {
         for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[row(s).nodes[k]];
         return x;
     }
-    /// By local number.
+    /// Returns the corners from positions by local number.
     Corners gather(std::size_t s, std::span<const LocalVector> positions) const {
         Corners x;
         for (std::size_t k = 0; k < num_corners; ++k)

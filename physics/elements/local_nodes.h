@@ -1,4 +1,4 @@
-// The nodes of a block of elements, by numbers of its own.
+// Vectors at the nodes of a block of elements, by the local numbers of these nodes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace incise::physics {
 
-/// What a block has of one of its nodes: a vector in space with a fourth number, which is zero, so
-/// that all of it is loaded at once.
+/// A vector at one node of a block. A fourth number, which is zero, makes it 32 bytes long, so that
+/// one instruction can load it.
 struct alignas(32) LocalVector {
     double numbers[4] = {};
 
@@ -26,18 +26,20 @@ struct alignas(32) LocalVector {
     const double* data() const { return numbers; }
 };
 
-/// Where the vector of the node of the given local number begins, in numbers: what processors add
-/// to an address as it is, while a number of vectors of 32 bytes has to be multiplied first.
+/// Returns the index of the first number of a node in an array of LocalVector, seen as doubles.
+/// Addressing modes of processors scale an index by 8 bytes, but not by the 32 bytes of a vector.
 inline std::uint16_t offset_of(std::uint16_t node) {
-    assert(node < 0x4000);  // blocks are smaller
+    assert(node < 0x4000);  // blocks have fewer nodes
     return static_cast<std::uint16_t>(4 * node);
 }
 
-/// Sets the offsets of the corners of elements that lie side by side in groups: one after the other
-/// in the first lane of each group, then in the second. So neighbours lie in different groups, as
-/// far as may be, and the lanes of a group seldom add to the same node.
-/// @param corners  local numbers of the nodes of all elements, those of one after the other
-/// @param spare    local number of a node that lanes without an element work on
+/// Distributes the elements of a block over the lanes of groups and sets the offsets of their
+/// corners. The elements fill the first lane of each group in turn, then the second lanes. Elements
+/// with neighbouring numbers are therefore in different groups where possible, and the lanes of a
+/// group seldom add to the same node.
+/// @param groups   receive the offsets; enough for all elements
+/// @param corners  local numbers of the nodes of all elements, element by element
+/// @param spare    local number of the spare node for lanes without an element
 template <class Group>
 void set_offsets_of_lanes(std::vector<Group>& groups, std::span<const std::uint16_t> corners,
                           std::uint16_t spare) {

@@ -1,4 +1,5 @@
-// The classical mass-spring model on one tetrahedron: a baseline to compare with, not a material.
+// The classical mass-spring model on one tetrahedron, as a baseline for comparison.
+// Source: Van Gelder 1998; docs/theory.md, Springs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,20 +11,21 @@
 
 namespace incise::physics {
 
-/// Linear springs along the six edges; see MassSprings in material.h for their stiffness. Springs
-/// know nothing of volume: flat and inverted elements are not told apart from others.
+/// The kernel of linear springs along the six edges; for their stiffness see MassSprings in
+/// material.h. The energy does not depend on the volume, so that springs do not resist inversion.
 struct MassSpringKernel {
     static constexpr std::size_t num_corners = 4;
     using Corners = std::array<Vec3, 4>;
     struct Element {
         double volume;                       ///< m3
-        std::array<double, 6> rest_lengths;  ///< m, edges as in `edges`
-        std::array<double, 6> stiffnesses;   ///< N/m, this element's share
+        std::array<double, 6> rest_lengths;  ///< m, in the order of `edges`
+        std::array<double, 6> stiffnesses;   ///< N/m, the share of this element
     };
+    /// The two corners of each edge.
     static constexpr std::array<std::array<std::size_t, 2>, 6> edges = {
         {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}, {3, 1}}};
 
-    double young;
+    double young;  ///< Young's modulus, Pa
 
     Element precompute(const Corners& X) const {
         Element e{};
@@ -39,6 +41,7 @@ struct MassSpringKernel {
         return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]) / e.volume;
     }
 
+    /// Returns the modulus times the rest volume, J.
     double stiffness_energy(const Element& e) const { return young * e.volume; }
 
     double energy(const Element& e, const Corners& x) const {
@@ -56,7 +59,7 @@ struct MassSpringKernel {
             const auto [i, j] = edges[k];
             const Vec3 v = x[j] - x[i];
             const double length = v.norm();
-            if (length == 0.0) continue;  // no direction to push in
+            if (length == 0.0) continue;  // the force has no direction
             const Vec3 pull = e.stiffnesses[k] * (length - e.rest_lengths[k]) / length * v;
             f[i] += pull;
             f[j] -= pull;
@@ -64,7 +67,9 @@ struct MassSpringKernel {
         return f;
     }
 
-    /// A spring k between two nodes adds k to the diagonal and k beside it: 2k in each row.
+    /// Returns the contribution of the element to the bound on the stiffness of each corner at rest
+    /// (stable_step.h), N/m. A spring k adds 2k to both of its ends: k on the diagonal of the
+    /// matrix, and k beside it.
     std::array<double, 4> stiffness_bounds(const Element& e, const Corners&) const {
         std::array<double, 4> s{};
         for (std::size_t k = 0; k < edges.size(); ++k)

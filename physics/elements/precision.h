@@ -1,4 +1,4 @@
-// What kind of numbers the fast forces are computed in.
+// The precision of forces by SIMD.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,9 +6,9 @@
 
 namespace incise::physics {
 
-/// That of the explicit elastic forces of an element; all else is in doubles. Single takes less
-/// time and memory; its forces are good to some 1e-6 of an element's stiffness times the
-/// area of its sides: docs/theory.md, Lanes.
+/// The precision of the elastic forces in explicit steps; everything else is in doubles. Single
+/// precision needs less time and memory. Its forces have errors of about 1e-6 of the stiffness of
+/// an element times the area of its faces: docs/theory.md, Lanes.
 enum class Precision : std::uint8_t { double_precision, single_precision };
 
 }  // namespace incise::physics

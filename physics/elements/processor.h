@@ -1,16 +1,16 @@
-// What the processor at hand can do. Fast kernels are compiled for each kind: see lanes.h.
+// The instruction set of the processor. SIMD kernels are compiled for each one: physics/simd.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 namespace incise::physics {
 
-/// Instruction sets that kernels are compiled for, each with all of the ones before.
+/// The instruction sets for which kernels are compiled. Each one includes those before it.
 enum class Processor { plain, avx2, avx512 };
 
-/// The best that the machine has.
+/// Returns the largest instruction set of this machine.
 Processor processor();
 
-/// The one for the processor of three functions that are compiled from the same text.
+/// Returns the one of three functions, compiled from the same source, that suits the processor.
 template <class Function>
 Function* choose(Processor processor, Function* plain, Function* avx2, Function* avx512) {
     switch (processor) {

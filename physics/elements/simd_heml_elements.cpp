@@ -60,7 +60,8 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
     LinkGroup<Number>& group = groups.links[g];
     for (int k = 0; k < 6; ++k)
         group.rest_links[k][lane] = static_cast<Number>(element.rest_links[k]);
-    // (V^T V)^-1 from V^-1: to invert the product would square what needles lose to rounding.
+    // (V^T V)^-1 is computed from V^-1. To invert the product would square the loss of accuracy in
+    // needles.
     const Mat3& W = element.inverse_edges;
     const auto product = [&](int a, int b) { return W.row(a).dot(W.row(b)); };
     const double G[] = {product(0, 0), product(1, 1), product(2, 2),

@@ -1,6 +1,6 @@
-// The fast forces and energies of HEML: elements side by side, one a lane. Equal to those of
-// HemlKernel, the reference, but for rounding: to doubles, or to floats where the kernel has single
-// precision.
+// Forces and energies of HEML by SIMD, with one element in each lane. They equal those of the
+// reference, HemlKernel, within the rounding of doubles, or of floats in single precision.
+// Source: docs/theory.md, Lanes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -21,60 +21,71 @@ namespace incise::physics {
 struct HemlKernel;
 struct LinkElement;
 
-/// Eight elements, or sixteen in floats, as the force loop reads them. Where the vtr and Mtr of the
-/// paper have 27 numbers these have the six of G = (V^T V)^-1, V the rest edges, from which all of
-/// those follow: docs/theory.md, Lanes.
+/// A group of eight elements, or of sixteen in floats, as the force loop reads it. It has the six
+/// numbers of G = (V^T V)^-1, with the rest edges V. The 27 numbers of vtr and Mtr of the paper
+/// follow from G: docs/theory.md, Lanes.
 template <class Number>
 struct alignas(64) LinkGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
-    Number rest_links[6][size];           ///< m2, in the order of squared_links
-    Number G[6][size];                    ///< 11, 22, 33, 12, 23, 31: 1/m2
-    Number volume[size];                  ///< m3
-    Number per_six_volumes[size];         ///< 1/m3: a product is sooner there than a quotient
-    std::uint16_t offsets[4][size] = {};  ///< of the corners: offset_of
+    Number rest_links[6][size];           ///< m2, in the order of squared_links()
+    Number G[6][size];                    ///< components 11, 22, 33, 12, 23, 31, 1/m2
+    Number volume[size];                  ///< at rest, m3
+    Number per_six_volumes[size];         ///< 1/(6 volume), 1/m3; it saves a slow division
+    std::uint16_t offsets[4][size] = {};  ///< of the corners; see offset_of()
 };
 
-/// u = V^-1 a0 of as many elements with fibres, 1/m.
+/// The vectors u = V^-1 a0 of a group of elements with fibres, 1/m.
 template <class Number>
 struct alignas(64) FibreGroup {
     Number u[3][LinkGroup<Number>::size];
 };
 
+/// The groups of a block.
 template <class Number>
 struct LinkGroups {
     std::vector<LinkGroup<Number>> links;
-    std::vector<FibreGroup<Number>> fibres;  ///< empty without
+    std::vector<FibreGroup<Number>> fibres;  ///< empty for a law without fibres
 };
 
-/// The elements of a block.
+/// The elements of a block in the layout for SIMD. Elements are numbered from 0 in the order of the
+/// block. All results are the same bit for bit on every processor.
 class SimdHemlElements {
   public:
-    /// Makes room for so many elements, of the kernel given and in its precision, in place of what
-    /// there was.
+    /// Replaces the contents by `num_elements` elements without values, in the precision of the
+    /// kernel.
     void assign(std::size_t num_elements, const HemlKernel& kernel);
-    /// Sets what the element of the given number, from 0, has but its nodes.
+    /// Sets the values of element `i`, except for its nodes.
     void set(std::size_t i, const LinkElement& element);
-    /// See set_offsets_of_lanes.
+    /// Sets the nodes of all elements; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
-    /// Adds each element's forces, N, to those of its nodes. The same bits on every processor.
-    /// @param positions m; both by local number
+    /// Adds the forces of the elements to those of their nodes.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @param forces     N, by local number
+    /// @param next       memory to prefetch; see ElementBlock::compute_forces
     void add_forces(const HemlKernel& kernel, const LocalVector* positions, LocalVector* forces,
                     std::span<const std::byte> next) const;
-    /// What add_forces reads of the elements.
+    /// Returns the memory of the elements that add_forces() reads first.
     std::span<const std::byte> bytes() const;
 
-    /// From the elements' energies by the law of the kernel, which are those of HemlKernel::energy
-    /// within rounding, zero at rest; and volume ratios, to the bit as HemlKernel::volume_ratio.
-    /// The same bits on every processor. In double precision only, as floats at rest have strains.
-    /// @param positions m, by local number
+    /// Returns the totals of the elastic energies and volume ratios. Energies equal those of
+    /// HemlKernel::energy within rounding, and are zero at rest. Volume ratios equal those of
+    /// HemlKernel::volume_ratio bit for bit.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @pre  double precision, since floats would have strains at rest
     BlockState state(const HemlKernel& kernel, const LocalVector* positions) const;
-    /// Sets all of the elements' results, in the order of their numbers, but volumes at rest, which
-    /// are read: as the reference within rounding. In double precision only, the same bits on every
-    /// processor.
+    /// Sets the results of all elements, in their order. They equal those of the reference within
+    /// rounding.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @param results    their rest volumes are inputs
+    /// @pre  double precision
     void set_results(const HemlKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
-    /// Those in the numbers that the kernel's precision asks for.
+    /// Returns the groups.
+    /// @pre  `Number` is that of the precision of the kernel: double or float
     template <class Number>
     const LinkGroups<Number>& groups() const {
         return std::get<LinkGroups<Number>>(groups_);
@@ -89,11 +100,12 @@ template <class Number>
 using AddHemlForces = void(const Law& law, double inversion_threshold,
                            const LinkGroups<Number>& groups, const LocalVector* positions,
                            LocalVector* forces, std::span<const std::byte> next);
-/// What SimdHemlElements calls, by processor; for double and float.
+/// Returns the function that SimdHemlElements::add_forces calls on a processor, for double or
+/// float.
 template <class Number>
 AddHemlForces<Number>* heml_forces_for(Processor processor);
 
-/// Both set what lanes have of each group.
+/// Functions that set the results of each group.
 using HemlEnergies = void(const Law& law, double inversion_threshold,
                           const LinkGroups<double>& groups, const LocalVector* positions,
                           ElementEnergies* energies);

@@ -1,6 +1,6 @@
-// The fast forces and energies of HybMSS: cells side by side, one a lane. Equal to those of
-// HybmssKernel, the reference, but for rounding: to doubles, or to floats where the kernel has
-// single precision.
+// Forces and energies of HybMSS by SIMD, with one cell in each lane. They equal those of the
+// reference, HybmssKernel, within the rounding of doubles, or of floats in single precision.
+// Source: docs/theory.md, Lanes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -19,44 +19,56 @@ namespace incise::physics {
 struct HybmssKernel;
 struct HybmssElement;
 
-/// Eight cells, or sixteen in floats, as the force loop reads them.
+/// A group of eight cells, or of sixteen in floats, as the force loop reads it.
 template <class Number>
 struct alignas(64) CellGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
-    Number stiffnesses[7][size];          ///< of springs by group, as in SpringContributions: N/m
-    Number rest_pulls[7][size];           ///< stiffness times rest length: N
-    Number volume[size];                  ///< m3
-    std::uint16_t offsets[8][size] = {};  ///< of the corners: offset_of
+    Number stiffnesses[7][size];          ///< of springs by group, as in SpringContributions, N/m
+    Number rest_pulls[7][size];           ///< stiffness times rest length, N
+    Number volume[size];                  ///< at rest, m3
+    std::uint16_t offsets[8][size] = {};  ///< of the corners; see offset_of()
 };
 
-/// The cells of a block.
+/// The cells of a block in the layout for SIMD. Cells are numbered from 0 in the order of the
+/// block. All results are the same bit for bit on every processor.
 class SimdHybmssElements {
   public:
-    /// Makes room for so many cells, in the kernel's precision, in place of what there was.
+    /// Replaces the contents by `num_elements` cells without values, in the precision of the
+    /// kernel.
     void assign(std::size_t num_elements, const HybmssKernel& kernel);
-    /// Sets what the cell of the given number, from 0, has but its nodes.
+    /// Sets the values of cell `i`, except for its nodes.
     void set(std::size_t i, const HybmssElement& element);
-    /// See set_offsets_of_lanes.
+    /// Sets the nodes of all cells; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
-    /// Adds each cell's forces, N, to those of its nodes. The same bits on every processor.
-    /// @param positions m; both by local number
+    /// Adds the forces of the cells to those of their nodes.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @param forces     N, by local number
+    /// @param next       memory to prefetch; see ElementBlock::compute_forces
     void add_forces(const HybmssKernel& kernel, const LocalVector* positions, LocalVector* forces,
                     std::span<const std::byte> next) const;
-    /// What add_forces reads of the cells.
+    /// Returns the memory of the cells that add_forces() reads first.
     std::span<const std::byte> bytes() const;
 
-    /// In double precision only, as what follows; that of the reference within rounding, but volume
-    /// ratios to the bit, and without energy where that has none for springs of their rest lengths.
-    /// The same bits on every processor.
-    /// @param positions m, by local number
+    /// Returns the totals of the elastic energies and volume ratios. Energies equal those of
+    /// HybmssKernel::energy within rounding, and are zero where these are zero because all springs
+    /// have their rest lengths. Volume ratios equal those of HybmssKernel bit for bit.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @pre  double precision
     BlockState state(const HybmssKernel& kernel, const LocalVector* positions) const;
-    /// Sets all of the cells' results, in the order of their numbers, but volumes at rest, which
-    /// are read.
+    /// Sets the results of all cells, in their order. They equal those of the reference within
+    /// rounding.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @param results    their rest volumes are inputs
+    /// @pre  double precision
     void set_results(const HybmssKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
 
-    /// Those in the numbers that the kernel's precision asks for.
+    /// Returns the groups.
+    /// @pre  `Number` is that of the precision of the kernel: double or float
     template <class Number>
     std::span<const CellGroup<Number>> groups() const {
         return std::get<std::vector<CellGroup<Number>>>(groups_);
@@ -71,11 +83,12 @@ template <class Number>
 using AddHybmssForces = void(double volume_modulus, std::span<const CellGroup<Number>> groups,
                              const LocalVector* positions, LocalVector* forces,
                              std::span<const std::byte> next);
-/// What SimdHybmssElements calls, by processor; for double and float.
+/// Returns the function that SimdHybmssElements::add_forces calls on a processor, for double or
+/// float.
 template <class Number>
 AddHybmssForces<Number>* hybmss_forces_for(Processor processor);
 
-/// Both set what lanes have of each group.
+/// Functions that set the results of each group.
 using HybmssEnergies = void(double volume_modulus, std::span<const CellGroup<double>> groups,
                             const LocalVector* positions, ElementEnergies* energies);
 using HybmssStates = void(double volume_modulus, std::span<const CellGroup<double>> groups,

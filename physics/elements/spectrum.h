@@ -1,3 +1,4 @@
+// Eigenvalues and eigenvectors of symmetric matrices, in one compiled function for all sizes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -5,14 +6,14 @@
 
 namespace incise::physics {
 
-/// Of a symmetric matrix.
+/// Eigenvalues and eigenvectors of a symmetric matrix.
 struct Spectrum {
-    Eigen::VectorXd values;   ///< ascending
-    Eigen::MatrixXd vectors;  ///< columns of length 1, at right angles, in the order of values
+    Eigen::VectorXd values;   ///< in ascending order
+    Eigen::MatrixXd vectors;  ///< orthonormal columns, in the order of `values`
 };
 
-/// Reads the lower triangle only. One function for all sizes: Eigen's solver takes the compiler
-/// longer than any other file, once more for each size that is known to it.
+/// Returns the spectrum of a symmetric matrix; only its lower triangle is read. The function has no
+/// fixed size, since the solver of Eigen takes long to compile for each size.
 /// Cost: some 10 n^3 operations.
 Spectrum spectrum(const Eigen::Ref<const Eigen::MatrixXd>& symmetric);
 

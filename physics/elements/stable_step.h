@@ -1,4 +1,5 @@
-// The largest stable step of the explicit integrator, kept up to date node by node.
+// The stable step of the explicit integrator, updated node by node.
+// Source: docs/theory.md, Stable step.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -7,31 +8,36 @@
 
 namespace incise::physics {
 
-/// Bound dt = 2 / sqrt(max_i s_i / m_i) on the step of semi-implicit Euler, where s_i sums over
-/// the elements at node i what Gershgorin's theorem makes of their stiffness at rest. Rigorous
-/// there: never above 2 / omega_max, in practice 0.5 to 0.85 of it. Large strain changes the
-/// stiffness; the safety factor of the step is for that.
+/// The bound dt = 2 / sqrt(max_i s_i / m_i) on the step of symplectic (semi-implicit) Euler.
+///
+/// m_i is the mass of node i. s_i is a bound of the stiffness at the node: a sum over its elements,
+/// by Gershgorin's theorem. At rest the bound is never above 2 / omega_max, and in practice 0.5 to
+/// 0.85 of it. Large strain changes the stiffness, which the safety of the step has to cover.
+/// @thread One thread at a time.
 class StableStep {
   public:
-    /// Sets a node's quotient s/m (N/m, kg); a node without mass, a dead one, has none.
+    /// Sets the quotient s/m of a node from its stiffness s, N/m, and its mass m, kg. A node
+    /// without mass, which is dead, does not count.
     void set(std::size_t node, double stiffness, double mass);
-    /// Drops the nodes from `num_nodes` on.
+    /// Removes the nodes from `num_nodes` on.
     void truncate(std::size_t num_nodes);
 
-    /// Seconds; infinite without a node. Cost: proportional to the blocks of nodes set since the
-    /// last call. The maximum is exact, so no history shows in it.
+    /// Returns the bound, s; infinite without nodes. It does not depend on the order of the calls
+    /// of set(). Cost: proportional to the number of nodes / 256, and to the blocks of 256 nodes
+    /// that have changed since the last call.
     double value() const;
 
-    /// That of a node that has been set, 1/s2.
+    /// Returns the quotient s/m of a node, 1/s2.
+    /// @pre  it was set
     double quotient(std::size_t node) const { return quotients_[node]; }
 
-    /// The node that sets it; 0 without a node.
+    /// Returns the node with the largest quotient; 0 without nodes. Cost: O(n).
     std::size_t limiting_node() const;
 
   private:
     static constexpr std::size_t block_size = 256;
-    std::vector<double> quotients_;
-    mutable std::vector<double> block_max_;  // negative: to be found anew
+    std::vector<double> quotients_;          // by node, 1/s2; 0 for a dead node
+    mutable std::vector<double> block_max_;  // by block; negative: not known
 };
 
 }  // namespace incise::physics

@@ -16,10 +16,10 @@ State::State(const topology::Mesh& mesh, std::size_t history_size)
       velocities_(positions_.size(), Vec3::Zero()),
       history_(history_size, mesh.element_capacity()) {}
 
-// Keeps momentum and centre of mass; equal states stay what they are to the bit.
+// A merge keeps momentum and centre of mass. If both states are equal, they stay so bit for bit.
 void State::merge(NodeId absorbed, NodeId survivor, std::span<double> masses) {
     const std::size_t from = absorbed.index(), into = survivor.index();
-    if (masses[from] == 0.0) return;  // born in the same edit: nothing to bring
+    if (masses[from] == 0.0) return;  // the node was added by the same edit and has no state
     Merge merge{survivor, positions_[into], velocities_[into], {}, {}};
     const double mass = masses[from] + masses[into];
     const double weight = masses[from] / mass;
@@ -32,8 +32,8 @@ void State::merge(NodeId absorbed, NodeId survivor, std::span<double> masses) {
     merges_[absorbed] = merge;
 }
 
-// The slot of the absorbed node still has its state; the survivor's is given back unless it has
-// moved on.
+// The absorbed node still has its state in the arrays. The state of the survivor is restored,
+// unless the survivor has moved since the merge.
 bool State::take_back_merge(NodeId absorbed) {
     const auto found = merges_.find(absorbed);
     if (found == merges_.end()) return false;
@@ -49,7 +49,7 @@ bool State::take_back_merge(NodeId absorbed) {
 }
 
 void State::take_from_sources(const NodeRecord& record) {
-    if (record.num_sources == 0) return;  // back with what it had
+    if (record.num_sources == 0) return;  // an undo brings it back, with its state
     Vec3 x = Vec3::Zero(), v = Vec3::Zero();
     for (int s = 0; s < record.num_sources; ++s) {
         const auto& source = record.sources[static_cast<std::size_t>(s)];
@@ -71,10 +71,11 @@ void State::apply(const topology::Mesh& mesh, const ChangeSet& changes, std::spa
     const auto first_born =
         std::lower_bound(added.begin(), added.end(), NodeId(changes.node_capacity_before),
                          [](const NodeRecord& record, NodeId n) { return record.id < n; });
-    // In reverse: the last of several nodes to join a survivor leaves it first.
+    // Nodes that an undo brings back, in descending order: of several nodes that were merged into
+    // one survivor, the last one leaves it first.
     for (auto record = std::make_reverse_iterator(first_born); record != added.rend(); ++record)
         if (!take_back_merge(record->id)) take_from_sources(*record);
-    // In ascending order: a node may lie between others that the edit made before it.
+    // New nodes, in ascending order: a node may lie between others that the same edit has added.
     std::for_each(first_born, added.end(), [&](const NodeRecord& r) { take_from_sources(r); });
     merges_.erase(merges_.lower_bound(NodeId(changes.node_capacity_after)), merges_.end());
     positions_.resize(changes.node_capacity_after);

@@ -1,4 +1,4 @@
-// What of a body changes as it moves: positions, velocities and the history of viscosity.
+// The state of a body, which changes with its motion: positions, velocities and viscous history.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,45 +15,50 @@
 
 namespace incise::physics {
 
-/// Positions, velocities and history by id, with a version that grows whenever any of them changes.
-/// What is computed from a state is kept with its version and is up to date while the versions are
-/// the same. Slots of dead nodes keep their last values, so that an undone edit finds them again.
+/// Positions, velocities and history by id, with a version that grows when any of them changes.
+///
+/// Results that are computed from a state are stored with its version. They are up to date as long
+/// as the versions are equal. Dead nodes keep their last values, so that an edit can be undone.
 class State {
   public:
-    /// At rest, in the rest positions.
-    /// @param history_size see ViscousHistory
+    /// Sets all nodes to their rest positions, without velocity. For `history_size` see
+    /// ViscousHistory.
     State(const topology::Mesh& mesh, std::size_t history_size);
 
     std::span<const Vec3> positions() const { return positions_; }    ///< m, current, by node id
     std::span<const Vec3> velocities() const { return velocities_; }  ///< m/s, by node id
     const ViscousHistory& history() const { return history_; }
-    /// Edits leave it as it is, unless they move a node that was there before: who follows them
-    /// knows what they touch.
+    /// Returns the version. An edit changes it only if the edit moves a node that existed before:
+    /// by a merge, or by the undo of one. Other results must follow the edit themselves.
     std::uint64_t version() const { return version_; }
 
-    /// The state itself, to be changed. A new version begins with the call.
+    /// Writable views of the state.
     struct Values {
         std::span<Vec3> positions, velocities;
         ViscousHistory& history;
     };
+    /// Increases the version and returns the state for changes.
     Values change() {
         ++version_;
         return {positions_, velocities_, history_};
     }
 
-    /// Follows an edit; see Model::apply for what nodes take over.
-    /// @param masses lumped, kg, by node id, of before the edit; that of a node that takes in
-    ///               another one becomes that of both
+    /// Follows an edit; for the values of new and merged nodes see Model::apply.
+    /// @param mesh     the mesh after the edit
+    /// @param changes  the record of the edit
+    /// @param masses   lumped, kg, by node id, before the edit; the mass of a merged node is added
+    ///                 to that of its survivor
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes,
                std::span<double> masses);
 
     void save(ArchiveWriter& ar) const;
-    /// Throws InputError for the state of another body, and for one that is not finite.
+    /// Reads a saved state. Throws InputError, and changes nothing, for the state of another body
+    /// and for a state that is not finite.
     void restore(ArchiveReader& ar);
 
   private:
-    /// What a merge did to the node that went on: undone before anything moves, it gives both
-    /// nodes back what they had, to the bit.
+    /// The record of a merge. With it, an undo before any motion restores the states of both nodes
+    /// bit for bit.
     struct Merge {
         NodeId survivor;
         Vec3 position_before, velocity_before, position_after, velocity_after;
@@ -68,7 +73,7 @@ class State {
 
     std::vector<Vec3> positions_, velocities_;
     ViscousHistory history_;
-    std::map<NodeId, Merge> merges_;  // by the node that was absorbed
+    std::map<NodeId, Merge> merges_;  // by the absorbed node
     std::uint64_t version_ = 1;
 };
 

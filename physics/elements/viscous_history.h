@@ -1,4 +1,4 @@
-// What viscous elements remember of their past, by element id; it follows the mesh through edits.
+// The history of viscous elements: their stored stresses, by element id, which follow edits.
 // Source: HEML 2015, section 3.5, on stress instead of nodal forces: docs/theory.md, Viscosity.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -14,22 +14,26 @@
 
 namespace incise::physics {
 
-/// For each element its stress after the last step, without viscosity, and that of each term of its
-/// material's Prony series, pascals, per volume at rest; what tensors these are is the kernel's
-/// affair (viscous_kernel.h, nodal_viscous_kernel.h). Zero for elements that were never strained.
-/// Slots of dead elements keep their last values, so that an undone edit finds them again. Memory:
-/// the longest of its materials' for all elements of a body in which any is viscous; else none.
+/// The stresses that each element stores: that of the law after the last step, then that of each
+/// term of the Prony series of its material, Pa. The kernel defines which stress tensors these are
+/// (viscous_kernel.h, nodal_viscous_kernel.h). They are zero for an element that was never
+/// strained.
+///
+/// Dead elements keep their values, so that an edit can be undone. All elements of a body have the
+/// same number of values, as many as the material with the most terms needs. A body without viscous
+/// material stores nothing.
 class ViscousHistory {
   public:
-    /// @param size the most numbers that an element remembers; 0: nothing is kept
+    /// Sets all values to zero. `size` is the number of values of an element; 0: nothing is stored.
     ViscousHistory(std::size_t size, std::size_t num_elements) : size_(size) {
         resize(num_elements);
     }
 
-    /// Whether there is nothing to remember: no material is viscous.
+    /// True if nothing is stored, as no material is viscous.
     bool is_empty() const { return size_ == 0; }
 
-    /// More numbers than the element's material needs, if another needs more.
+    /// Returns the values of an element. There may be more than its material needs; those at the
+    /// end are then unused.
     std::span<const double> of(ElementId e) const {
         return std::span(values_).subspan(e.index() * size_, size_);
     }
@@ -37,17 +41,18 @@ class ViscousHistory {
         return std::span(values_).subspan(e.index() * size_, size_);
     }
 
-    /// All of it in the order of ids, for copies and comparison.
+    /// Returns all values in the order of element ids, for copies and comparison.
     std::span<const double> values() const { return values_; }
-    /// @pre values.size() is that of values()
+    /// Replaces all values.
+    /// @pre  there are as many as values() has
     void set_values(std::span<const double> values) {
         assert(values.size() == values_.size());
         values_.assign(values.begin(), values.end());
     }
 
-    /// Parts of a divided element inherit what it remembers as it is: stresses are densities, which
-    /// the parts share with the whole. Elements that come back find what
-    /// they had. Cost: proportional to the elements added.
+    /// Follows an edit. Parts of a divided element inherit its values unchanged, since a linear
+    /// element has the same stress everywhere. Elements that an undo brings back still have their
+    /// values. Cost: proportional to the elements added.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
   private:

@@ -36,7 +36,7 @@ SymmetricTensor sum_of_terms(std::span<const double> memory, std::size_t num_ter
     return sum;
 }
 
-/// Work done against the mean of two states of an element's forces, joules.
+/// Returns the work done against the mean of the forces f and g on a motion from `before` to x, J.
 double work_against(const std::array<Vec3, 4>& f, const std::array<Vec3, 4>& g,
                     const std::array<Vec3, 4>& before, const std::array<Vec3, 4>& x) {
     double work = 0.0;
@@ -134,7 +134,8 @@ double ViscousKernel::advance(const Element& e, const Corners& before, const Cor
         tensor(memory, 0) = S;
     };
     if (std::min(volume_ratio(e, before), volume_ratio(e, x)) < inversion_threshold) {
-        // The stress remembered is not all of the law's: work and energy as they are.
+        // Below the threshold, the stored stress is not the full stress of the law. The work is
+        // therefore computed from the forces, and the energy from the law.
         const Corners f = forces(e, before, memory);
         follow();
         return work_against(f, forces(e, x, memory), before, x) -

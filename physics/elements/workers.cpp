@@ -25,18 +25,19 @@ namespace incise::physics {
 
 namespace {
 
-/// Makes as many threads as TBB will make, all at once, and ends them: what is refused here can be
-/// caught. TBB's own may still be refused where memory is short, as each of them takes some.
+/// Starts as many threads as TBB will start, at the same time, and ends them. If the system refuses
+/// a thread here, the error can be caught. A later thread of TBB may still be refused when memory
+/// is short.
 void require_threads(int count) {
     std::mutex gate;
-    std::vector<std::jthread> threads;  // joined when the gate is open
+    std::vector<std::jthread> threads;  // joined after the gate is unlocked
     const std::lock_guard closed(gate);
     for (int i = 0; i < count; ++i)
         threads.emplace_back([&gate] { const std::lock_guard opened(gate); });
 }
 
-/// Tells the thread sanitizer what it cannot see, as TBB is not built for it: all work begins after
-/// what came before, and what comes after begins when all has ended.
+/// Tells the thread sanitizer the order of events, which it cannot see since TBB is not built for
+/// it. All work begins after the events before it, and ends before the events after it.
 class Order {
   public:
 #ifdef __SANITIZE_THREAD__
@@ -53,7 +54,8 @@ class Order {
 #endif
 };
 
-/// Work for so many threads, each of which waits for the others; not for ever, as fewer may come.
+/// Runs one task for each thread, which waits until all threads run one. It waits 100 ms at most,
+/// since there may be fewer threads.
 void meet(int num_threads) {
     using Clock = std::chrono::steady_clock;
     const auto latest = Clock::now() + std::chrono::milliseconds(100);
@@ -76,7 +78,8 @@ struct Workers::Arena {
                 static_cast<std::size_t>(std::max(num_threads, num_cores()))),
           arena(num_threads) {
         require_threads(num_threads - 1);
-        // TBB makes its threads when there is work for them: now, not when memory is taken.
+        // TBB starts its threads when there is work for them. This work makes it start them now,
+        // while there is still memory for them.
         try {
             arena.execute([&] { meet(num_threads); });
         } catch (const std::exception& error) {
@@ -84,7 +87,7 @@ struct Workers::Arena {
             throw std::system_error(EAGAIN, std::generic_category(), error.what());
         }
     }
-    tbb::global_control limit;  // else there are no more threads than cores, and a complaint
+    tbb::global_control limit;  // without it, TBB starts no more threads than cores, and warns
     tbb::task_arena arena;
 };
 
@@ -99,11 +102,11 @@ Workers& Workers::operator=(Workers&&) noexcept = default;
 int Workers::num_cores() { return tbb::info::default_concurrency(); }
 
 bool Workers::is_refused_thread(const std::exception& error) {
-    return std::string_view(error.what()).starts_with("pthread_create has failed");  // TBB's words
+    return std::string_view(error.what()).starts_with("pthread_create has failed");  // text of TBB
 }
 
 void Workers::for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const {
-    constexpr std::size_t few = 4;  // done sooner than other threads are woken
+    constexpr std::size_t few = 4;  // takes less time than to wake other threads
     if (!arena_ || n < few) {
         for (std::size_t i = 0; i < n; ++i) work(i);
         return;

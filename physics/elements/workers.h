@@ -1,5 +1,5 @@
-// The threads that a model computes with. What they do is divided in the same way for any number
-// of them, so that results are the same to the bit.
+// The threads of a model. The work is divided in the same way for any number of threads, so that
+// results are the same bit for bit.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,26 +12,28 @@
 
 namespace incise::physics {
 
-/// Nodes are worked on in ranges of so many ids: sums over them are those over ranges, in order.
+/// The number of node ids in a range, the unit of work on nodes. Sums over nodes are formed by
+/// range, and the ranges are added in ascending order.
 inline constexpr std::size_t nodes_per_range = 512;
 
 inline std::size_t num_node_ranges(std::size_t num_nodes) {
     return (num_nodes + nodes_per_range - 1) / nodes_per_range;
 }
 
-/// Ids from `begin` to before `end`.
+/// Range `number` of nodes: the ids from `begin` to before `end`.
 struct NodeRange {
     std::size_t number, begin, end;
 };
 
+/// A group of threads, made by TBB, that share work.
 class Workers {
   public:
-    /// More threads than this are refused where users ask for them.
+    /// The largest number of threads that a user can ask for.
     static constexpr int max_threads = 256;
 
-    /// Throws std::system_error if the system has no memory for so many threads, or allows fewer.
-    /// @param num_threads at least 1, the caller's own among them; more than num_cores() come only
-    /// if no other Workers with fewer of them live
+    /// Creates `num_threads` threads, at least 1; the thread of the caller is one of them. More
+    /// than num_cores() threads are used only while no other Workers with fewer threads exist.
+    /// Throws std::system_error if the system has no memory for the threads or allows fewer.
     explicit Workers(int num_threads);
     ~Workers();
     Workers(Workers&&) noexcept;
@@ -39,19 +41,19 @@ class Workers {
 
     int num_threads() const { return num_threads_; }
 
-    /// How many the process may run at the same time.
+    /// Returns how many threads of the process can run at the same time.
     static int num_cores();
 
-    /// Whether TBB threw it since the system gives no further thread. It makes its threads from one
-    /// another, where nobody can catch it: the handler of std::terminate asks this.
+    /// True if the error is that of TBB when the system refuses a further thread. TBB throws it on
+    /// its own threads, where it cannot be caught. The handler of std::terminate needs this test.
     static bool is_refused_thread(const std::exception& error);
 
-    /// Calls work(i) for i from 0 to n - 1, in any order and at the same time if there are enough
-    /// to be worth it; returns when all are done. The first exception thrown comes out.
-    /// Takes no memory but what TBB keeps of its tasks.
+    /// Calls work(i) for i from 0 to n - 1, in any order, and returns when all calls have returned.
+    /// The calls are made by several threads at the same time, unless n is small. Throws the first
+    /// exception that a call throws. Allocates no memory except for the tasks of TBB.
     void for_each(std::size_t n, FunctionRef<void(std::size_t)> work) const;
 
-    /// Likewise work(range) for each range of so many nodes.
+    /// Calls work(range) for each range of `num_nodes` nodes, as for_each() does.
     template <class Work>
     void for_each_range(std::size_t num_nodes, Work work) const {
         for_each(num_node_ranges(num_nodes), [&](std::size_t r) {

@@ -1,4 +1,4 @@
-// A law that is not one of the library's own: that of a program which uses the library.
+// A law that a program supplies to the library.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -10,15 +10,15 @@
 
 namespace incise::physics {
 
-/// Holds any isotropic law. Make it with custom_law(). A law of the library's own is some times
-/// faster: this one is asked one element at a time, by a call that the compiler cannot see through.
+/// Holds any isotropic law; custom_law() makes one. The laws of the library are several times
+/// faster. A CustomLaw computes one element at a time, by a virtual call that cannot be inlined.
 class CustomLaw {
   public:
-    /// What is asked of a law.
+    /// The functions that a law provides.
     class Functions {
       public:
         virtual ~Functions() = default;
-        /// See LawResponse, with and without derivatives.
+        /// Returns the response to a strain; see LawResponse. `J0` is the inversion threshold.
         virtual LawResponse<double> response(const LinkStrain<double>& s, double J0) const = 0;
         virtual LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const = 0;
         virtual double rest_lambda() const = 0;  ///< Pa
@@ -35,7 +35,7 @@ class CustomLaw {
         if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
             return functions_->response(s, J0);
         } else {
-            // Lanes, one after the other.
+            // T is a vector of lanes: compute them one after the other.
             LawResponse<T> all{0.0, 0.0, 0.0, 0.0};
             for (int lane = 0; lane < T::size; ++lane) {
                 using Number = std::remove_cvref_t<decltype(s.a.v[lane])>;
@@ -54,8 +54,8 @@ class CustomLaw {
     std::shared_ptr<const Functions> functions_;
 };
 
-/// Makes a law of a struct that is written as those in law.h are: with rest_lambda(), rest_mu() and
-/// the template response(). examples/custom_law.cpp shows one.
+/// Makes a law from a struct with the members that the structs in law.h have: rest_lambda(),
+/// rest_mu() and the template response(). examples/custom_law.cpp shows one.
 template <class L>
 CustomLaw custom_law(L law) {
     class Held final : public CustomLaw::Functions {

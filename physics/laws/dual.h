@@ -1,5 +1,5 @@
-// Numbers that carry their derivatives by the invariants of strain: a law's response to them has
-// the second derivatives of its energy, from the same formulas and to the same digits.
+// Numbers with derivatives by the invariants of strain. The response of a law to these numbers has
+// the second derivatives of its energy, from the same formulas and with the same accuracy.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,16 +8,17 @@
 
 namespace incise::physics {
 
-/// A value with its first derivatives, in the order of LinkStrain: by a, b, J and f. Plain numbers
-/// are constants. Comparisons are those of the values: a branch differentiates the side it takes.
+/// A value with its first derivatives by a, b, J and f, in the order of LinkStrain. Plain numbers
+/// are constants. Comparisons compare the values, so a branch differentiates the side that it
+/// takes.
 struct Dual {
     double value = 0.0;
     Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
 
     Dual() = default;
-    Dual(double constant) : value(constant) {}  // implicit: formulas mix both kinds
+    Dual(double constant) : value(constant) {}  // implicit: formulas mix numbers and duals
     Dual(double v, const Eigen::Vector4d& g) : value(v), gradient(g) {}
-    /// The invariant of the given place: 0 for a, 1 for b, 2 for J, 3 for f.
+    /// Returns an invariant as a variable. `place` is 0 for a, 1 for b, 2 for J, 3 for f.
     static Dual variable(double v, int place) { return {v, Eigen::Vector4d::Unit(place)}; }
 
     Dual& operator+=(const Dual& o) { return *this = {value + o.value, gradient + o.gradient}; }

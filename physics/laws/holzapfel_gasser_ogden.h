@@ -1,6 +1,7 @@
-// Soft tissue with one family of collagen fibres, in parallel or dispersed about their direction.
+// Soft tissue with one family of collagen fibres, parallel or dispersed about their direction.
 // Source: T. C. Gasser, R. W. Ogden, G. A. Holzapfel, Journal of the Royal Society Interface 3
-// (2006) 15-35; with full invariants in the fibres' strain, for which see docs/theory.md, Fibres.
+// (2006) 15-35. The strain of the fibres has full, not isochoric, invariants: docs/theory.md,
+// Fibres.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,11 +9,11 @@
 
 namespace incise::physics {
 
-/// w = mu/2 (I1 J^-2/3 - 3) + K/2 (J - 1)^2 + k1/(2 k2) (exp(k2 E^2) - 1), the last term for E > 0
-/// only: fibres carry no compression. E = kappa (I1 - 3) + (1 - 3 kappa) (I4 - 1) is the mean of
-/// the fibres' squared stretches, less 1; I4 = a0 . C a0, a0 their direction at rest.
-/// mu and K are those of the ground substance, which at rest answers alone to a compression along
-/// the fibres.
+/// w = mu/2 (I1 J^-2/3 - 3) + K/2 (J - 1)^2 + k1/(2 k2) (exp(k2 E^2) - 1).
+/// The last term is zero for E <= 0, since fibres carry no compression.
+/// E = kappa (I1 - 3) + (1 - 3 kappa) (I4 - 1) is the mean squared stretch of the fibres, less 1.
+/// I4 = a0 . C a0, with the direction a0 of the fibres at rest.
+/// mu and K are those of the ground substance, which alone resists a compression along the fibres.
 struct HolzapfelGasserOgden {
     double mu, bulk_modulus;  ///< Pa
     double k1, k2;            ///< Pa, 1; above 0

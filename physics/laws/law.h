@@ -1,9 +1,7 @@
-// Hyperelastic laws as functions of link lengths. A new law is one struct and one alternative of
-// Law, both here, and the row of scenario/material_catalog.cpp that gives it its name and
-// parameters in a scenario: docs/adding-a-law.md shows it on Yeoh's law. Responses are templates
-// over the kind of number, so that tangents come from the same formulas: LawResponse. Source: HEML
-// 2015, section 4, with the corrections listed in docs/theory.md. SPDX-License-Identifier:
-// LGPL-3.0-or-later
+// Hyperelastic laws as functions of the strain of links. docs/adding-a-law.md shows how to add one.
+// Responses are templates over the type of number, so that tangents come from the same formulas.
+// Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <cmath>
@@ -16,8 +14,8 @@
 
 namespace incise::physics {
 
-/// w = lambda/2 (tr E)^2 + mu tr(E^2). Linear in E; softens in compression below a stretch of
-/// 0.577 and does not resist inversion.
+/// w = lambda/2 (tr E)^2 + mu tr(E^2). The stress S is linear in E. The law softens in compression,
+/// collapses in uniaxial compression below a stretch of 0.577, and does not resist inversion.
 struct SaintVenantKirchhoff {
     double lambda, mu;  ///< Pa
     static constexpr bool needs_J = false;
@@ -48,7 +46,7 @@ struct NeoHookean {
 };
 
 /// w = C1 (I1 - 3) + C2 (I2 - 3) - (2 C1 + 4 C2) ln J + lambda/2 (ln J)^2, so that at rest
-/// mu = 2 (C1 + C2) and the Lame constant is lambda + 4 C2. I2 - 3 = 2a + (a^2 - b)/2.
+/// mu = 2 (C1 + C2) and the Lame parameter is lambda + 4 C2. I2 - 3 = 2a + (a^2 - b)/2.
 struct MooneyRivlin {
     double c1, c2, lambda;  ///< Pa
 
@@ -65,7 +63,7 @@ struct MooneyRivlin {
     }
 };
 
-/// w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1), Ciarlet's form: convex in J.
+/// w = mu/2 (I1 - 3) - (mu + lambda/2) ln J + lambda/4 (J^2 - 1): Ciarlet's form, convex in J.
 struct CiarletNeoHookean {
     double mu, lambda;  ///< Pa
     static constexpr bool needs_b = false;
@@ -86,7 +84,7 @@ struct CiarletNeoHookean {
 };
 
 /// w = mu/(2 gamma) (exp(gamma (I1 - 3)) - 1) - mu ln J + lambda/2 (ln J)^2: stiffens with strain.
-/// At rest the Lame constants are lambda + 2 mu gamma and mu. HEML 2006, Table 1, corrected.
+/// At rest the Lame parameters are lambda + 2 mu gamma and mu. HEML 2006, Table 1, corrected.
 struct FungDemiray {
     double mu, gamma, lambda;  ///< Pa, 1, Pa
     static constexpr bool needs_b = false;
@@ -103,7 +101,7 @@ struct FungDemiray {
 };
 
 /// w = C1 (I1 J^-2/3 - 3) + C2 (I2 J^-4/3 - 3) + K/2 (J - 1)^2; neo-Hookean with C2 = 0. Changes
-/// of shape and of volume have energies of their own. HEML 2015, eq. (24).
+/// of shape and of volume have separate energies. HEML 2015, eq. (24).
 struct IsochoricMooneyRivlin {
     double c1, c2, bulk_modulus;  ///< Pa
 
@@ -163,17 +161,18 @@ struct Yeoh {
     }
 };
 
-/// w = mu/2 (I1 - 3 - ln((I1 + 1)/4)) - 3/4 mu (J - 1) + lambda/2 (J - 1)^2: defined and smooth for
-/// any deformation, also flat, inverted or collapsed ones, so that it needs no threshold. The
-/// logarithm takes the stiffness of an element collapsed to a point away, which then is no minimum
-/// of the energy, nor is a line. At rest the moduli are 3/4 mu and lambda - 5/8 mu.
+/// w = mu/2 (I1 - 3 - ln((I1 + 1)/4)) - 3/4 mu (J - 1) + lambda/2 (J - 1)^2. The energy is smooth
+/// for any deformation, also of flat, inverted or collapsed elements, so it needs no threshold J0.
+/// The logarithm removes the stiffness of an element collapsed to a point. Neither a point nor a
+/// line is then a minimum of the energy. At rest the shear modulus is 3/4 mu, and the Lame
+/// parameter is lambda - 5/8 mu.
 /// Source: B. Smith, F. de Goes, T. Kim, Stable Neo-Hookean Flesh Simulation, ACM Transactions on
-/// Graphics 37 (2018), eqs. (13) to (16), less the constant by which the energy at rest is 0.
+/// Graphics 37 (2018), eqs. (13) to (16), with a constant added that makes the energy at rest 0.
 struct StableNeoHookean {
-    double mu, lambda;  ///< Pa; constants of the law
+    double mu, lambda;  ///< Pa; constants of the law, not moduli at rest
     static constexpr bool needs_b = false;
 
-    /// The law that has these Lame constants at rest, Pa.
+    /// Returns the law that has these Lame parameters at rest, Pa.
     static StableNeoHookean of_rest_moduli(double rest_lambda, double rest_mu) {
         return {4.0 / 3.0 * rest_mu, rest_lambda + 5.0 / 6.0 * rest_mu};
     }
@@ -193,14 +192,15 @@ using Law = std::variant<SaintVenantKirchhoff, NeoHookean, MooneyRivlin, Ciarlet
                          FungDemiray, IsochoricMooneyRivlin, IsochoricFungDemiray, Ogden, Yeoh,
                          HolzapfelGasserOgden, StableNeoHookean, CustomLaw>;
 
-/// See LawResponse.
+/// Returns the response of a law to a strain; see LawResponse. `J0` is the inversion threshold.
 LawResponse<double> response(const Law& law, const LinkStrain<double>& strain, double J0);
 LawResponse<Dual> response(const Law& law, const LinkStrain<Dual>& strain, double J0);
 
 double rest_lambda(const Law& law);  ///< Pa
 double rest_mu(const Law& law);      ///< Pa
 
-/// What fibres add about rest; see HasFibres, zero without fibres.
+/// The contribution of fibres to the stiffness at rest; see HasFibres. Zero for a law without
+/// fibres.
 struct RestFibres {
     double modulus = 0.0;  ///< Pa
     double dispersion = 0.0;

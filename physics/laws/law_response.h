@@ -1,7 +1,7 @@
-// What a law is asked and answers, and the terms of volume that several laws have. All are
-// templates over the kind of number: plain ones, Dual for tangents, Lanes for the fast forces.
-// Formulas have no branches, as lanes may differ; and are inlined always, as a call would have the
-// lanes of all that is at work go through memory.
+// The arguments and results of a law, and the volume terms that several laws share. All are
+// templates over the type of number: double, Dual for tangents, Lanes for the fast forces.
+// Formulas have no branches, since lanes may differ. They are always inlined, since a call would
+// store all lanes in use to memory.
 // Source: HEML 2015, section 4, with the corrections listed in docs/theory.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -13,41 +13,43 @@
 
 namespace incise::physics {
 
-/// Strain of one element as its links see it. With dl the changes of the six squared edge
-/// lengths, E the Green-Lagrange strain and C = I + 2E:
+/// The strain of one element, as invariants that follow from its links. dl stands for the changes
+/// of the six squared edge lengths, E for the Green-Lagrange strain, and C = I + 2E. vtr and Mtr
+/// are those of the paper.
 template <class T>
 struct LinkStrain {
-    T a;  ///< vtr . dl = tr(2E) = I1 - 3, with the vtr and Mtr of the paper
+    T a;  ///< vtr . dl = tr(2E) = I1 - 3
     T b;  ///< dl . Mtr dl = tr((2E)^2)
-    T J;  ///< current over rest volume; negative when inverted
-    /// I4 - 1, I4 = a0 . C a0 being the squared stretch along the fibres; 0 without fibres.
+    T J;  ///< current over rest volume; negative if the element is inverted
+    /// I4 - 1, with the squared stretch I4 = a0 . C a0 along the fibres; 0 without fibres.
     T f = {};
 };
 
-/// The same strain in numbers that carry their derivatives by it.
+/// Returns the strain with each invariant as a variable, so that results have derivatives by it.
 inline LinkStrain<Dual> with_derivatives(const LinkStrain<double>& s) {
     return {Dual::variable(s.a, 0), Dual::variable(s.b, 1), Dual::variable(s.J, 2),
             Dual::variable(s.f, 3)};
 }
 
-/// Energy density per rest volume (J/m3) and its derivatives.
+/// The energy density, J/m3, and its derivatives by the invariants of LinkStrain.
 template <class T>
 struct LawResponse {
     T w, w_a, w_b, w_J;
-    T w_f = {};  ///< of laws with fibres
+    T w_f = {};  ///< only of laws with fibres
 };
 
-/// A law with one family of fibres, which asks for their direction at rest in each element. About
-/// rest they add c/2 (H : strain)^2 to the energy density where they are stretched, with
-/// H = dispersion 1 + (1 - 3 dispersion) a0 x a0 and c the modulus asked for here, Pa.
+/// A law with one family of fibres. It needs the direction a0 of the fibres at rest in each
+/// element. At small strain, stretched fibres add c/2 (H : strain)^2 to the energy density, with
+/// H = dispersion 1 + (1 - 3 dispersion) a0 x a0 and c = rest_fibre_modulus(), Pa.
 template <class Law>
 concept HasFibres = requires(const Law& law) {
     law.rest_fibre_modulus();
     law.dispersion;
 };
 
-/// Whether the fast forces have to work out the terms of w_b and of w_J. A law where one of them is
-/// zero throughout may say so: `static constexpr bool needs_b = false;`, or needs_J.
+/// True if the fast forces have to compute the terms of w_b, or for NeedsJ those of w_J. A law
+/// whose w_b is always zero may declare `static constexpr bool needs_b = false;`, and likewise
+/// needs_J.
 template <class Law>
 concept NeedsB = !requires {
     requires !Law::needs_b;
@@ -63,11 +65,13 @@ struct VolumeTerm {
     T value, first, second;
 };
 
-/// Below the threshold J0 a volume term follows its second-order expansion there, so that its
-/// force is the tangent at J0: finite and restoring through J = 0 and beyond.
-/// Source: HEML 2015, section 4.4, with slope and intercept corrected. An element collapsed to a
-/// point is a local minimum of this extension, and one collapsed to a line feels no force of
-/// volume: it recovers from flat and turned states, not from those two.
+/// Returns a volume term that below the threshold J0 is its second-order expansion at J0. Its force
+/// is then linear in J, and is finite and restoring through J = 0 and beyond.
+///
+/// An element recovers from flat and inverted states, but not from a point or a line. An element
+/// collapsed to a point is a local minimum of the energy, and one collapsed to a line has no force
+/// of volume.
+/// Source: HEML 2015, section 4.4, with slope and intercept corrected.
 template <class T, class Term>
 [[gnu::always_inline]] inline VolumeTerm<T> extended(const Term& term, const T& J, double J0) {
     using std::max;
@@ -76,7 +80,7 @@ template <class T, class Term>
     return {t.value + d * (t.first + 0.5 * d * t.second), t.first + d * t.second, t.second};
 }
 
-/// lambda/2 (ln J)^2 - p ln J: p is chosen by each law so that it is free of stress at rest.
+/// lambda/2 (ln J)^2 - p ln J. Each law has the p that makes it free of stress at rest.
 template <class T>
 [[gnu::always_inline]] inline VolumeTerm<T> logarithmic_volume_term(const T& J, double lambda,
                                                                     double p) {
@@ -86,7 +90,7 @@ template <class T>
             (lambda - lambda * ln + p) * per_J * per_J};
 }
 
-/// J^-p, by which isochoric laws take the change of volume out of an invariant of strain.
+/// J^-p. Isochoric laws multiply an invariant of strain by it to remove the change of volume.
 template <class T>
 [[gnu::always_inline]] inline VolumeTerm<T> power_of_volume(const T& J, double p) {
     using std::pow;
@@ -94,8 +98,8 @@ template <class T>
     return {power, -p * power * per_J, p * (p + 1.0) * power * per_J * per_J};
 }
 
-/// exp(x) - 1 and its derivative; beyond x = 20, where no tissue gets, the second-order expansion
-/// there, so that crushed elements have finite forces.
+/// exp(x) - 1 and its derivative. Beyond x = 20, which no tissue reaches, it is the second-order
+/// expansion at 20, so that crushed elements have finite forces.
 template <class T>
 struct Exponential {
     T value, first;
@@ -108,7 +112,7 @@ struct Exponential {
     }
 };
 
-/// K/2 (J - 1)^2: finite for any J.
+/// K/2 (J - 1)^2. It is finite for any J and needs no extension.
 template <class T>
 [[gnu::always_inline]] inline VolumeTerm<T> quadratic_volume_term(const T& J, double bulk_modulus) {
     return {0.5 * bulk_modulus * (J - 1.0) * (J - 1.0), bulk_modulus * (J - 1.0), bulk_modulus};

@@ -9,7 +9,7 @@ namespace incise::physics {
 
 namespace {
 
-/// To the last digit, also where they coincide.
+/// Returns the squared stretches, accurate also where they coincide.
 std::array<double, 3> squared_stretches(const LinkStrain<double>& s, double floor) {
     return SquaredStretches<double>(s, 1e-100, floor).all();
 }
@@ -22,11 +22,10 @@ LawResponse<double> Ogden::response(const LinkStrain<double>& s, double J0) cons
     return r;
 }
 
-// The sum P of h(c_k) as a function of I1, I2 and I3 = J^2: by the characteristic polynomial p(c),
-// dc = (c^2 dI1 - c dI2 + dI3) / p'(c). With e = (c^2, -c, 1) the first derivatives of P are the
-// divided differences of e_i h' over c0, c1, c2, and the second ones those of e_i e_j h' over the
-// same offsets, each taken twice.
-// Both to more digits than forces need them, which take the derivatives all together.
+// P is the sum of h(c_k) as a function of I1, I2 and I3 = J^2. The characteristic polynomial p(c)
+// gives dc = (c^2 dI1 - c dI2 + dI3) / p'(c). With e = (c^2, -c, 1), the first derivatives of P are
+// the divided differences of e_i h' over c0, c1, c2. The second derivatives are those of e_i e_j h'
+// over the same points, each taken twice.
 LawResponse<Dual> Ogden::response(const LinkStrain<Dual>& strain, double J0) const {
     const LinkStrain<double> s{strain.a.value, strain.b.value, strain.J.value};
     const double floor = J0 * J0;
@@ -34,10 +33,10 @@ LawResponse<Dual> Ogden::response(const LinkStrain<Dual>& strain, double J0) con
     const PowersOfStretches<double> powers(c, floor, 0.0);
     for (double& x : c) x = std::max(x, 0.0);
     std::sort(c.begin(), c.end());
-    const double J = s.J, I2_a = 2.0 + s.a;  // and I2_b = -1/2, I2_aa = 1
+    const double J = s.J, I2_a = 2.0 + s.a;  // dI2/da; dI2/db = -1/2, d2I2/da2 = 1
     const auto v = quadratic_volume_term(J, bulk_modulus);
     Eigen::Vector3d w_p(0.0, 0.0, v.first);          // derivatives by a, b and J
-    Eigen::Matrix3d w_pq = Eigen::Matrix3d::Zero();  // second ones
+    Eigen::Matrix3d w_pq = Eigen::Matrix3d::Zero();  // second derivatives
     w_pq(2, 2) = v.second;
     for (std::size_t i = 0; i < num_terms; ++i) {
         const auto [mu, alpha] = terms[i];

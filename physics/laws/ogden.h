@@ -1,5 +1,5 @@
-// Ogden's law: sums of powers of the principal stretches. The one law that is no plain function of
-// the invariants that links give, so its principal stretches are found from these.
+// Ogden's law: sums of powers of the principal stretches, which are computed from the invariants of
+// strain. Equations: docs/theory.md, Laws.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,13 +13,13 @@
 namespace incise::physics {
 
 /// w = sum_i 2 mu_i / alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3) + K/2 (J - 1)^2, with
-/// l_k = J^-1/3 times the principal stretches; the shear modulus at rest is the sum of the mu_i.
-/// Squared stretches below the square of the threshold J0 follow a parabola that is level at zero,
-/// so that flat elements have finite forces and those turned inside out come back.
+/// l_k = J^-1/3 times the principal stretches. The shear modulus at rest is the sum of the mu_i.
+/// Powers of squared stretches below J0^2 continue as a parabola with slope zero at zero stretch.
+/// Flat elements then have finite forces, and inverted elements recover.
 struct Ogden {
     static constexpr std::size_t max_terms = 6;
     struct Term {
-        double mu, alpha;  ///< Pa, 1; mu alpha may be negative in some terms, not in their sum
+        double mu, alpha;  ///< Pa, 1; mu alpha may be negative in a term, but not in the sum
     };
     std::array<Term, max_terms> terms{};
     std::size_t num_terms = 0;
@@ -31,26 +31,26 @@ struct Ogden {
         return sum;
     }
     double rest_lambda() const { return bulk_modulus - 2.0 / 3.0 * rest_mu(); }
-    /// Derivatives are such that stresses, where all of them stand together, are right to rounding;
-    /// each by itself is less so where stretches are alike.
+    /// Returns the response for forces. Stresses, which combine all derivatives, are accurate to
+    /// rounding. A single derivative is less accurate where stretches nearly coincide.
     template <class T>
     LawResponse<T> response(const LinkStrain<T>& s, double J0) const;
-    /// The same, with an energy that is zero at rest.
+    /// Returns the same response, but with an energy that is zero at rest.
     LawResponse<double> response(const LinkStrain<double>& s, double J0) const;
-    /// That energy, which the forces of lanes do without.
+    /// Returns this energy alone. The fast forces do not need it.
     template <class T>
     T energy_density(const LinkStrain<T>& s, double J0) const;
-    /// Right in each derivative, as tangents ask for.
+    /// Returns a response with each derivative accurate by itself, as tangents require.
     LawResponse<Dual> response(const LinkStrain<Dual>& s, double J0) const;
 };
 
-/// Powers h(c_k) = c_k^p of the three squared stretches, measured in a unit; below the floor a
-/// parabola goes on whose slope falls to zero at c = 0. Negative powers would be a wall that keeps
-/// inverted elements inverted.
+/// Powers h(c_k) = c_k^p of the three squared stretches, in a given unit. Below the floor h
+/// continues as a parabola with slope zero at c = 0. Without it, a negative power would be an
+/// infinite barrier that keeps inverted elements inverted.
 template <class T>
 struct PowersOfStretches {
-    std::array<T, 3> logs;      ///< of the stretch, or of the floor if that is more
-    std::array<T, 3> relative;  ///< h'(c)/(p h): 1/c, below the floor c over its square
+    std::array<T, 3> logs;      ///< ln of max(c, floor) over the unit
+    std::array<T, 3> relative;  ///< h'(c)/(p h(max(c, floor))): 1/c, below the floor c/floor^2
     std::array<T, 3> below;     ///< (h/h(floor) - 1)/p below the floor, else 0
 
     PowersOfStretches(const std::array<T, 3>& c, double floor, const T& log_of_unit) {
@@ -64,7 +64,7 @@ struct PowersOfStretches {
         }
     }
 
-    /// The sum of h(c_k); adds the h'(c_k) times the factor, but for `relative`, to the slopes.
+    /// Returns the sum of h(c_k). Adds factor * h'(c_k) / relative[k] to slopes[k].
     T add(double p, const T& factor, std::array<T, 3>& slopes) const {
         using std::exp;
         const T slope = p * factor;
@@ -78,7 +78,7 @@ struct PowersOfStretches {
     }
 };
 
-/// J^(-alpha/3).
+/// J^(-alpha/3), extended below J0.
 template <class T>
 VolumeTerm<T> isochoric_factor(const T& J, double alpha, double J0) {
     return extended([=](const T& x) { return power_of_volume(x, alpha / 3.0); }, J, J0);
@@ -98,7 +98,8 @@ LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
     for (std::size_t i = 0; i < num_terms; ++i) {
         const double p = 0.5 * terms[i].alpha, q = 2.0 / 3.0 * p,
                      factor = 0.5 * terms[i].mu / (p * p);
-        // J^-q stands in the powers: what `extended` makes of it, and of its derivative, over it.
+        // The powers contain J^-q. So g has the extended J^-q over J^-q, and g_J its derivative
+        // over J^-q.
         const T g = factor * (1.0 - q * d * (1.0 - 0.5 * (q + 1.0) * d)),
                 g_J = -q * factor * (1.0 - (q + 1.0) * d) * per_J;
         const T sum = powers.add(p, g, slopes);
@@ -110,8 +111,8 @@ LawResponse<T> Ogden::response(const LinkStrain<T>& s, double J0) const {
     return {w, by.a, by.b, w_J + 2.0 * s.J * by.I3};
 }
 
-// Of stretches to the last digit, also where they coincide: what sets them apart for derivatives
-// would leave an energy at rest.
+// The stretches are accurate here also where they coincide. The distance that derivatives keep
+// between them would leave an energy at rest.
 template <class T>
 T Ogden::energy_density(const LinkStrain<T>& s, double J0) const {
     constexpr double rounding = 1e-100;

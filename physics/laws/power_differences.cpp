@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t max_points = 6;
 
-/// Sums over all products of `degree` of the points, by degree after degree: the divided
-/// differences of x^(n + degree) over n + 1 points.
+/// Symmetric sums of n + 1 points, one degree after another. A sum is that of all products of
+/// `degree` points, with repetition, and equals the divided difference of x^(n + degree).
 class SymmetricSums {
   public:
     explicit SymmetricSums(std::span<const double> points) : points_(points) { sums_.fill(1.0); }
 
-    /// Of the present degree, at first 0.
+    /// Returns the sum of the present degree, which is 0 at first.
     double value() const { return sums_[points_.size() - 1]; }
     void raise_degree() {
         double sum = 0.0;
@@ -27,10 +27,11 @@ class SymmetricSums {
 
   private:
     std::span<const double> points_;
-    std::array<double, max_points> sums_;  // of the first points, up to each
+    std::array<double, max_points> sums_;  // entry k: the sum of points 0 to k
 };
 
-/// Of x^q over points within a factor of two: the binomial series about their middle.
+/// Returns the divided difference of x^q over points within a factor of two, by the binomial series
+/// about their middle.
 double of_close_points(std::span<const double> points, double q) {
     const std::size_t n = points.size() - 1;
     const double middle = 0.5 * (points.front() + points.back());
@@ -45,7 +46,7 @@ double of_close_points(std::span<const double> points, double q) {
     for (std::size_t k = n; k < n + max_terms; ++k) {
         const double term = binomial * sums.value();
         total += term;
-        // Odd sums vanish where the points lie evenly about the middle.
+        // Sums of odd degree are zero if the points are symmetric about the middle.
         if (k > n + 1 && k % 2 == n % 2 && std::abs(term) <= 1e-18 * std::abs(total)) break;
         binomial *= (q - static_cast<double>(k)) / static_cast<double>(k + 1);
         sums.raise_degree();
@@ -53,7 +54,7 @@ double of_close_points(std::span<const double> points, double q) {
     return total * std::pow(middle, q - static_cast<double>(n));
 }
 
-/// Of x^q, q a whole number.
+/// Returns the divided difference of x^q for a whole number q.
 double of_whole_power(std::span<const double> points, std::size_t q) {
     const std::size_t n = points.size() - 1;
     if (q < n) return 0.0;
@@ -62,8 +63,8 @@ double of_whole_power(std::span<const double> points, std::size_t q) {
     return sums.value();
 }
 
-/// Over all the points, which are c0, c1, c2, each `times` times, of x^m times the slope for all m
-/// that the result has room for.
+/// Returns the divided differences of x^m times the slope for m = 0 to num_powers - 1. The points
+/// are c0, c1, c2, each taken `times` times.
 template <std::size_t times, std::size_t num_powers>
 std::array<double, num_powers> differences_of_powers(const std::array<double, 3>& c,
                                                      const PowerSlope& slope) {
@@ -79,7 +80,7 @@ std::array<double, num_powers> differences_of_powers(const std::array<double, 3>
 
     std::array<double, num_powers> result;
     for (std::size_t m = 0; m < num_powers; ++m) {
-        std::array<double, num_points> table;  // over `size` points from each on
+        std::array<double, num_points> table;  // entry i: over `size` points from point i on
         for (std::size_t size = 1; size <= num_points; ++size)
             for (std::size_t i = 0; i + size <= num_points; ++i) {
                 const std::size_t last = i + size - 1;

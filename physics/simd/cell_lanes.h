@@ -1,4 +1,4 @@
-// The volume term of HybMSS, which forces and energies have in common. Compiled for each kind of
+// The volume term of HybMSS on lanes, shared by forces and energies. Compiled for each kind of
 // processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace incise::physics::INCISE_PROCESSOR {
 
-/// BoxFrame of as many cells as there are lanes, from their corners as seen from anywhere.
+/// The BoxFrame of one cell in each lane, from corners relative to any origin.
 template <class Number>
 struct BoxLanes {
     using Scalar = Lanes<Number>;
@@ -33,11 +33,10 @@ struct BoxLanes {
     }
 
     Scalar volume() const { return dot(a, across_a); }
-    /// To the bit as BoxFrame has it.
+    /// Returns the volume with the same bits as BoxFrame::volume().
     Scalar rounded_volume() const { return rounded_dot(a, rounded_cross(b, c)); }
 
-    /// Adds the forces of the volume term, N.
-    /// @param ratio  of the volume to that at rest
+    /// Adds the forces of the volume term, N. `ratio` is the volume over that at rest.
     [[gnu::always_inline]] inline void add_forces(double volume_modulus, Scalar ratio,
                                                   Corners& f) const {
         const Scalar quarter = -0.25 * volume_modulus * (ratio - 1.0);

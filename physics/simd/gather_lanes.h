@@ -1,5 +1,5 @@
-// Between the nodes of a block and the lanes of its elements: positions are fetched, forces added
-// up. Compiled for each kind of processor: lanes.h.
+// Transfer between the nodes of a block and the lanes of its elements: gathers positions and adds
+// forces. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace incise::physics::INCISE_PROCESSOR {
 
 using Quad = double __attribute__((vector_size(32)));  // a LocalVector
-/// As many quads as there is room for: those of the elements i and, if two, i + 4.
+/// As many quads as fit in a vector: that of element i and, with AVX-512, that of element i + 4.
 using Doubles = Lanes<double>::Vector;
 using HalfFloats = float __attribute__((vector_size(vector_bytes / 2)));
 
@@ -40,7 +40,7 @@ inline Lanes<float> joined(Doubles low, Doubles high) {
 #endif
 }
 
-/// Lanes 4q to 4q + 3.
+/// Returns lanes 4q to 4q + 3.
 template <std::size_t q>
 Quad quad_of(Lanes<double> a) {
     return __builtin_shufflevector(a.v, a.v, 4 * q, 4 * q + 1, 4 * q + 2, 4 * q + 3);
@@ -49,16 +49,16 @@ template <std::size_t q>
 Quad quad_of(Lanes<float> a) {
     const auto four = __builtin_shufflevector(a.v, a.v, 4 * q, 4 * q + 1, 4 * q + 2, 4 * q + 3);
 #ifdef __AVX2__
-    return _mm256_cvtps_pd(four);  // which GCC 12 makes six instructions of by itself
+    return _mm256_cvtps_pd(four);  // GCC 12 makes six instructions of the other form
 #else
     return __builtin_convertvector(four, Quad);
 #endif
 }
 
-/// The edges from corner 0 of the elements to each of the others, by the offsets of corners in
-/// `nodes`. Differences are those of doubles, whatever kind of number comes out: a body far from
-/// the origin is as good as one near it. Like scatter_add made anew in each loop that calls it, as
-/// vectors that went through memory would take a tenth of the loop's time.
+/// Returns the edges of the elements from corner 0 to each other corner, by the offsets of corners
+/// in `nodes`. Differences are computed in doubles for any type of result, so the distance of the
+/// body from the origin does not matter. gather_edges() and scatter_add() are inlined in each loop,
+/// since passing the vectors through memory would take a tenth of the time of the loop.
 template <class Number, std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline std::array<Lanes3<Number>, num_corners - 1> gather_edges(
     const LocalVector* nodes, const std::uint16_t (&offsets)[num_corners][size],
@@ -87,8 +87,8 @@ template <class Number, std::size_t num_corners, std::size_t size>
     return edges;
 }
 
-/// The corners of the elements themselves, in doubles: for differences of any two of them that are
-/// rounded once.
+/// Returns the corners of the elements, in doubles. The difference of any two of them is then
+/// rounded only once.
 template <std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline std::array<Lanes3<double>, num_corners> gather_corners(
     const LocalVector* nodes, const std::uint16_t (&offsets)[num_corners][size],
@@ -104,16 +104,18 @@ template <std::size_t num_corners, std::size_t size>
     return corners;
 }
 
-/// Adds the elements' vectors, given for all corners but corner 0, to what `nodes` has at their
-/// offsets; corner 0 gets minus their sum in doubles, so that those of an element add up to
-/// nothing. Element by element in fours, corner by corner within: elements may share nodes, and
-/// sums must not depend on how many lanes there are.
+/// Adds vectors of the elements to those of `nodes` at the offsets of corners. `f` has the vectors
+/// of all corners but corner 0. Corner 0 gets minus their sum, computed in doubles, so that the
+/// vectors of an element add up to zero.
+///
+/// The elements are processed in fours, and corner by corner within these. Elements may share
+/// nodes, and the sums must not depend on the number of lanes.
 template <class Number, std::size_t num_corners, std::size_t size>
 [[gnu::always_inline]] inline void scatter_add(const std::array<Lanes3<Number>, num_corners - 1>& f,
                                                LocalVector* nodes,
                                                const std::uint16_t (&offsets)[num_corners][size],
                                                std::size_t first) {
-    Lanes<Number> rows[num_corners][4];  // of those but corner 0
+    Lanes<Number> rows[num_corners][4];  // those of corner 0 are not used
 #pragma GCC unroll 7
     for (std::size_t k = 1; k < num_corners; ++k) {
         const auto& [x, y, z] = f[k - 1];

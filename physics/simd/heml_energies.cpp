@@ -1,4 +1,5 @@
-// Compiled for each kind of processor: see lanes.h.
+// Energies, volume ratios and virials of HEML on lanes. Compiled for each kind of processor:
+// lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/simd/gather_lanes.h"
 #include "incise/physics/simd/link_forces.h"
@@ -10,9 +11,9 @@ namespace {
 
 using DoubleGroup = LinkGroup<double>;
 
-/// The six links of the part of a group that starts at lane `first`, each as the difference of its
-/// own corners: that of two edges is rounded once more, and would leave an element at rest a
-/// strain.
+/// Returns the six links of the part of a group that starts at lane `first`. Each link is the
+/// difference of its own corners. A difference of two edges would be rounded once more, and an
+/// element at rest would have a strain.
 [[gnu::always_inline]] inline std::array<DoubleLanes3, 6> gather_links(const LocalVector* positions,
                                                                        const DoubleGroup& group,
                                                                        std::size_t first) {
@@ -28,13 +29,13 @@ const FibreGroup<double>* fibres_of(const LinkGroups<double>& groups, std::size_
     return groups.fibres.empty() ? nullptr : &groups.fibres[g];
 }
 
-/// To the bit as HemlKernel::volume_ratio.
+/// Returns the volume ratio with the same bits as HemlKernel::volume_ratio.
 DoubleLanes volume_ratio(const DoubleLanes3& v1, const DoubleLanes3& v2, const DoubleLanes3& v3,
                          DoubleLanes rest_volume) {
     return rounded_dot(rounded_cross(v1, v2), v3) / DoubleLanes(6.0) / rest_volume;
 }
 
-/// A law's w: by a function for it alone, where the law has one.
+/// Returns the energy density of a law, by its own function for it if there is one.
 template <class L>
 [[gnu::always_inline]] inline DoubleLanes energy_density(const L& law,
                                                          const LinkStrain<DoubleLanes>& strain,
@@ -45,7 +46,7 @@ template <class L>
         return law.response(strain, J0).w;
 }
 
-/// Of the part of the group of number g.
+/// Returns the strain of the part of group g that starts at lane `first`.
 template <class L>
 [[gnu::always_inline]] inline LinkStrain<DoubleLanes> strain_of(
     const LinkGroups<double>& groups, std::size_t g, std::size_t first,
@@ -59,7 +60,7 @@ template <class L>
         volume_ratio(links[0], links[1], links[2], DoubleLanes::load(group.volume + first)));
 }
 
-/// Calls visit(group's number, first lane) for as many elements at a time as there are lanes.
+/// Calls visit(number of the group, first lane) for one element per lane at a time.
 template <class Visit>
 [[gnu::always_inline]] inline void for_each_part(std::span<const DoubleGroup> groups, Visit visit) {
     const FetchAhead fetch_ahead(groups, {});
@@ -70,7 +71,7 @@ template <class Visit>
     }
 }
 
-// Flattened, as what is not inlined would have its vectors go through memory.
+// Flattened, since a function that is not inlined would pass its vectors through memory.
 template <class L>
 [[gnu::flatten]] void set_energies(const L& law, double J0, const LinkGroups<double>& groups,
                                    const LocalVector* positions, ElementEnergies* energies) {

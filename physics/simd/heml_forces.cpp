@@ -1,4 +1,4 @@
-// Compiled for each kind of processor: see lanes.h.
+// Forces of HEML on lanes. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/simd/gather_lanes.h"
 #include "incise/physics/simd/link_forces.h"
@@ -7,9 +7,9 @@ namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
 
-// The edges of a group are fetched before the forces of the one before it are added up: so the
-// processor has loads to do while it waits for the end of one group's arithmetic. Flattened, as
-// what is not inlined would have its vectors go through memory.
+// The edges of the next elements are gathered before the forces of these are added, so that the
+// processor loads them while it waits for the arithmetic. Flattened, since a function that is not
+// inlined would pass its vectors through memory.
 template <class Law, class Number>
 [[gnu::flatten]] void add_forces(const Law& law, double J0, const LinkGroups<Number>& groups,
                                  const LocalVector* positions, LocalVector* forces,

@@ -1,4 +1,5 @@
-// Compiled for each kind of processor: see lanes.h.
+// Energies, volume ratios and virials of HybMSS on lanes. Compiled for each kind of processor:
+// lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/simd/cell_lanes.h"
 #include "incise/physics/simd/gather_lanes.h"
@@ -10,10 +11,11 @@ namespace {
 
 using Cells = std::span<const CellGroup<double>>;
 
-/// A spring pulls with k (l - l0): k l less the pull at rest, both rounded, so with nothing where
-/// it has its rest length to the bit. Its energy is the square of that over 2 k.
-/// @param visit  called with a spring's ends, corners i and j, the way there, its length, and pull
-/// Returns the springs' energies.
+/// Calls visit(i, j, vector from corner i to j, length, pull) for each spring. Returns the energies
+/// of the springs.
+///
+/// The pull k (l - l0) is k l less k l0, both rounded. It is exactly zero if the spring has exactly
+/// its rest length. The energy is the square of the pull over 2 k.
 template <class Visit>
 [[gnu::always_inline]] inline DoubleLanes visit_springs(const CellGroup<double>& group,
                                                         std::size_t first,
@@ -33,14 +35,14 @@ template <class Visit>
             squares += pull * pull;
             visit(i, j, v, length, pull);
         }
-        // Also of the springs that there are not, k = 0, and of those that push a little, k < 0.
+        // Finite for springs with k = 0, which are absent; correct for k < 0.
         constexpr double least = 1e-300;
         energy += DoubleLanes(0.5 * squares * k) / max(DoubleLanes(k * k), least);
     }
     return energy;
 }
 
-/// Puts volume ratios, and energies with those of the volume term; returns the ratios.
+/// Stores the volume ratios, and the energies of springs and volume term. Returns the ratios.
 [[gnu::always_inline]] inline DoubleLanes put_energies(double volume_modulus,
                                                        const CellGroup<double>& cells,
                                                        std::size_t first, DoubleLanes of_springs,
@@ -54,7 +56,7 @@ template <class Visit>
     return ratio;
 }
 
-/// Calls visit(group's number, first lane, corners) for as many cells at a time as there are lanes.
+/// Calls visit(number of the group, first lane, corners) for one cell per lane at a time.
 template <class Visit>
 [[gnu::always_inline]] inline void for_each_part(Cells groups, const LocalVector* positions,
                                                  Visit visit) {
@@ -68,7 +70,7 @@ template <class Visit>
 
 }  // namespace
 
-// Flattened, as what is not inlined would have its vectors go through memory.
+// Flattened, since a function that is not inlined would pass its vectors through memory.
 [[gnu::flatten]] void hybmss_energies(double volume_modulus, Cells groups,
                                       const LocalVector* positions, ElementEnergies* energies) {
     for_each_part(groups, positions, [&](std::size_t g, std::size_t first, const auto& x) {
@@ -81,7 +83,8 @@ template <class Visit>
 [[gnu::flatten]] void hybmss_states(double volume_modulus, Cells groups,
                                     const LocalVector* positions, ElementStates* states) {
     for_each_part(groups, positions, [&](std::size_t g, std::size_t first, const auto& x) {
-        // In place of no length, and so small that the quotient is finite: it does not push then.
+        // Replaces a length of zero by one with a finite quotient. The spring then has no force,
+        // since its vector v is zero.
         constexpr double least_length = 1e-150;
         std::array<DoubleLanes3, 8> f, edges;
         f.fill({0.0, 0.0, 0.0});

@@ -1,4 +1,4 @@
-// Compiled for each kind of processor: see lanes.h.
+// Forces of HybMSS on lanes. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/simd/cell_lanes.h"
 #include "incise/physics/simd/gather_lanes.h"
@@ -7,7 +7,7 @@ namespace incise::physics::INCISE_PROCESSOR {
 
 namespace {
 
-/// The part of a group that starts at lane `first`; as HybmssKernel::forces.
+/// Adds the forces of the part of a group that starts at lane `first`; see HybmssKernel::forces.
 template <class Number>
 [[gnu::always_inline]] inline void add_forces_of(double volume_modulus,
                                                  const CellGroup<Number>& group, std::size_t first,
@@ -16,7 +16,7 @@ template <class Number>
     using Scalar = Lanes<Number>;
     using Vector = Lanes3<Number>;
     const auto load = [first](const auto& row) { return Scalar::load(row + first); };
-    // Corners as seen from corner 0, whose force follows from the others'.
+    // Corners are relative to corner 0. Its force follows from those of the others.
     std::array<Vector, 8> x, f;
     x.fill({0.0, 0.0, 0.0});
     f = x;
@@ -28,7 +28,7 @@ template <class Number>
 #pragma GCC unroll 4
         for (const auto& [i, j] : HybmssKernel::springs[g]) {
             const Vector v = x[j] - x[i];
-            // Finite, so that a spring without length, v = 0, does not push.
+            // Finite also for v = 0, so that a spring without length has no force.
             const Scalar pull = k - at_rest * reciprocal_sqrt(dot(v, v));
             f[i] = f[i] + pull * v;
             f[j] = f[j] - pull * v;

@@ -1,7 +1,8 @@
-// Several numbers that the processor computes with at once, one of each of as many elements.
-// Only for files that are compiled once for each kind of processor (CMakeLists.txt:
-// incise_kernels): all of this stands in a namespace of its own for each, so that the linker cannot
-// mix them up. SPDX-License-Identifier: LGPL-3.0-or-later
+// Vectors of numbers on which the processor computes at once. A lane, one place of such a vector,
+// has the number of one element.
+// Only for files that are compiled once for each kind of processor (incise_kernels in
+// physics/CMakeLists.txt). Each kind has its own namespace, so that the linker cannot mix them up.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <algorithm>
@@ -33,8 +34,8 @@ inline constexpr int vector_bytes = 32;
 template <class Number>
 inline constexpr int num_lanes = vector_bytes / static_cast<int>(sizeof(Number));
 
-/// Vectors of a kind of number and of its bits, how these lie, and how far the series of the
-/// functions below go.
+/// The vector types of a type of number, the layout of its bits, and the constants of the series in
+/// the functions below.
 template <class Number>
 struct NumberFormat;
 
@@ -69,14 +70,14 @@ struct NumberFormat<float> {
     static constexpr Bit root_guess = 0x5f20272b;
     static constexpr std::array root_terms{0.06405455207717746, 0.17317345104154103};
     static constexpr Bit root_of_half = 0x3f3504f3;
-    // Of few bits, so that a whole number times it is exact.
+    // ln2_high has few bits, so that its product with a whole number is exact.
     static constexpr double ln2_high = 0.693359375, ln2_low = -2.1219444005469058e-4,
                             largest_exponent = 87.0;
     static constexpr std::array log_terms{9.0, 7.0, 5.0, 3.0};
     static constexpr int exp_degree = 7;
 };
 
-/// a b + c, rounded once.
+/// Returns a b + c, rounded once.
 template <class Vector>
 [[gnu::always_inline]] inline Vector multiply_add(Vector a, Vector b, Vector c) {
 #if defined(__AVX512F__)
@@ -95,7 +96,7 @@ template <class Vector>
 #endif
 }
 
-/// c - a b, rounded once.
+/// Returns c - a b, rounded once.
 template <class Vector>
 [[gnu::always_inline]] inline Vector subtract_product(Vector a, Vector b, Vector c) {
 #if defined(__AVX512F__)
@@ -113,7 +114,8 @@ template <class Vector>
 #endif
 }
 
-/// A product that waits for what is done with it. Of two that are added the second is rounded.
+/// A product that is not computed yet, so that a sum with it is rounded only once. In a sum of two
+/// products, the second product is rounded first.
 template <class Scalar>
 struct Product {
     Scalar a, b;
@@ -127,10 +129,12 @@ struct Product {
     friend Scalar operator-(Product p, Product q) { return p - Scalar(q); }
 };
 
-/// Arithmetic is that of single numbers, lane by lane, to the bit, whatever the processor and
-/// however many lanes it has. A product that is added to something is not rounded before: which
-/// products are so is a matter of how a formula is written, not of what the compiler finds.
-/// Processors that have no such operation (before 2013) get it from the C library, which is slow.
+/// A vector with one number in each lane.
+///
+/// Arithmetic gives the same bits in every lane as for single numbers, on every processor and with
+/// any number of lanes. A product that is added to something is not rounded before (fused). The
+/// form of a formula decides which products are fused, and not the compiler. Processors without
+/// this operation (before 2013) use the C library for it, which is slow.
 template <class Number>
 struct Lanes {
     using Format = NumberFormat<Number>;
@@ -143,10 +147,11 @@ struct Lanes {
 
     Lanes() = default;
     Lanes(Vector vector) : v(vector) {}
-    // Implicit: formulas mix both kinds.
+    // Implicit: formulas mix numbers and lanes.
     Lanes(double constant) : v(static_cast<Number>(constant) - Vector{}) {}
 
-    /// From numbers that follow one another, aligned to their whole size.
+    /// Loads consecutive numbers.
+    /// @pre `from` is aligned to vector_bytes
     static Lanes load(const Number* from) {
         return *reinterpret_cast<const typename Format::Aliasing*>(from);
     }
@@ -166,15 +171,17 @@ struct Lanes {
     Lanes& operator+=(Product<Lanes> p) { return *this = p + *this; }
     Lanes& operator-=(Product<Lanes> p) { return *this = *this - p; }
 
-    // As std::max(a, b) and std::min(a, b), also of what is not a number.
+    // As std::max(a, b) and std::min(a, b), also for NaN.
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
     friend Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }
 
-    /// 1/sqrt(a) of normal numbers above zero within 4e-16 of it (floats 3e-7); something finite
-    /// for zero. Several times faster than to divide by a root, and the same everywhere. From a
-    /// guess by halving the exponent, one of Newton's steps, scaled so that constants are few,
-    /// leads to t with a t^2 within 0.0027 of a middle value; what lacks from there is a polynomial
-    /// in that difference. Its terms, the guess and the 2.39 are those of the least largest error.
+    /// Returns 1/sqrt(a) for normal numbers above zero, with a relative error below 4e-16 (floats
+    /// 3e-7), and a finite number for zero. It is several times faster than a division by a root,
+    /// and has the same bits on every processor.
+    ///
+    /// Halving the exponent gives a guess. One Newton step, scaled to need few constants, gives t
+    /// with a t^2 within 0.0027 of `middle`. A polynomial in middle - a t^2 then corrects t. Its
+    /// terms, the guess and the factor 2.39 minimise the largest error.
     friend Lanes reciprocal_sqrt(Lanes a) {
         constexpr double middle = 2.0276482391601203, per_root_of_middle = 0.7022693147395886;
         const Bits guess = Format::root_guess - (std::bit_cast<Bits>(a.v) >> 1);
@@ -193,15 +200,15 @@ struct Lanes {
         return a.each([](Number x) { return std::abs(x); });
     }
 
-    /// For normal numbers above zero within 1e-15 (floats 3e-7) of the value or of one, whichever
-    /// is more; else not a number. Argument reduction to [sqrt(1/2), sqrt(2)) and the series of
-    /// ln((1 + s)/(1 - s)) in s.
+    /// Returns ln(a) for normal numbers above zero, else NaN. The error is below 1e-15 (floats
+    /// 3e-7) times the larger of |ln(a)| and 1. Method: argument reduction to [sqrt(1/2), sqrt(2))
+    /// and the series of ln((1 + s)/(1 - s)) in s.
     [[gnu::always_inline]] friend inline Lanes log(Lanes a) {
         constexpr Bit unit = Bit{1} << Format::mantissa_bits, mantissa = unit - 1;
-        // What lies above has the exponent of the power of two that is nearest.
+        // With exponents counted from sqrt(1/2), [sqrt(1/2), sqrt(2)) 2^k has the exponent k.
         constexpr Bit low = Format::root_of_half;
         const Bits bits = std::bit_cast<Bits>(a.v);
-        // Of negative numbers this would leave the range of signed ones.
+        // Unsigned, since a signed difference would overflow for negative numbers.
         const UnsignedBits difference =
             std::bit_cast<UnsignedBits>(a.v) - std::make_unsigned_t<Bit>{low};
         const Bits from_low = std::bit_cast<Bits>(difference);
@@ -211,7 +218,7 @@ struct Lanes {
         const Bits shifted = exponent + std::bit_cast<Bit>(whole_number_shift);
         const Lanes k = Lanes(std::bit_cast<Vector>(shifted)) - whole_number_shift;
         const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
-        // Even and odd powers by themselves, so that one need not wait for the other.
+        // Even and odd powers in separate chains, which the processor computes at the same time.
         static_assert(log_coefficients.size() % 2 == 0);
         const Lanes z2 = z * z;
         Lanes odd = log_coefficients[0], even = log_coefficients[1];
@@ -226,20 +233,22 @@ struct Lanes {
         return is_normal ? result.v : Lanes(std::nan("")).v;
     }
 
-    /// ln(1 + a), within 2e-15 of it (floats 6e-7), however small: that of the sum as it is
-    /// rounded, and what rounding took. Where that is no normal number above zero, not a number.
+    /// Returns ln(1 + a) with a relative error below 2e-15 (floats 6e-7), also for small a. It is
+    /// the logarithm of the rounded sum, corrected for the rounding. Returns NaN if the sum is not
+    /// a normal number above zero.
     friend Lanes log1p(Lanes a) {
         const Lanes sum = 1.0 + a;
         return log(sum) + (a - (sum - 1.0)) / sum;
     }
 
-    /// Within 1e-15 of the value, between -700 and 700 (floats: 3e-7, -87 and 87); what is not a
-    /// number stays so. By the series of e^r, |r| < ln(2)/2.
+    /// Returns exp(a) with a relative error below 1e-15 (floats 3e-7). Arguments are first limited
+    /// to -700 to 700 (floats -87 to 87). NaN stays NaN. Method: the series of e^r, |r| < ln(2)/2.
     friend Lanes exp(Lanes a) {
         const PowerOfTwo two(a);
         return series_of_exp(two.rest, 0) * two.power;
     }
-    /// exp(a) - 1, within 2e-15 of it (floats 6e-7), however small; else as exp.
+    /// Returns exp(a) - 1 with a relative error below 2e-15 (floats 6e-7), also for small a. Limits
+    /// and NaN are as in exp().
     friend Lanes expm1(Lanes a) {
         const PowerOfTwo two(a);
         const Lanes of_rest = two.rest * series_of_exp(two.rest, 1);
@@ -248,8 +257,9 @@ struct Lanes {
 
     friend Lanes pow(Lanes a, double p) { return exp(p * log(a)); }
 
-    /// cos(acos(x)/3) of |x| with the sign of x, -1 <= x <= 1, within 4e-16 (floats 3e-7): by
-    /// Newton's method for 4 y^3 - 3 y = |x|, from a cubic within 1e-4.
+    /// Returns cos(acos(|x|)/3) with the sign of x, for -1 <= x <= 1, with an error below 4e-16
+    /// (floats 3e-7). Method: Newton's method for 4 y^3 - 3 y = |x|, from a cubic that is within
+    /// 1e-4 of the root.
     friend Lanes cosine_of_third(Lanes x) {
         constexpr Bit sign = std::numeric_limits<Bit>::min();
         const Bits bits = std::bit_cast<Bits>(x.v), magnitude = bits & ~sign;
@@ -286,7 +296,7 @@ struct Lanes {
             power = std::bit_cast<Vector>(bits);
         }
     };
-    /// 1/first! + r/(first + 1)! + ...
+    /// Returns 1/first! + r/(first + 1)! + ...
     static Lanes series_of_exp(Lanes r, std::size_t first) {
         Lanes sum = inverse_factorials[Format::exp_degree];
         for (std::size_t i = Format::exp_degree; i-- > first;)
@@ -294,11 +304,11 @@ struct Lanes {
         return sum;
     }
 
-    /// A whole number added to it stands in its low bits: so it turns into one of the other kind
-    /// without an instruction for that.
+    /// The sum of this and a whole number has the whole number in its low bits. This converts
+    /// between integers and floating-point numbers without a conversion instruction.
     static constexpr Number whole_number_shift =
         static_cast<Number>(std::int64_t{3} << (Format::mantissa_bits - 1));
-    // As constants: GCC leaves the divisions in the loop.
+    // Computed at compile time, since GCC would leave the divisions in the loop.
     static constexpr auto log_coefficients = [] {
         auto all = Format::log_terms;
         for (double& x : all) x = 1.0 / x;
@@ -315,7 +325,7 @@ struct Lanes {
     }();
 };
 
-/// Vectors in space, one a lane.
+/// One vector in space in each lane.
 template <class Number>
 struct Lanes3 {
     using Scalar = Lanes<Number>;
@@ -327,7 +337,7 @@ struct Lanes3 {
     friend Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
-    /// A multiple that waits to be added to something, like Product.
+    /// A multiple that is not computed yet, like Product.
     struct Multiple {
         Scalar s;
         Lanes3 a;
@@ -350,8 +360,8 @@ struct Lanes3 {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     }
 
-    // Each product rounded, and added up as (xx + yy) + zz, as Eigen does: so an element at rest is
-    // at rest to the bit.
+    // Every product is rounded, and the sum is (xx + yy) + zz, as in Eigen. So an element at rest
+    // has exactly zero strain.
     friend Scalar rounded_dot(const Lanes3& a, const Lanes3& b) {
         return (Scalar(a.x * b.x) + Scalar(a.y * b.y)) + Scalar(a.z * b.z);
     }
@@ -362,7 +372,7 @@ struct Lanes3 {
     }
 };
 
-/// Lane l of the result is lane pick(l) of a followed by b.
+/// Returns a vector whose lane l is lane pick(l) of the lanes of a followed by those of b.
 template <auto pick, class Vector>
 Vector shuffle(Vector a, Vector b) {
     return [&]<int... l>(std::integer_sequence<int, l...>) {
@@ -371,13 +381,13 @@ Vector shuffle(Vector a, Vector b) {
     (std::make_integer_sequence<int, sizeof(Vector) / sizeof(a[0])>());
 }
 
-/// Rows of 4 x 4 matrices, which lie side by side in the vectors, become their columns: within each
-/// four lanes (a0 a1 a2 a3) becomes (a0 b0 c0 d0) and so on.
+/// Transposes 4 x 4 matrices that are side by side in the vectors: within each four lanes,
+/// (a0 a1 a2 a3) becomes (a0 b0 c0 d0) and so on.
 template <class Number>
 [[gnu::always_inline]] inline void transpose(Lanes<Number>& a, Lanes<Number>& b, Lanes<Number>& c,
                                              Lanes<Number>& d) {
     constexpr int n = num_lanes<Number>;
-    // The steps that processors have one instruction for.
+    // Processors have one instruction for each of these shuffles.
     constexpr auto halves = [](int l) { return l % 4 < 2 ? l : n + l - 2; };
     constexpr auto other_halves = [](int l) { return l % 4 < 2 ? l + 2 : n + l; };
     if constexpr (sizeof(Number) == 8) {
@@ -401,25 +411,27 @@ template <class Number>
     }
 }
 
-/// Has the processor fetch what a loop over groups comes to some rounds later: near its end, what
-/// the loop after it begins with. The groups of a body that the caches do not hold would be waited
-/// for: by itself the processor begins too late, and with each loop anew.
+/// Prefetches the group that a loop reaches some rounds later, and near the end of the loop the
+/// first groups of the next loop. Without this, a loop over a body larger than the caches waits for
+/// memory, since the prefetch of the processor itself starts too late, and starts again in each
+/// loop.
 template <class Group>
 class FetchAhead {
   public:
-    /// @param next  groups of the loop after this; may be empty, and what lies behind `groups` is
-    ///              fetched in vain
+    /// @param groups  the groups of this loop
+    /// @param next    the groups of the next loop; may be empty, then memory behind `groups` is
+    ///                prefetched without use
     FetchAhead(std::span<const Group> groups, std::span<const std::byte> next)
         : size_(groups.size()),
           groups_(address(groups.data())),
           next_(next.empty() ? groups_ : address(next.data()) - groups.size_bytes()) {}
 
-    /// Called with each group's number in turn.
+    /// Prefetches for round `now`. The loop calls it with the number of each group in turn.
     [[gnu::always_inline]] void operator()(std::size_t now) const {
-        constexpr int for_reading = 0, to_second_cache = 2;  // the first is full of what is in use
+        constexpr int for_reading = 0, to_second_cache = 2;  // the first is full of data in use
         const std::size_t then = now + num_rounds;
-        // A choice of addresses, where a branch would cost more; what lies behind the end of what
-        // comes next is fetched in vain, which does no harm.
+        // A selection of an address costs less than a branch. The address may be behind the end of
+        // `next`; a prefetch from there has no effect.
         const std::uintptr_t group = (then < size_ ? groups_ : next_) + then * sizeof(Group);
         for (std::size_t i = 0; i < sizeof(Group); i += cache_line)
             __builtin_prefetch(reinterpret_cast<const void*>(group + i), for_reading,

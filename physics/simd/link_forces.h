@@ -1,5 +1,5 @@
-// Strain and forces of hyper-elastic links from the edges of as many elements as there are lanes:
-// between fetching positions and adding up forces. Compiled for each kind of processor: lanes.h.
+// Strain and forces of HEML on lanes, from the edges of one element in each lane. Equations:
+// docs/theory.md, Lanes. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,17 +8,17 @@
 
 namespace incise::physics::INCISE_PROCESSOR {
 
-/// Symmetric 3 x 3: 11, 22, 33, 12, 23, 31.
+/// A symmetric 3 x 3 matrix: 11, 22, 33, 12, 23, 31.
 template <class Scalar>
 struct Symmetric {
     Scalar d1, d2, d3, s12, s23, s31;
 };
 
-/// Vectors of the corners but corner 0: edges from it, or forces.
+/// The vectors of corners 1 to 3: edges from corner 0, or forces.
 template <class Number>
 using LinkVectors = std::array<Lanes3<Number>, 3>;
 
-/// G of the part of a group that starts at lane `first`.
+/// Returns G = (V^T V)^-1 of the part of a group that starts at lane `first`.
 template <class Number>
 [[gnu::always_inline]] inline Symmetric<Lanes<Number>> load_metric(const LinkGroup<Number>& group,
                                                                    std::size_t first) {
@@ -26,7 +26,7 @@ template <class Number>
     return {load(0), load(1), load(2), load(3), load(4), load(5)};
 }
 
-/// u of the part of a group that starts at lane `first`.
+/// Returns u = V^-1 a0 of the part of a group that starts at lane `first`.
 template <class Number>
 [[gnu::always_inline]] inline Lanes3<Number> load_fibres(const FibreGroup<Number>& fibres,
                                                          std::size_t first) {
@@ -34,9 +34,9 @@ template <class Number>
     return {load(0), load(1), load(2)};
 }
 
-/// The strain of the part of a group that starts at lane `first`, from its links: zero to the bit
-/// at rest, but for the volume ratio, which is given.
-/// @param dl changes of the squared links
+/// Returns the strain of the part of a group that starts at lane `first`. `dl` has the changes of
+/// the squared edge lengths, m2. If these are zero, the strain is exactly zero, except for the
+/// given volume ratio.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkStrain<Lanes<Number>> strain_of_links(
     const LinkGroup<Number>& group, [[maybe_unused]] const FibreGroup<Number>* fibres,
@@ -73,11 +73,11 @@ template <class Law, class Number>
     return strain;
 }
 
-/// Forces on the corners but corner 0, N, of the part of a group that starts at lane `first`: with
-/// w_i = sum of G_ij v_j, the columns of F V^-T, and B = F F^T = sum of v_i w_i^T,
-///     f_i = -2 Vol ((w_a + 2 w_b (B - 1)) w_i + w_f u_i F a0) - w_J dvol/dx_i.
-/// Strain is taken from B and not from links: those lose the square of what B loses in elements
-/// that are thin. Longer than 60 lines: what is computed here has to stay in registers.
+/// Returns the forces on corners 1 to 3, N, of the part of a group that starts at lane `first`:
+///     f_i = -2 Vol ((w_a + 2 w_b (B - 1)) w_i + w_f u_i F a0) - w_J dvol/dx_i,
+/// with w_i = sum of G_ij v_j, the columns of F V^-T, and B = F F^T = sum of v_i w_i^T.
+/// The strain comes from B, since strain from links loses more digits in thin elements.
+/// The function has more than 60 lines, since its values have to stay in registers.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkVectors<Number> link_forces(
     const Law& law, double J0, const LinkGroup<Number>& group,
@@ -107,7 +107,7 @@ template <class Law, class Number>
         strain.b = e.d1 * e.d1 + e.d2 * e.d2 + e.d3 * e.d3 +
                    2.0 * (e.s12 * e.s12 + e.s23 * e.s23 + e.s31 * e.s31);
     } else {
-        // The same trace, for laws that read no more of B, or nothing at all.
+        // The same trace of B - 1, for laws that need no other entry of B.
         strain.a = G.d1 * dot(v1, v1) + G.d2 * dot(v2, v2) + G.d3 * dot(v3, v3) +
                    2.0 * (G.s12 * dot(v1, v2) + G.s23 * dot(v2, v3) + G.s31 * dot(v3, v1)) - 3.0;
         strain.b = 0.0;

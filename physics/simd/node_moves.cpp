@@ -1,4 +1,4 @@
-// Compiled for each kind of processor: see lanes.h.
+// The step of free nodes on lanes. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstring>
 
@@ -12,9 +12,9 @@ namespace {
 using Numbers = Lanes<double>;
 constexpr int nodes_at_once = Numbers::size;
 
-// Vectors in space lie one after the other, x y z x y z: three times as many numbers as nodes.
+// Vectors in space are stored one after another, x y z x y z: three times as many numbers as nodes.
 
-/// Those of `nodes_at_once` nodes, wherever they lie.
+/// The vectors of `nodes_at_once` nodes in this order. Memory needs no alignment.
 struct Vectors {
     Numbers part[3];
 
@@ -26,17 +26,17 @@ struct Vectors {
     void store(double* to) const { std::memcpy(to, this, sizeof *this); }
 };
 
-/// Each node's number three times, as its vector's components lie.
+/// Returns the number of each node three times, in the order of the components of vectors.
 [[gnu::always_inline]] inline Vectors spread_to_vectors(Numbers a) {
     return {shuffle<[](int l) { return l / 3; }>(a.v, a.v),
             shuffle<[](int l) { return (nodes_at_once + l) / 3; }>(a.v, a.v),
             shuffle<[](int l) { return (2 * nodes_at_once + l) / 3; }>(a.v, a.v)};
 }
 
-/// Component c of each node.
+/// Returns component c of the vector of each node.
 template <int c>
 [[gnu::always_inline]] inline Numbers component_of(const Vectors& v) {
-    // First those of the first two parts, then those of the last.
+    // `low` selects from the first two parts, `high` adds those of the last part.
     constexpr auto low = [](int l) { return std::min(3 * l + c, 2 * nodes_at_once - 1); };
     constexpr auto high = [](int l) {
         return 3 * l + c < 2 * nodes_at_once ? l : 3 * l + c - nodes_at_once;
@@ -51,7 +51,8 @@ StepSums move_free_nodes(const FreeNodes& nodes, std::size_t num_nodes, double d
     const double* const outer = nodes.outer_forces->data();
     double* const positions = nodes.positions->data();
     double* const velocities = nodes.velocities->data();
-    // By place within nodes_together, so that the order of sums does not depend on nodes_at_once.
+    // Sums are kept by place within nodes_together, so that their order does not depend on
+    // nodes_at_once.
     constexpr int num_rounds = static_cast<int>(nodes_together) / nodes_at_once;
     Numbers work[num_rounds][3], mass_times_square[num_rounds][3], largest_square = 0.0;
     for (int r = 0; r < num_rounds; ++r)

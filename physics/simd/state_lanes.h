@@ -1,4 +1,4 @@
-// From lanes to ElementStates. Compiled for each kind of processor: lanes.h.
+// Storage of results from lanes in ElementStates. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,11 +13,12 @@ namespace incise::physics::INCISE_PROCESSOR {
 using DoubleLanes = Lanes<double>;
 using DoubleLanes3 = Lanes3<double>;
 
-/// Wherever that lies: vectors are aligned to a number only.
+/// Stores lanes at an address that needs only the alignment of a number.
 inline void put(DoubleLanes values, double* to) { std::memcpy(to, &values.v, sizeof(values.v)); }
 
-/// Those of the part of a group that starts at lane `first`, from the forces on all corners but
-/// one, and where they are as seen from that.
+/// Stores the virials, J, of the part of a group that starts at lane `first`. `forces` are those on
+/// all corners, and `edges` are the positions of these corners relative to one corner. This corner
+/// itself may be left out.
 template <std::size_t n>
 [[gnu::always_inline]] inline void put_virials(const std::array<DoubleLanes3, n>& forces,
                                                const std::array<DoubleLanes3, n>& edges,

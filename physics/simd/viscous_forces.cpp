@@ -1,4 +1,5 @@
-// What ViscousKernel does, on lanes. Compiled for each kind of processor: see lanes.h.
+// The functions of ViscousKernel on lanes: the update of the viscous history, and its forces.
+// Equations: docs/theory.md, Viscosity. Compiled for each kind of processor: lanes.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/elements/simd_viscous_elements.h"
 #include "incise/physics/simd/gather_lanes.h"
@@ -11,11 +12,11 @@ using Scalar = Lanes<double>;
 using Vector = Lanes3<double>;
 using Edges = std::array<Vector, 3>;
 using Matrix = std::array<std::array<Scalar, 3>, 3>;
-/// Symmetric, as elements remember it: 11, 22, 33, 12, 23, 31.
+/// A symmetric tensor in the order of the viscous history: 11, 22, 33, 12, 23, 31.
 using Tensor = std::array<Scalar, 6>;
 constexpr std::size_t num_together = num_lanes<double>;
 
-/// Where the elements of some lanes remember.
+/// For each lane, the address of the history of its element.
 template <class Number>
 using Rows = std::array<Number*, num_together>;
 
@@ -28,12 +29,12 @@ template <class Number>
     return rows;
 }
 
-// Numbers of a row lie at any multiple of eight bytes.
+// Rows have the alignment of a double only.
 using LooseQuad = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-/// A tensor of each element as rows have it, not side by side: entry p has four numbers of the
-/// elements p and, if there are so many lanes, p + 4. Two of six numbers are there twice. Sums and
-/// multiples are the same in either form; to bring one into the other takes longer than those.
+/// One tensor of each element, in the order of rows and not by lanes. Entry p has four numbers of
+/// element p and, with eight lanes, of element p + 4. Two of the six numbers are stored twice. Sums
+/// and multiples can be computed in this form, and cost less than a conversion to lanes.
 struct Quads {
     Scalar first[4], last[4];  ///< numbers 0 to 3, and 2 to 5
 
@@ -52,7 +53,7 @@ struct Quads {
         return {t.first[0], t.first[1], t.first[2], t.first[3], t.last[2], t.last[3]};
     }
 
-    /// Calls change(a, b...) for the vectors of this and of others in turn.
+    /// Calls change(a, b...) for each vector of this and the corresponding vectors of `others`.
     template <class Change, class... Others>
     [[gnu::always_inline]] void change(Change change, const Others&... others) {
 #pragma GCC unroll 4
@@ -63,7 +64,7 @@ struct Quads {
     }
 };
 
-/// Tensor i of what the elements remember.
+/// Returns tensor i of the history of the elements.
 template <class Number>
 [[gnu::always_inline]] inline Quads load(const Rows<Number>& rows, std::size_t i) {
     const auto quads = [&](std::size_t p, std::size_t place) -> Scalar {
@@ -101,7 +102,7 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
 #endif
 }
 
-/// Of the elements of the lanes given.
+/// Stores tensor i of the history, for the elements of the given lanes.
 [[gnu::always_inline]] inline void store(const Quads& t, const Rows<double>& rows, std::size_t i,
                                          LaneSet lanes) {
     const auto store_half = [&]<std::size_t q>(std::integral_constant<std::size_t, q>) {
@@ -119,7 +120,7 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
     (std::make_index_sequence<num_together / 4>());
 }
 
-/// A T A^T.
+/// Returns A T A^T.
 [[gnu::always_inline]] inline Tensor congruent(const Matrix& A, const Tensor& T) {
     Matrix B;  // A T
     for (std::size_t i = 0; i < 3; ++i) {
@@ -133,7 +134,7 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
     return {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(2, 0)};
 }
 
-/// A : B.
+/// Returns A : B.
 [[gnu::always_inline]] inline Scalar contracted(const Tensor& A, const Tensor& B) {
     return A[0] * B[0] + A[1] * B[1] + A[2] * B[2] +
            2.0 * (A[3] * B[3] + A[4] * B[4] + A[5] * B[5]);
@@ -152,7 +153,7 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
     return B;
 }
 
-/// In the order of the paper: 01, 02, 03, 12, 23, 31.
+/// Returns the squared edge lengths in the order of the paper: 01, 02, 03, 12, 23, 31.
 [[gnu::always_inline]] inline Tensor squared_links(const Edges& v) {
     const Vector sides[] = {v[0], v[1], v[2], v[1] - v[0], v[2] - v[1], v[0] - v[2]};
     Tensor links;
@@ -160,7 +161,8 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
     return links;
 }
 
-/// D of change_of_right_cauchy_green, less some other links.
+/// Returns V^T (C - C') V with the rest edges V, if `links` are the squared edge lengths for C and
+/// `others` those for C'.
 [[gnu::always_inline]] inline Tensor change_of_metric(const Tensor& links, const Tensor& others) {
     Tensor dl;
     for (std::size_t k = 0; k < 6; ++k) dl[k] = links[k] - others[k];
@@ -176,8 +178,7 @@ constexpr LaneSet all_lanes = (1u << num_together) - 1;
     return rounded_dot(rounded_cross(v[0], v[1]), v[2]);
 }
 
-/// ViscousKernel::stress, of elements above the inversion threshold.
-/// @param D  C - 1
+/// Returns ViscousKernel::stress of elements above the inversion threshold. D is C - 1.
 template <class Law>
 [[gnu::always_inline]] inline Tensor stress(const Law& law, double J0, const Tensor& D, Scalar J,
                                             [[maybe_unused]] const FibreDirections* fibres,
@@ -198,7 +199,7 @@ template <class Law>
         for (std::size_t k = 0; k < 6; ++k) S[k] += w_b * D[k];
     }
     if constexpr (NeedsJ<Law>) {
-        // Laws divide by this J too: once for both.
+        // The same quotient as in the laws, so that the compiler computes it only once.
         const Scalar per_J = 1.0 / max(J, Scalar(J0)), factor = r.w_J * per_J;
         const Scalar C1 = 1.0 + D[0], C2 = 1.0 + D[1], C3 = 1.0 + D[2];
         S[0] += factor * (C2 * C3 - D[4] * D[4]);
@@ -215,8 +216,8 @@ template <class Law>
     return S;
 }
 
-/// Brings what the elements of the lanes given remember to the stress S, by the rule of Prony's
-/// series. Returns the sum of the terms before and after.
+/// Advances the history of the elements of the given lanes to the stress S, by the rule of the
+/// Prony series. Returns the sum of the terms before and after the step.
 [[gnu::always_inline]] inline Tensor follow(const Tensor& S, std::span<const PronyStep> steps,
                                             const Rows<double>& rows, LaneSet lanes) {
     const Quads next(S);
@@ -234,7 +235,8 @@ template <class Law>
     return twice_mean.tensor();
 }
 
-/// The numbers of lanes of a group, added up in their order however many lie side by side.
+/// A sum for each lane of a group. The order of the total does not depend on the number of lanes of
+/// the processor.
 class LaneSums {
   public:
     LaneSums() { std::fill(std::begin(sums_), std::end(sums_), 0.0); }
@@ -320,7 +322,7 @@ void add_forces_of_memory(const ViscousRule& rule, const ViscousGroups& groups,
             relaxed.change([share](Scalar& x) { x = -share * x; });
             for (std::size_t i = 1; i <= rule.steps.size(); ++i)
                 relaxed.change([](Scalar& sum, Scalar x) { sum += x; }, load(rows, i));
-            // As forces_of_stress.
+            // Forces as in forces_of_stress().
             Tensor t = congruent(inverse_edges(group, first), relaxed.tensor());
             const Scalar volume = Scalar::load(group.volume + first);
             for (Scalar& x : t) x = -volume * x;

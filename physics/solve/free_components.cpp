@@ -18,7 +18,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 namespace {
 
-/// Nodes of one piece have the same number.
+/// Returns a number for each node, the same for all nodes of a connected component.
 std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
     std::vector<std::size_t> parent(mesh.node_capacity());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
@@ -37,8 +37,8 @@ std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
     return parent;
 }
 
-/// How a component of a node moves with the six ways of the piece, by the terms of
-/// FreeComponent::modes.
+/// Returns the motion of component `component` of a node at x, per unit of each of the six rigid
+/// motions. These are in the order of the rows of FreeComponent::modes.
 Vector6 row_of(const FreeComponent& piece, const Vec3& x, int component) {
     Vector6 row;
     const Vec3 axis = Vec3::Unit(component);
@@ -46,7 +46,7 @@ Vector6 row_of(const FreeComponent& piece, const Vec3& x, int component) {
     return row;
 }
 
-/// Sets where the piece's nodes have their middle, and its turns.
+/// Sets `centre` and `turns`.
 void find_frame(FreeComponent& piece, std::span<const Vec3> positions) {
     const auto num_nodes = static_cast<double>(piece.nodes.size());
     for (const NodeId n : piece.nodes) piece.centre += positions[n.index()];
@@ -69,8 +69,8 @@ void find_frame(FreeComponent& piece, std::span<const Vec3> positions) {
 
 std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<const Vec3> positions,
                                                 const Constraints& constraints) {
-    // Ways that constraints hinder by less than this share of a full hold are free: what rounding
-    // of positions in single precision leaves of none, by its square.
+    // A motion is free if constraints hold less than this share of it. The share is the square of
+    // what the rounding of positions in single precision can leave.
     constexpr double hold = 1e-13;
     const std::vector<std::size_t> piece_of = pieces_of_nodes(mesh);
     std::vector<std::size_t> num_elements(mesh.node_capacity(), 0);
@@ -97,7 +97,7 @@ std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<cons
         if (num_free == 0) continue;
         piece.modes = modes.vectors.leftCols(num_free);
 
-        // The component that hinders most of what is left, again and again.
+        // Repeatedly pin the component that prevents most of the remaining motions.
         Eigen::Matrix<double, 6, Eigen::Dynamic> left = piece.modes;
         for (Eigen::Index k = 0; k < num_free; ++k) {
             double most = -1.0;
@@ -126,7 +126,7 @@ std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<cons
 
 void require_equilibrium(const Mesh& mesh, const FreeComponent& piece,
                          std::span<const Vec3> positions, std::span<const Vec3> forces) {
-    constexpr double tolerance = 1e-7;  // of the sum of all forces on it
+    constexpr double tolerance = 1e-7;  // of the sum of the norms of all forces
     Vector6 total = Vector6::Zero();
     double all = 0.0;
     for (const NodeId n : piece.nodes) {

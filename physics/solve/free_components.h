@@ -1,5 +1,6 @@
-// Connected components that constraints do not hold in every direction: statics has no unique
-// answer for these. SPDX-License-Identifier: LGPL-3.0-or-later
+// Connected components that constraints do not hold in every direction. Statics has no unique
+// equilibrium for these.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <Eigen/Core>
@@ -12,31 +13,35 @@
 
 namespace incise::physics {
 
-/// A piece that can move as a rigid body, and the ways in which it can.
+/// A connected component that can move as a rigid body, and its free rigid motions.
 struct FreeComponent {
     std::vector<NodeId> nodes;
     std::size_t num_elements = 0;
-    Vec3 centre = Vec3::Zero();  ///< of its nodes, m
-    /// Turns about the centre: a unit in column k turns the piece about its principal axis k, by so
-    /// much that the root mean square of its nodes' ways is 1 m. In this measure a needle that
-    /// turns about its length moves as much as one that turns over. 1/m
+    Vec3 centre = Vec3::Zero();  ///< mean position of the nodes, m
+    /// Rotations about the centre, 1/m. Column k is a rotation vector along principal axis k that
+    /// displaces the nodes by 1 m, as root mean square. In this measure the rotation of a needle
+    /// about its length counts as much as any other.
     Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-    /// Ways it can move, orthonormal in the columns: velocity at the centre, then that of `turns`.
+    /// The free motions, as orthonormal columns: translation of the centre, then the amounts of the
+    /// columns of `turns`.
     Eigen::Matrix<double, 6, Eigen::Dynamic> modes;
-    /// As few components as take these ways from it (statically determinate): held there, it
-    /// stays where it is, and the reactions are zero as long as its loads are in equilibrium.
+    /// The fewest position components, as node and axis, that prevent these motions if held
+    /// (statically determinate). Their reactions are zero as long as the loads on this connected
+    /// component are in equilibrium.
     std::vector<std::pair<NodeId, int>> pins;
 
-    /// What holds it; the rest serves messages about a piece just found.
+    /// Holds nodes and pins only. The other members serve messages, at the time of the search.
     static void archive(auto& ar, auto& self) { ar(self.nodes, self.pins); }
 };
 
-/// Of the present positions (m, by node id). Cost: O(#nodes + #elements).
+/// Returns the free components at the given positions (m, by node id).
+/// Cost: O(#nodes + #elements).
 std::vector<FreeComponent> find_free_components(const topology::Mesh& mesh,
                                                 std::span<const Vec3> positions,
                                                 const Constraints& constraints);
 
-/// Throws PhysicsError, naming the piece and the remedy, if forces (N, by node id) would move it.
+/// Throws MotionFailure if the forces (N, by node id) would move the free component. The failure
+/// names one of its elements.
 void require_equilibrium(const topology::Mesh& mesh, const FreeComponent& piece,
                          std::span<const Vec3> positions, std::span<const Vec3> forces);
 

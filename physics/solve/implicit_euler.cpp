@@ -59,7 +59,8 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
                 dissipated += swing;
                 continue;
             }
-            // At the mean velocity, as in Model::integrate.
+            // The inertial part of the reaction works at the mean velocity, as in
+            // Model::integrate.
             reactions_[n][c] = mass * (change[c] / dt + damping * v_new[c]) - force[c];
             work += reactions_[n][c] * displacement[c] - swing;
         }
@@ -67,7 +68,7 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
     }
     const double energy = model.elastic_energy();
     model.take_step(x_, velocities_, reactions_, dt);
-    // The work on the elements less what they keep: viscosity and the rule have taken it.
+    // What the elements do not keep of the work on them is taken by viscosity and by the method.
     model.record_work(work, dissipated - (model.elastic_energy() - energy));
 }
 

@@ -1,5 +1,5 @@
-// How a body gets from one moment to the next: explicitly, implicitly, or from one equilibrium to
-// the next.
+// Integrators, which move a body from one moment to the next: explicit steps, implicit steps, and
+// statics. Equations: docs/theory.md, Masses and time steps, Implicit steps and statics.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -12,37 +12,39 @@
 
 namespace incise::physics {
 
+/// A method that moves a body from one moment to the next.
 class Integrator {
   public:
     virtual ~Integrator() = default;
 
-    /// Takes the body from `time` to time + dt, s. Forces are then to be computed.
-    /// Throws PhysicsError if there is no way.
+    /// Moves the body from `time` to time + dt, s. The forces of the new state are not computed:
+    /// call Model::compute_forces afterwards. Throws MotionFailure if the step fails.
     virtual void step(Model& model, double time, double dt) = 0;
-    /// Called after the edits of a step, `time` being its end. Whether it has moved the body.
+    /// Moves the body to its equilibrium after the edits of a step, in statics only. `time` is the
+    /// end of the step, s. Returns true if it did so.
     virtual bool equilibrate(Model&, double /*time*/) { return false; }
 
-    /// What it keeps from step to step, for one that goes on with a restored model; most keep
-    /// nothing.
+    /// Save and restore the state that the integrator keeps from step to step, to continue with a
+    /// restored model. Most integrators keep none.
     virtual void save(ArchiveWriter&) const {}
     virtual void restore(ArchiveReader&, const Model&) {}
 };
 
-/// Changes velocities between the two stages of an explicit step, as contact does.
+/// A change of velocities between the two stages of an explicit step, for example by contact.
 class VelocityProjection {
   public:
     virtual ~VelocityProjection() = default;
-    /// Gives impulses to the nodes of the model, whose velocities are those of the end of the step,
-    /// from `time` to time + dt, s: see Model::give_impulses.
+    /// Gives impulses to nodes of the model; see Model::give_impulses. The step is from `time` to
+    /// time + dt, s, and the velocities of the model are those of its end.
     virtual void project(Model& model, double time, double dt) = 0;
 };
 
-/// Semi-implicit Euler, in steps below the bound of stability. A step has the stages kick, project
-/// and drift; without projections it is one pass over the nodes: Model::integrate.
+/// Symplectic Euler, for steps below the stable step. A step has the stages kick, project and
+/// drift. Without projections it is one pass over the nodes: Model::integrate.
 class SemiImplicitEuler final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
-    /// They act in the order in which they are added.
+    /// Adds a projection. Projections act in the order in which they are added.
     void add_projection(std::unique_ptr<VelocityProjection> projection) {
         projections_.push_back(std::move(projection));
     }
@@ -51,11 +53,13 @@ class SemiImplicitEuler final : public Integrator {
     std::vector<std::unique_ptr<VelocityProjection>> projections_;
 };
 
-/// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'), with the forces, viscous
-/// and damping ones too, of the end of the step. Stable at any dt; of first order; it damps what
-/// changes faster than dt. Steps that Newton's method does not solve are halved, up to ten times.
-/// Books: loads and constraints work with their forces of the end of the step, and what the rule
-/// takes from the energy by itself counts as dissipated.
+/// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'). The forces f are those of
+/// the end of the step, with viscosity and damping. The method has first order, is stable at any
+/// dt, and damps motions that change faster than dt. A step that Newton's method does not solve is
+/// halved, up to ten times.
+///
+/// External work is computed with the forces of loads and constraints at the end of the step. The
+/// energy that the method itself removes counts as dissipated.
 class ImplicitEuler final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
@@ -68,15 +72,17 @@ class ImplicitEuler final : public Integrator {
         reactions_;  // by node id
 };
 
-/// Equilibrium at each moment: no inertia, no velocities, viscosity relaxed. From one moment to the
-/// next in one increment, or where Newton's method fails in smaller ones: constraints and loads go
-/// with the time, and what was out of balance before (after a cut, or under loads that are there
-/// from the start) is let go in proportion. Its work counts as dissipated. Pieces that can move
-/// freely stay where they are; they must be in equilibrium under their loads.
+/// Equilibrium at each moment, without inertia and velocities, with the long-time moduli.
+///
+/// A step is one increment. If Newton's method fails, it is several smaller ones. Constraints and
+/// loads follow the time within the step. Forces that are out of balance at the beginning, after a
+/// cut or under loads present from the start, are released in proportion. Their work counts as
+/// dissipated. Free components stay where they are, and must be in equilibrium under their loads.
 class Statics final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
-    /// To the equilibrium of the edited body.
+    /// Moves the body to its equilibrium. Returns false, and does nothing, if the structure of the
+    /// model has not changed since the last step.
     bool equilibrate(Model& model, double time) override;
     void save(ArchiveWriter& ar) const override { newton_.save(ar); }
     void restore(ArchiveReader& ar, const Model& model) override { newton_.restore(ar, model); }

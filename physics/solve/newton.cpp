@@ -12,17 +12,19 @@ namespace incise::physics {
 namespace {
 
 constexpr int max_iterations = 60;
-constexpr double tolerance = 1e-11;  // of all forces
-// Rounding of positions moves forces by a node's stiffness times this share of where it is; that of
-// what laws make of strain moves energies by this share of what a strain of the order of one takes.
+constexpr double tolerance = 1e-11;  // of NewtonReport::scale
+// Rounding of positions changes the force at a node by this share of its stiffness times its
+// distance from the origin. Rounding in laws changes energies by this share of the energy of a
+// strain of the order of one.
 constexpr double rounding_of_forces = 1e-15, rounding_of_energy = 1e-14;
-// Where rounding is what is left, the imbalance falls no more; so far above the tolerance it may
-// be.
+// If only rounding is left, the imbalance no longer falls. It may then be above the tolerance by
+// this factor.
 constexpr double stagnation = 1e3;
-// Of edits: the body has not been looked at yet.
+// A structure version that no model has: follow() has not been called yet.
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
-/// Pins of a piece that is held in part go with its constraints, by the mean of what these go.
+/// Sets the displacements of the pins of a partly held component, along each axis, to the mean of
+/// those of its constraints.
 void follow_constraints(const FreeComponent& piece, const Model& model,
                         std::vector<Vec3>& increments) {
     Vec3 sum = Vec3::Zero(), count = Vec3::Zero();
@@ -39,7 +41,7 @@ void follow_constraints(const FreeComponent& piece, const Model& model,
 
 }  // namespace
 
-/// At a state: how much is out of balance, how large it all is, and how much rounding leaves.
+/// The norms of the imbalance, of all forces, and of what rounding may leave of the imbalance, N.
 struct NewtonSolver::Forces {
     double imbalance = 0.0, scale = 0.0, rounding = 0.0;
 };
@@ -134,7 +136,7 @@ void NewtonSolver::factorise(const Model& model, const StepProblem& problem,
     assemble(model, problem, x, TangentKind::exact, increments);
     if (tangent_.factorise()) return;
     assemble(model, problem, x, TangentKind::positive, increments);
-    // Flattened elements and slack springs may leave ways without stiffness.
+    // Flat elements and slack springs may leave motions without stiffness.
     double shift = 1e-10 * tangent_.largest_diagonal();
     while (!tangent_.factorise()) {
         tangent_.shift(shift);
@@ -157,8 +159,8 @@ double NewtonSolver::potential(const Model& model, const StepProblem& problem,
     return sum.value();
 }
 
-// Along the straight path, by Simpson's rule: exact, as pressure is quadratic in the
-// positions.
+// Along a straight path, by Simpson's rule. This is exact, since the force of pressure is quadratic
+// in the positions.
 double NewtonSolver::work_of_loads(const Model& model, const StepProblem& problem,
                                    const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     Sum work;
@@ -221,7 +223,7 @@ bool NewtonSolver::search_line(const Model& model, const StepProblem& problem,
 
 NewtonReport NewtonSolver::solve(const Model& model, const StepProblem& problem,
                                  std::vector<Vec3>& x, std::vector<Vec3>& elastic_forces) {
-    // The first iteration takes the rest of the body along.
+    // The first iteration moves the rest of the body with the constraints.
     bool constraints_move = find_increments(model, problem.time, x);
 
     NewtonReport report;

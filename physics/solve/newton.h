@@ -1,4 +1,5 @@
-// Newton's method for the state that implicit steps and statics end in.
+// Newton's method for the end of an implicit step or a step of statics. Equations: docs/theory.md,
+// Implicit steps and statics.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,50 +15,53 @@
 
 namespace incise::physics {
 
-/// Wanted are positions x, with constraints where they have to be at `time`, at which for every
-/// free component of every node
-///     elastic and viscous forces + loads and gravity + holding = (inertia) m (x - predicted).
+/// The equations of the end of a step. The unknowns are positions x that satisfy the constraints at
+/// `time`. For every free component of every node:
+///     elastic and viscous forces + outer forces + holding = (inertia) m (x - predicted).
+/// Outer forces are loads, gravity and added terms.
 struct StepProblem {
     double time;     ///< s, at the end of the step
-    double dt;       ///< s, by which viscosity relaxes; infinite in statics
+    double dt;       ///< s, the time for which viscosity relaxes; infinite in statics
     double inertia;  ///< 1/s2; 0 in statics
     std::span<const Vec3> predicted_positions =
         {};                              ///< m, by node id; may be empty without inertia
     std::span<const Vec3> holding = {};  ///< N, by node id; may be empty
 };
 
-/// How it went.
+/// The outcome of NewtonSolver::solve().
 struct NewtonReport {
     bool has_converged = false;
     int iterations = 0;
     double imbalance = 0.0;  ///< N, root of the sum of squares over free components
-    double scale = 0.0;      ///< N, likewise of all forces
+    double scale = 0.0;      ///< N, sum of the norms of elastic, outer and inertial forces
 };
 
-/// Full Newton on the incremental energy: tangents assembled and factorised in each iteration, and
-/// a line search. Where the tangent is not positive definite, that of the elements' positive parts
-/// serves. Deterministic.
+/// Newton's method on the incremental energy. Each iteration assembles and factorises the tangent,
+/// and searches along the direction. If the tangent is not positive definite, the sum of the
+/// positive parts of the element tangents replaces it. The results are deterministic.
 class NewtonSolver {
   public:
-    /// @param pins_free_components statics: pieces that constraints do not hold are held where they
-    /// are by as few components as do; see FreeComponent
+    /// @param pins_free_components  true in statics: free components are held where they are, by
+    ///                              their pins; see FreeComponent
     explicit NewtonSolver(bool pins_free_components)
         : pins_free_components_(pins_free_components) {}
 
-    /// Prepares for the body as it now is. Costs something only after edits: then the pattern of
-    /// the tangent is found anew.
+    /// Prepares for the present structure of the body: finds free components and the pattern of the
+    /// tangent. Does nothing if the structure has not changed since the last call.
     void follow(const Model& model);
-    /// What follow() made of positions that are gone: the pins of free pieces.
+    /// Saves the pins of free components, which follow() has found at earlier positions.
     void save(ArchiveWriter& ar) const;
     void restore(ArchiveReader& ar, const Model& model);
 
-    /// @param x  m, by node id: start and result. Without convergence, where it got to
-    /// @param elastic_forces  N, by node id: those at the result, of the end of the step
+    /// Solves the equations from the start `x` (m, by node id). `x` becomes the solution, or the
+    /// last iterate if the method does not converge. `elastic_forces` (N, by node id) become those
+    /// at the new `x`, at the end of the step.
+    /// @pre follow() was called since the structure last changed
     NewtonReport solve(const Model& model, const StepProblem& problem, std::vector<Vec3>& x,
                        std::vector<Vec3>& elastic_forces);
 
     const std::vector<FreeComponent>& free_components() const { return free_components_; }
-    /// By node id.
+    /// True if neither a constraint nor a pin holds this component of the node.
     bool is_free(std::size_t node, int component) const {
         return is_free_[node][static_cast<std::size_t>(component)];
     }
@@ -65,9 +69,10 @@ class NewtonSolver {
   private:
     struct Forces;
     void prepare(const Model& model);
-    /// Sets net_ to what is out of balance at x, and elastic_ and outer_ to the forces there.
+    /// Sets net_ to the imbalance at x, and elastic_ and outer_ to the forces there.
     Forces evaluate(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x);
-    /// Sets increments_ to where constraints go from x; whether one does.
+    /// Sets increments_ to the displacements that constraints prescribe from x. Returns true if a
+    /// constraint prescribes one that is not zero.
     bool find_increments(const Model& model, double time, const std::vector<Vec3>& x);
     void assemble(const Model& model, const StepProblem& problem, const std::vector<Vec3>& x,
                   TangentKind kind, std::span<const Vec3> increments);

@@ -26,7 +26,7 @@ void Statics::require_equilibrium_of_free_components(const Model& model, double 
     if (newton_.free_components().empty()) return;
     next_outer_.resize(x_.size());
     model.outer_forces_at(x_, time, next_outer_);
-    // Where they are now, for those held in part may have been led elsewhere.
+    // Found anew, since constraints may have moved components that they hold in part.
     for (const FreeComponent& piece : find_free_components(model.mesh(), x_, model.constraints()))
         require_equilibrium(model.mesh(), piece, x_, next_outer_);
 }
@@ -46,7 +46,7 @@ void Statics::take_increment(Model& model, double from, double to) {
         const Vec3 displacement = x_[n] - model.positions()[n];
         const Vec3 net = elastic_[n] + outer_[n], next_net = next_elastic_[n] + next_outer_[n];
         reactions_[n] = free_part(n, next_net) - next_net;
-        // Forces go in proportion to the displacement, so that their mean does the work.
+        // The trapezoidal rule: forces are taken as linear in the displacement.
         work += 0.5 * (outer_[n] + next_outer_[n] + free_part(n, net) - net + reactions_[n])
                           .dot(displacement);
         released += held * imbalance_[n].dot(displacement);

@@ -12,8 +12,8 @@ namespace {
 
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Pairs of nodes of one element that are not held altogether, the first not above the second; each
-/// once, in ascending order.
+/// Returns the pairs (a, b), a <= b, of nodes of one element that both have a free component. Each
+/// pair is there once, in ascending order.
 std::vector<NodePair> coupled_nodes(const Mesh& mesh,
                                     std::span<const std::array<bool, 3>> is_free) {
     const auto moves = [&](NodeId n) { return is_free[n.index()] != std::array<bool, 3>{}; };
@@ -30,7 +30,7 @@ std::vector<NodePair> coupled_nodes(const Mesh& mesh,
     return pairs;
 }
 
-/// All nodes, in an order of elimination that leaves few entries to the factor.
+/// Returns all nodes in an order of elimination for which the factor has few entries.
 std::vector<std::int32_t> elimination_order(std::span<const NodePair> pairs,
                                             std::size_t num_nodes) {
     std::vector<Eigen::Triplet<double, std::int32_t>> entries;
@@ -94,7 +94,7 @@ void TangentMatrix::add(std::span<const std::uint32_t> nodes, std::span<const do
                 continue;
             }
             for (std::size_t i = 0; i < nodes.size(); ++i) {
-                // The free components of a node stand together.
+                // The rows of a node are adjacent, so one search finds them all.
                 const int* it = nullptr;
                 for (std::size_t d = 0; d < 3; ++d) {
                     const std::int32_t row = rows_[nodes[i]][d];
@@ -122,7 +122,7 @@ void TangentMatrix::shift(double value) {
 bool TangentMatrix::factorise() {
     if (num_unknowns() == 0) return true;
     factor_.factorize(upper_);
-    // Pivots that rounding alone may have left are none to divide by.
+    // A smaller pivot may be the result of rounding only.
     constexpr double smallest = 1e-14;
     if (factor_.info() != Eigen::Success) return false;
     const Eigen::VectorXd pivots = factor_.vectorD();

@@ -1,4 +1,4 @@
-// The tangent stiffness of a body, assembled from those of its elements and factorised.
+// The tangent of a body, assembled from those of its elements and factorised.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -14,38 +14,42 @@
 
 namespace incise::physics {
 
-/// Symmetric and sparse, over the components of positions that are free. Memory: about 1 kB a node
-/// of tetrahedra, and some times that for the factor. Sums run in the order of elements: the same
-/// bits for the same body. Rows stand in the order of elimination, so that the factor is made of
-/// the matrix as it is, without a copy of it.
+/// The tangent as a symmetric sparse matrix over the free components of positions. Sums are in the
+/// order of elements, so the same body gives the same bits. Rows are in the order of elimination,
+/// so the matrix is factorised without a copy.
+///
+/// Memory: about 1 kB a node of tetrahedra, and several times that for the factor.
 class TangentMatrix final : public TangentSink {
   public:
-    /// Where it has entries: between free components of nodes of one element. The order of
-    /// elimination follows: that of nodes by approximate minimum degree, and the components of a
-    /// node stand together, as they have the same neighbours.
-    /// @param is_free by node id; of living nodes
+    /// Sets the pattern: entries are between free components of nodes of one element. Then finds
+    /// the order of elimination, which is that of nodes by approximate minimum degree. The
+    /// components of a node are next to each other, since they have the same neighbours.
+    /// `is_free` is by node id, and is read for living nodes.
     void set_pattern(const topology::Mesh& mesh, std::span<const std::array<bool, 3>> is_free);
 
     std::size_t num_unknowns() const { return static_cast<std::size_t>(upper_.rows()); }
-    /// The row of a component; -1 if it is not free.
+    /// Returns the row of a component, or -1 if it is not free.
     std::int32_t row_of(std::size_t node, int component) const {
         return rows_[node][static_cast<std::size_t>(component)];
     }
 
-    /// Sets all entries to zero. `increments` (m, by node id; may be empty) of components that are
-    /// not free: what these bring to the free ones is summed beside the entries, as load().
+    /// Sets all entries and load() to zero. `increments` (m, by node id; may be empty) are the
+    /// displacements of components that are not free. add() then sums their effect on the free
+    /// components in load().
+    /// @lifetime `increments` must live until the last add().
     void clear(std::span<const Vec3> increments);
     void add(std::span<const std::uint32_t> nodes, std::span<const double> tangent) override;
     /// Adds `value` (N/m) for each free component of the node.
     void add_diagonal(std::size_t node, double value);
-    /// Minus the tangent times the increments, N, by row.
+    /// Returns minus the tangent times the increments, N, by row.
     const Eigen::VectorXd& load() const { return load_; }
 
-    /// False, and no factor, if it is not positive definite. Takes memory for no longer than it
-    /// runs: 12 bytes an unknown, and up to 16 more in bodies of more than some 16,000 unknowns.
+    /// Factorises the matrix. Returns false, without a factor, if it is not positive definite.
+    /// Temporary memory: 12 bytes an unknown, and up to 16 more in bodies of more than some 16,000
+    /// unknowns.
     bool factorise();
-    /// Puts the solution in the place of the right side.
-    /// @pre factorise() was true
+    /// Replaces the right side by the solution.
+    /// @pre factorise() returned true
     void solve(Eigen::VectorXd& side) const {
         if (num_unknowns() > 0) side = factor_.solve(side);
     }
