@@ -124,7 +124,7 @@ ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
             break;
         case Kind::surface: {
             auto file = io::read_surface(argument.text);
-            for (const auto& defect : cutting::defects_of_sheet(file.surface))
+            for (const auto& defect : cutting::defects_of_surface(file.surface))
                 file.warnings.push_back(defect);
             for (const auto& warning : file.warnings)
                 parsed.warnings.push_back(prefixed(argument.text + ": ", warning));

@@ -462,7 +462,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
             add(counts, report.total);
             report.tools.push_back({tool.name, counts, topology::components(mesh).count});
         } catch (const cutting::UndividableElement& error) {
-            throw cutting::UndividableElement(tool.name + ": " + error.what());
+            throw cutting::UndividableElement(tool.name + ": " + error.what(), error.element);
         } catch (const InputError& error) {
             throw InputError(tool.name + ": " + error.what());
         }

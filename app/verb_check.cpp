@@ -10,6 +10,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
+#include "incise/scenario/remedies.h"
 #include "incise/scenario/scenario_reader.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_check.h"
@@ -33,9 +34,10 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
     try {
         const auto file = io::read_mesh(path, {region_array});
         for (const auto& warning : file.warnings) findings.warnings.push_back(prefix + warning);
-        auto found = topology::check(file.mesh);
+        auto found = topology::check(file.mesh, scenario::weld_advice());
         // Warnings about connections exist only after the mesh is built.
-        if (found.errors.empty()) found.warnings = topology::Mesh::build(file.mesh).warnings;
+        if (found.errors.empty())
+            found.warnings = topology::Mesh::build(file.mesh, scenario::weld_advice()).warnings;
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
         const std::set<int> regions(file.mesh.regions.begin(), file.mesh.regions.end());

@@ -7,6 +7,7 @@
 #include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_writer.h"
+#include "incise/scenario/remedies.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"
 
@@ -32,7 +33,8 @@ int convert(const ConvertOptions& options) {
     for (const auto& warning : file.warnings) print_warning(prefix + warning);
     std::string report;
     if (options.weld) report = "; " + weld(file.mesh, prefix);
-    if (const auto warning = topology::coincidence_warning(file.mesh))  // gaps, after welding
+    if (const auto warning = topology::coincidence_warning(
+            file.mesh, scenario::weld_advice()))  // gaps, after welding
         print_warning(prefix + *warning);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "

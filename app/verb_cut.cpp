@@ -18,6 +18,7 @@
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/scenario/diagnostics.h"
+#include "incise/scenario/remedies.h"
 #include "incise/scenario/table_reader.h"
 #include "incise/scenario/tool_build.h"
 
@@ -102,7 +103,7 @@ Result carry_out(const CutOptions& options) {
     const std::string prefix = options.mesh.string() + ": ";
     auto file = io::read_mesh(options.mesh, {options.region_array});
     try {
-        auto built = topology::Mesh::build(file.mesh);
+        auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         const auto mode = job.mode.value_or(scenario::usual_mode(built.mesh));
         auto report = app::geometric_cut(built.mesh, job.tools, {mode, job.snap});
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})

@@ -9,6 +9,7 @@
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
+#include "incise/scenario/remedies.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -33,7 +34,7 @@ MeshInfo look_at(const InfoOptions& options) {
     info.num_points = file.mesh.points.size();
     info.warnings = std::move(file.warnings);
     try {
-        const auto built = topology::Mesh::build(file.mesh);
+        const auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);

@@ -57,20 +57,20 @@ class ProgressObserver : public runner::Observer {
 class WarningObserver : public runner::Observer {
   public:
     explicit WarningObserver(const runner::Simulation& simulation)
-        : num_told_(simulation.warnings().size()) {}
+        : num_printed_(simulation.warnings().size()) {}
 
     void on_edit(const runner::Simulation& simulation, const sim::EditRecord&) override {
-        tell(simulation);
+        print_new(simulation);
     }
     /// Prints the new warnings. Warnings of the last step are about the state at the end, so that
     /// the caller prints them after the progress.
-    void tell(const runner::Simulation& simulation) {
-        for (; num_told_ < simulation.warnings().size(); ++num_told_)
-            print_warning(simulation.warnings()[num_told_]);
+    void print_new(const runner::Simulation& simulation) {
+        for (; num_printed_ < simulation.warnings().size(); ++num_printed_)
+            print_warning(simulation.warnings()[num_printed_]);
     }
 
   private:
-    std::size_t num_told_;
+    std::size_t num_printed_;
 };
 
 int num_threads(const RunOptions& options) {
@@ -171,7 +171,7 @@ std::string describe(const runner::Simulation& simulation) {
     return text.str();
 }
 
-int tell_expectations(const scenario::Scenario& scenario, const runner::Quantities& quantities) {
+int print_expectations(const scenario::Scenario& scenario, const runner::Quantities& quantities) {
     const auto failures = runner::failed_expectations(scenario, quantities);
     for (const std::string& failure : failures) print_error(scenario.name + ": " + failure);
     return failures.empty() ? done : missed_expectation;
@@ -222,7 +222,7 @@ int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const Ru
         return 128 + signals.noted();
     }
     finish({});
-    warnings.tell(simulation);
+    warnings.print_new(simulation);
     warn_of_idle_tools(simulation);
 
     if (!options.quiet)
@@ -230,7 +230,7 @@ int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const Ru
                   << duration_text(watch.seconds()) << ", " << simulation.edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
     std::cout << writer.main_result().string() << '\n';
-    return tell_expectations(scenario, runner::summary_quantities(simulation));
+    return print_expectations(scenario, runner::summary_quantities(simulation));
 }
 
 }  // namespace
@@ -259,7 +259,7 @@ int run(const RunOptions& options) {
                           << " is finished; there is nothing to resume\n";
             const auto index = folder / (scenario.name + ".pvd");
             std::cout << (std::filesystem::exists(index) ? index : folder).string() << '\n';
-            return tell_expectations(scenario, *quantities);
+            return print_expectations(scenario, *quantities);
         }
         stopped.emplace(stopped_run(folder, scenario));
     } else {

@@ -342,7 +342,7 @@ MachineSpeed measure_machine(int num_cores, std::span<const int> threads) {
 }  // namespace
 
 Throughput measure_throughput(const ThroughputPlan& plan,
-                              const std::function<void(double, const std::string&)>& tell) {
+                              const std::function<void(double, const std::string&)>& report) {
     const int num_cores = physics::Workers::num_cores();
     std::vector<int> threads{1};
     if (const int most = plan.num_threads > 0 ? plan.num_threads : num_cores; most > 1)
@@ -359,7 +359,7 @@ Throughput measure_throughput(const ThroughputPlan& plan,
     for (const auto* sizes : {&plan.edited_tetrahedra, &plan.edited_hexahedra})
         for (const std::size_t n : *sizes) work += work_of(n, num_edited);
     const auto next = [&](double share, const std::string& name) {
-        tell(finished / work, name);
+        report(finished / work, name);
         finished += share;
     };
     const auto part = [&](std::size_t n, const char* what, double num_meshes = 1.0) {

@@ -88,9 +88,9 @@ struct ThroughputPlan {
     int num_threads = 0;   ///< measured besides one thread; 0: the number of cores
 };
 
-/// Measures by the plan. `tell` is called before each part, with the share of the work that is
+/// Measures by the plan. `report` is called before each part, with the share of the work that is
 /// done, 0 to 1, and the name of the part.
 Throughput measure_throughput(const ThroughputPlan& plan,
-                              const std::function<void(double, const std::string&)>& tell);
+                              const std::function<void(double, const std::string&)>& report);
 
 }  // namespace incise::bench

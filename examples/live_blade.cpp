@@ -24,14 +24,14 @@ struct Picture {
     void update(sim::World& world) {
         const auto positions = world.model().positions();
         points.assign(positions.begin(), positions.end());
-        topology::BoundarySurface& surface = world.surface();
-        const auto changes = surface.take_changes();
+        const topology::BoundarySurface& surface = world.surface();
+        const auto changes = world.take_surface_changes();
         triangles.resize(surface.triangles().size());
         is_cut.resize(triangles.size());
-        for (const std::size_t place : changes) {
-            if (place >= triangles.size()) continue;  // gone
-            triangles[place] = surface.triangles()[place];
-            is_cut[place] = surface.is_cut()[place] != 0;
+        for (const std::size_t slot : changes) {
+            if (slot >= triangles.size()) continue;  // gone
+            triangles[slot] = surface.triangles()[slot];
+            is_cut[slot] = surface.is_cut()[slot] != 0;
             ++num_uploaded;
         }
     }

@@ -68,9 +68,13 @@ std::string line_of(const sim::EditRecord& edit) {
 void require_files(const std::filesystem::path& folder, const Simulation& simulation,
                    const Written& written) {
     const auto edits = folder / "edits.jsonl";
-    io::require_begins_with(folder / "history.csv", written.history);
-    io::require_begins_with(edits, written.edits);
-    io::require_frames(folder, simulation.scenario().name, written.frames);
+    try {
+        io::require_begins_with(folder / "history.csv", written.history);
+        io::require_begins_with(edits, written.edits);
+        io::require_frames(folder, simulation.scenario().name, written.frames);
+    } catch (const InputError& error) {
+        throw InputError(std::string(error.what()) + ", or begin anew without --resume");
+    }
     io::BytesWritten lines;
     for (const sim::EditRecord& edit : simulation.edits()) lines.append(line_of(edit) + "\n");
     if (lines != written.edits)

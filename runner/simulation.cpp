@@ -40,11 +40,12 @@ std::uint64_t fingerprint_of(const physics::Model& model,
 
 }  // namespace
 
-Simulation::Simulation(const scenario::Scenario& scenario)
-    : Simulation(scenario, scenario::build_body(scenario)) {}
+Simulation::Simulation(const scenario::Scenario& scenario, StepPolicy policy)
+    : Simulation(scenario, scenario::build_body(scenario), std::move(policy)) {}
 
-Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body)
+Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy)
     : scenario_(scenario),
+      policy_(std::move(policy)),
       warnings_(std::move(body.warnings)),
       world_(scenario::make_world(scenario, std::move(body.mesh), std::move(body.materials),
                                   std::move(body.boundary_conditions))),
@@ -54,13 +55,14 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body)
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
         paths_.push_back(std::move(tool.path));
     }
-    step_limit();  // refuses a fixed step that is too large before anything is written
+    // Refuses a fixed step that is too large before anything is written.
+    scenario::step_limit(scenario_, model(), num_steps());
 }
 
 void Simulation::start() {
     for (Observer* observer : observers_) observer->on_start(*this);
-    tell_frame();
-    tell_pause();
+    report_frame();
+    report_pause();
 }
 
 bool Simulation::is_finished() const { return time() >= scenario_.dynamics.end_time; }
@@ -71,20 +73,20 @@ void Simulation::step() {
     try {
         world_.step_to(step.to);
     } catch (const sim::ToolError& error) {
-        tell_edits();
-        if (!error.is_undividable) throw;
+        report_edits();
+        if (!error.undividable.is_valid()) throw;
         throw InputError(std::string(error.what()) + "; " +
                          scenario::instead_of_dividing(world_.tool(error.tool).shape));
     } catch (const physics::MotionFailure& failure) {
-        tell_edits();
+        report_edits();
         throw PhysicsError(failure.what() + scenario::remedy_for(failure));
     }
     last_step_ = step.to - step.from;
-    tell_edits();
+    report_edits();
     for (Observer* observer : observers_) observer->on_step(*this);
     if (is_finished()) warn_of_lost_elements();
-    tell_frame();
-    tell_pause();
+    report_frame();
+    report_pause();
 }
 
 /// Places the tools that act in the step, and withdraws those whose path ends in it.
@@ -101,7 +103,7 @@ void Simulation::move_tools(Interval step) {
     }
 }
 
-void Simulation::tell_edits() {
+void Simulation::report_edits() {
     for (const sim::Edit& edit : world_.report().edits) {
         edits_.push_back(edit.record);
         warn_of_short_steps(edit.record);
@@ -190,11 +192,9 @@ double Simulation::time_step() const {
     return to - from;
 }
 
-// Frames are at exact multiples of their interval, and the run ends exactly at its end time. The
-// time to the next of these is divided evenly into steps below the limit.
+// Frames are at exact multiples of their interval, and the run ends exactly at its end time.
 Simulation::Interval Simulation::next_step() const {
-    // A tiny excess over a whole number of steps is due to rounding and needs no further step. The
-    // same holds for a tiny time between the last frame and the end, as 3 * 0.3 < 0.9.
+    // A tiny time between the last frame and the end is due to rounding, as 3 * 0.3 < 0.9.
     constexpr double rounding = 1e-9;
     const double interval = scenario_.output.interval;
     double stop = scenario_.dynamics.end_time;
@@ -203,16 +203,17 @@ Simulation::Interval Simulation::next_step() const {
             static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) * interval;
         if (frame < stop - rounding * interval) stop = frame;
     }
-    const double steps = std::ceil((stop - time()) / step_limit() * (1.0 - rounding));
-    if (steps <= 1.0) return {time(), stop};
-    return {time(), time() + (stop - time()) / steps};
+    const double end = policy_({scenario_, model(), time(), stop, num_steps()});
+    if (!(end > time() && end <= stop))
+        throw InputError("the policy of steps chose a step from " + io::format_number(time()) +
+                         " s to " + io::format_number(end) +
+                         " s: it must end after its start, "
+                         "and at " +
+                         io::format_number(stop) + " s at the latest");
+    return {time(), end};
 }
 
-double Simulation::step_limit() const {
-    return scenario::step_limit(scenario_, model(), num_steps());
-}
-
-void Simulation::tell_frame() {
+void Simulation::report_frame() {
     const double interval = scenario_.output.interval;
     if (interval == 0.0) return;
     const bool is_due = time() >= static_cast<double>(num_frames_) * interval;
@@ -221,7 +222,7 @@ void Simulation::tell_frame() {
     for (Observer* observer : observers_) observer->on_frame(*this);
 }
 
-void Simulation::tell_pause() {
+void Simulation::report_pause() {
     for (Observer* observer : observers_) observer->on_pause(*this);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/runner/step_policy.h"
 #include "incise/scenario/scenario.h"
 #include "incise/scenario/tool_build.h"
 #include "incise/sim/ledger.h"
@@ -41,7 +42,9 @@ class Simulation {
     /// Builds the world of the scenario at time 0.
     /// Throws as build_body(), World and step_limit(): BodyError with all problems, or PhysicsError
     /// if the only problem is a fixed step above the stable step.
-    explicit Simulation(const scenario::Scenario& scenario);
+    /// @param scenario  the scenario
+    /// @param policy    the choice of steps
+    explicit Simulation(const scenario::Scenario& scenario, StepPolicy policy = even_steps);
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
@@ -89,21 +92,21 @@ class Simulation {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
-    Simulation(const scenario::Scenario& scenario, scenario::Body body);
+    Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy);
 
     struct Interval {
         double from, to;  // s
     };
     Interval next_step() const;
-    double step_limit() const;
     void move_tools(Interval step);
-    void tell_edits();
+    void report_edits();
     void warn_of_short_steps(const sim::EditRecord& edit);
     void warn_of_lost_elements();
-    void tell_frame();
-    void tell_pause();
+    void report_frame();
+    void report_pause();
 
     scenario::Scenario scenario_;
+    StepPolicy policy_;
     std::vector<std::string> warnings_;
     sim::World world_;
     std::vector<scenario::ToolPath> paths_;  // by the number of the tool in the world

@@ -13,9 +13,10 @@
 #include "incise/io/files/number_format.h"
 #include "incise/scenario/body_problems.h"
 #include "incise/scenario/elastic_constants.h"
+#include "incise/scenario/remedies.h"
+#include "incise/scenario/single_precision.h"
 #include "incise/scenario/step_limit.h"
 #include "incise/sim/selection.h"
-#include "incise/sim/single_precision.h"
 
 namespace incise::scenario {
 
@@ -67,16 +68,16 @@ std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const si
 }
 
 physics::Constraint build_constraint(const ConstraintSpec& spec, const topology::Mesh& mesh) {
-    physics::Constraint support;
-    support.name = spec.name;
-    support.nodes = physics::NodeSet(
+    physics::Constraint constraint;
+    constraint.name = spec.name;
+    constraint.nodes = physics::NodeSet(
         choose(sim::select_nodes, mesh, spec.where, "constraint '" + spec.name + "'", "node"));
-    support.components = spec.fixed;
-    support.displacement = curve(spec.move);
-    support.angle = curve(spec.rotate);
-    support.point = spec.about_point;
-    support.axis = spec.about_axis;
-    return support;
+    constraint.components = spec.fixed;
+    constraint.displacement = curve(spec.move);
+    constraint.angle = curve(spec.rotate);
+    constraint.point = spec.about_point;
+    constraint.axis = spec.about_axis;
+    return constraint;
 }
 
 physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
@@ -206,10 +207,10 @@ namespace {
 
 /// Reports the conflicts, at most ten in full, because many constraints can prescribe the same
 /// nodes.
-void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
-                    std::span<const physics::Constraint> supports, BodyProblems& problems) {
+void report_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
+                      std::span<const physics::Constraint> constraints, BodyProblems& problems) {
     constexpr std::size_t max_told = 10;
-    const auto conflicts = physics::find_conflicts(mesh, supports);
+    const auto conflicts = physics::find_conflicts(mesh, constraints);
     for (std::size_t i = 0; i < conflicts.size(); ++i) {
         const std::string& location = scenario.constraints[conflicts[i].second].location;
         if (i == max_told) {
@@ -220,7 +221,7 @@ void tell_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
                                        "direction; make their selections disjoint");
             return;
         }
-        problems.add(location, describe(conflicts[i], mesh, supports));
+        problems.add(location, describe(conflicts[i], mesh, constraints));
     }
 }
 
@@ -253,7 +254,7 @@ physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
     for (const LoadSpec& spec : scenario.loads)
         boundary_conditions.loads.push_back(
             problems.try_to(spec.location, [&] { return build_load(spec, mesh); }));
-    tell_conflicts(scenario, mesh, boundary_conditions.constraints, problems);
+    report_conflicts(scenario, mesh, boundary_conditions.constraints, problems);
     return boundary_conditions;
 }
 
@@ -358,7 +359,7 @@ Parts build_parts(const Scenario& scenario) {
                     build_materials(scenario, *mesh, parts.source->cell_vectors, parts.warnings));
             });
         if (scenario.dynamics.precision == physics::Precision::single_precision)
-            if (const auto warning = sim::warning_of_thin_elements(*mesh))
+            if (const auto warning = warning_of_thin_elements(*mesh))
                 parts.warnings.push_back(located(scenario.dynamics.precision_location, *warning));
         parts.boundary_conditions = build_boundary_conditions(scenario, *mesh, problems);
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
@@ -384,7 +385,8 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
     try {
         return physics::Model(mesh, materials, std::move(boundary_conditions));
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(location_of_material(scenario, error.region), error.what());
+        throw BodyError(location_of_material(scenario, error.region),
+                        error.what() + remedy_for(error));
     }
 }
 
@@ -406,7 +408,8 @@ sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
     try {
         return sim::World(std::move(def));
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(location_of_material(scenario, error.region), error.what());
+        throw BodyError(location_of_material(scenario, error.region),
+                        error.what() + remedy_for(error));
     }
 }
 

@@ -51,7 +51,7 @@ void Diagnostics::unknown_key_error(const SourceLocation& location, std::string_
 bool Diagnostics::has_errors_at(std::string_view path) const {
     const auto is_there = [&](const std::string& at) { return is_at_or_below(at, path); };
     return std::ranges::any_of(errors_, is_there, &Finding::path) ||
-           std::ranges::any_of(untold_, is_there);
+           std::ranges::any_of(noted_, is_there);
 }
 
 std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) const {

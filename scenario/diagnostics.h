@@ -28,7 +28,7 @@ class Diagnostics {
     void unknown_key_error(const SourceLocation& location, std::string_view path,
                            std::string_view text);
     /// Adds an error that has_errors_at() counts but errors() does not list.
-    void untold_error(std::string path) { untold_.push_back(std::move(path)); }
+    void note_error(std::string path) { noted_.push_back(std::move(path)); }
     void warning(const SourceLocation& location, std::string text) {
         warnings_.push_back({location, std::move(text), {}});
     }
@@ -57,7 +57,7 @@ class Diagnostics {
     std::string file_;
     std::vector<std::string> overrides_;
     std::vector<Finding> errors_, warnings_;
-    std::vector<std::string> untold_;
+    std::vector<std::string> noted_;
 };
 
 /// True if `path` is `owner`, a key below it, or one of its elements.

@@ -73,18 +73,18 @@ void require_flat_keys(std::string_view text, int override_number) {
     }
 }
 
-SourceLocation place_of(const toml::source_region& region, int override_number) {
+SourceLocation location_of(const toml::source_region& region, int override_number) {
     if (override_number >= 0) return {0, 0, override_number};
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), -1};
 }
 
 Value convert(const toml::node& node, int override_number) {
     Value value;
-    value.location = place_of(node.source(), override_number);
+    value.location = location_of(node.source(), override_number);
     if (const auto* table = node.as_table()) {
         Table entries;
         for (const auto& [key, child] : *table)
-            entries.push_back({std::string(key.str()), place_of(key.source(), override_number),
+            entries.push_back({std::string(key.str()), location_of(key.source(), override_number),
                                convert(child, override_number)});
         std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
             return std::pair(a.location.line, a.location.column) <
@@ -333,7 +333,7 @@ Value read_document(const std::filesystem::path& file) {
     try {
         return convert(toml::parse(text), -1);
     } catch (const toml::parse_error& failure) {
-        throw DocumentError{place_of(failure.source(), -1), std::string(failure.description())};
+        throw DocumentError{location_of(failure.source(), -1), std::string(failure.description())};
     }
 }
 

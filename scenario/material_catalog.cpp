@@ -1,3 +1,4 @@
+// The catalog of laws. The function with the table is long, since it is data.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/scenario/material_catalog.h"
 

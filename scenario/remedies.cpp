@@ -3,6 +3,28 @@
 
 namespace incise::scenario {
 
+topology::WeldAdvice weld_advice() {
+    return {
+        "join them with 'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a "
+        "scenario",
+        "say 'weld = false' in [mesh] of a scenario"};
+}
+
+std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
+    switch (misfit.cause) {
+        using enum physics::MaterialMisfit;
+        case needs_tetrahedra:
+            return ": give the region a material with method = \"hybmss\"";
+        case needs_hexahedra:
+            return ": give the region a material with method = \"heml\"";
+        case needs_cubes:
+            return "; make cubes of an image by incise mesh --hex --size";
+        case other:
+            return "";
+    }
+    return "";
+}
+
 std::string remedy_for(const physics::MotionFailure& failure) {
     const std::string gentler =
         "; use a smaller dynamics.safety, more damping, gentler motion, or ";
@@ -19,7 +41,7 @@ std::string remedy_for(const physics::MotionFailure& failure) {
         case stiffened_tissue:
             return gentler + "a finer mesh there";
         case no_implicit_step:
-            return "; use a smaller dynamics.time_step, or gentler motion of supports and loads";
+            return "; use a smaller dynamics.time_step, or gentler motion of constraints and loads";
         case no_equilibrium:
             return ": use smaller loads or motion, more dynamics.steps, or mode = \"dynamic\" with "
                    "damping";

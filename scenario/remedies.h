@@ -5,8 +5,16 @@
 #include <string>
 
 #include "incise/physics/body/motion_failure.h"
+#include "incise/physics/elements/element_store.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::scenario {
+
+/// What a user of the program can do about points that are not joined.
+topology::WeldAdvice weld_advice();
+
+/// Returns the end of the message of a material that does not suit an element.
+std::string remedy_for(const physics::UnsuitableMaterial& misfit);
 
 /// Returns the end of the message of a failure: what the user can change in the scenario.
 std::string remedy_for(const physics::MotionFailure& failure);

@@ -8,6 +8,7 @@
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/scenario/body_problems.h"
+#include "incise/scenario/remedies.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"
@@ -102,7 +103,7 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
     const auto* path = std::get_if<std::filesystem::path>(&spec.source);
     const std::string prefix = path ? path->string() + ": " : "";
     try {
-        topology::BuiltMesh built = topology::Mesh::build(file.mesh);
+        topology::BuiltMesh built = topology::Mesh::build(file.mesh, weld_advice());
         file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
         for (std::string& warning : file.warnings) warning = prefix + warning;
         return {std::move(built.mesh),

@@ -252,21 +252,21 @@ std::string TableReader::path_of(std::string_view key) const {
     return path_ + "." + std::string(key);
 }
 
-const SourceLocation& TableReader::place_of(std::string_view key) const {
+const SourceLocation& TableReader::location_of(std::string_view key) const {
     const Value* value = value_of(key);
     return value != nullptr ? value->location : place_;
 }
 
 std::string TableReader::location_text(std::string_view key) const {
-    return diagnostics_.text_of(place_of(key));
+    return diagnostics_.text_of(location_of(key));
 }
 
 void TableReader::error(std::string_view key, const std::string& text) const {
-    report(place_of(key), path_of(key), text);
+    report(location_of(key), path_of(key), text);
 }
 
 void TableReader::warning(std::string_view key, const std::string& text) const {
-    diagnostics_.warning(place_of(key), text);
+    diagnostics_.warning(location_of(key), text);
 }
 
 const Array* TableReader::array(std::string_view key, std::string_view wanted) const {
@@ -333,7 +333,7 @@ void TableReader::report_type(const Value& value, const std::string& path,
 void TableReader::report(const SourceLocation& location, const std::string& path,
                          const std::string& text) const {
     if (is_guess(path))
-        diagnostics_.untold_error(path);
+        diagnostics_.note_error(path);
     else
         diagnostics_.key_error(location, path, text);
 }

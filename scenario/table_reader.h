@@ -93,8 +93,8 @@ class TableReader {
     /// the table.
     std::string path_of(std::string_view key = {}) const;
     /// Returns the location of the value of the key, or that of the table if the key is missing.
-    const SourceLocation& place_of(std::string_view key = {}) const;
-    /// Returns place_of() as text for messages: "FILE:line:column".
+    const SourceLocation& location_of(std::string_view key = {}) const;
+    /// Returns location_of() as text for messages: "FILE:line:column".
     std::string location_text(std::string_view key = {}) const;
     const Table& entries() const { return table_; }
     /// True if no error was reported for the key, or, without `key`, for the table. Unknown keys do

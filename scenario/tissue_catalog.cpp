@@ -1,3 +1,4 @@
+// The catalog of tissues. The function with the table is long, since it is data.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/scenario/tissue_catalog.h"
 

@@ -73,7 +73,7 @@ cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnin
         return cutting::PlaneCut{plane->point, plane->normal, snap};
     const auto& path = std::get<std::filesystem::path>(cut.along);
     io::SurfaceFile file = io::read_surface(path);
-    for (const auto& defect : cutting::defects_of_sheet(file.surface))
+    for (const auto& defect : cutting::defects_of_surface(file.surface))
         file.warnings.push_back(defect);
     for (const auto& warning : file.warnings) warnings.push_back(path.string() + ": " + warning);
     for (Vec3& x : file.surface.points) x *= cut.scale;

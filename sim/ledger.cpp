@@ -54,7 +54,7 @@ double least_altitude(const topology::Mesh& mesh) {
 Ledger::Ledger(const physics::Model& model)
     : model_(model),
       counts_(count()),
-      pieces_(model.mesh()),
+      components_(model.mesh()),
       initial_min_altitude_(least_altitude(model.mesh())),
       initial_(body_totals()),
       last_(initial_) {}
@@ -68,7 +68,7 @@ BodyTotals Ledger::body_totals() const {
     const auto reactions = model_.reactions();
     return {counts_.nodes,
             counts_.elements,
-            pieces_.value(),
+            components_.value(),
             model_.totals(),
             model_.stable_step(),
             model_.external_work(),
@@ -101,8 +101,8 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     edit.mass_removed = mass_removed;
     edit.before = before;
     counts_ = count();
-    pieces_.apply(model_.mesh(), changes);
-    assert(pieces_.value() == topology::components(model_.mesh()).count);
+    components_.apply(model_.mesh(), changes);
+    assert(components_.value() == topology::components(model_.mesh()).count);
     edit.after = last_ = body_totals();
     const auto energy = [](const BodyTotals& a) {
         return a.totals.kinetic_energy + a.totals.elastic_energy;

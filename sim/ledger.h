@@ -107,7 +107,7 @@ class Ledger {
 
     const physics::Model& model_;
     Counts counts_;
-    topology::ComponentCount pieces_;
+    topology::ComponentCount components_;
     double initial_min_altitude_;
     BodyTotals initial_, last_;
     std::size_t num_edits_ = 0;

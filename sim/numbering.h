@@ -23,39 +23,39 @@ class Numbering {
     }
     /// Appends a thing to the list and returns its number.
     std::size_t add() {
-        places_.push_back(count_++);
-        return places_.size() - 1;
+        positions_.push_back(count_++);
+        return positions_.size() - 1;
     }
     /// Returns the position in the list of the thing with this number.
     /// Throws InputError if the number was never assigned, or if the thing has been removed.
-    std::size_t place(std::size_t number) const {
-        if (number >= places_.size())
+    std::size_t position_of(std::size_t number) const {
+        if (number >= positions_.size())
             throw InputError(std::string("there is no ") + noun_ + " " + std::to_string(number) +
-                             ": the world has had " + std::to_string(places_.size()));
-        if (!places_[number])
+                             ": the world has had " + std::to_string(positions_.size()));
+        if (!positions_[number])
             throw InputError(std::string(noun_) + " " + std::to_string(number) +
                              " has been removed");
-        return *places_[number];
+        return *positions_[number];
     }
-    /// Removes the thing from the list. Throws InputError as place() does.
+    /// Removes the thing from the list. Throws InputError as position_of() does.
     void remove(std::size_t number) {
-        const std::size_t gone = place(number);
-        places_[number].reset();
+        const std::size_t gone = position_of(number);
+        positions_[number].reset();
         --count_;
-        for (auto& place : places_)
-            if (place && *place > gone) --*place;
+        for (auto& position : positions_)
+            if (position && *position > gone) --*position;
     }
     /// True if the list has `count` things and all positions lie in it.
     bool fits(std::size_t count) const {
-        return count_ == count && std::ranges::all_of(places_, [&](const auto& place) {
-                   return !place || *place < count;
+        return count_ == count && std::ranges::all_of(positions_, [&](const auto& position) {
+                   return !position || *position < count;
                });
     }
-    static void archive(auto& ar, auto& self) { ar(self.places_, self.count_); }
+    static void archive(auto& ar, auto& self) { ar(self.positions_, self.count_); }
 
   private:
     const char* noun_;
-    std::vector<std::optional<std::size_t>> places_;  // by number
+    std::vector<std::optional<std::size_t>> positions_;  // by number
     std::size_t count_ = 0;
 };
 

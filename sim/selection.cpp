@@ -2,7 +2,9 @@
 #include "incise/sim/selection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
+#include <string>
 
 #include "incise/base/error.h"
 
@@ -24,8 +26,24 @@ Selection without_regions(Selection where) {
     return where;
 }
 
+/// Throws InputError for a box, ball or half space that is not finite, with which nothing would be
+/// selected.
+void require_finite(const Selection& where) {
+    const auto require = [](bool is_finite, const char* what) {
+        if (!is_finite)
+            throw InputError(std::string("the ") + what + " of the selection is not finite");
+    };
+    if (where.box) require(where.box->min.allFinite() && where.box->max.allFinite(), "box");
+    if (where.sphere)
+        require(where.sphere->center.allFinite() && std::isfinite(where.sphere->radius), "ball");
+    if (where.half_space)
+        require(where.half_space->point.allFinite() && where.half_space->normal.allFinite(),
+                "half space");
+}
+
 /// Returns, by node id, whether the node is alive and selected.
 std::vector<char> selected(const Mesh& mesh, const Selection& where) {
+    require_finite(where);
     std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
     if (where.regions)
         for (const ElementId e : mesh.elements())
@@ -45,7 +63,7 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
             if (std::none_of(named.begin(), named.end(),
                              [&](NodeId n) { return mesh.is_alive(n); }))
                 throw InputError(
-                    "where.nodes names node " + std::to_string(label) +
+                    "the selection names node " + std::to_string(label) +
                     ", which no element has; the nodes of the mesh are numbered from 0 to " +
                     std::to_string(mesh.num_source_points() - 1));
             for (const NodeId n : named) is_named[n.index()] = 1;

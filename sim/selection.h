@@ -44,7 +44,8 @@ struct Selection {
 
 /// Returns the nodes for which all conditions hold, in ascending order. A region contains all nodes
 /// of its elements, including the nodes that it shares with other regions.
-/// Throws InputError if no element has a node that `where.nodes` names.
+/// Throws InputError if no element has a node that `where.nodes` names, or if a number of a region
+/// is not finite.
 std::vector<NodeId> select_nodes(const topology::Mesh& mesh, const Selection& where);
 
 /// Returns the boundary faces whose element is in `where.regions` and whose nodes all meet the

@@ -22,28 +22,29 @@ World::~World() = default;
 const StepReport& World::step(double dt) {
     if (!(dt > 0.0 && std::isfinite(dt)))
         throw InputError("a step of " + io::format_number(dt) + " s: it must be above 0");
-    return step_to(parts_->time + dt);
+    return parts_->checked_step(parts_->time + dt, dt);
 }
 
 const StepReport& World::step_to(double time) {
-    Parts& p = *parts_;
-    if (p.has_failed)
-        throw InputError("the world has failed in the step from " + io::format_number(p.time) +
+    return parts_->checked_step(time, time - parts_->time);
+}
+
+const StepReport& World::Parts::checked_step(double end, double dt) {
+    if (has_failed)
+        throw InputError("the world has failed in the step from " + io::format_number(time) +
                          " s; restore a state that was saved before");
-    const double dt = time - p.time;
-    if (!(dt > 0.0 && std::isfinite(dt)))
-        throw InputError("a step from " + io::format_number(p.time) + " s to " +
-                         io::format_number(time) + " s: it must go forward");
+    if (!(end > time && std::isfinite(end)))
+        throw InputError("a step from " + io::format_number(time) + " s to " +
+                         io::format_number(end) + " s: it must go forward");
     // A step that is an exact fraction of an interval may exceed the bound by rounding.
     constexpr double rounding = 1e-8;
-    if (p.solver == Solver::semi_implicit_euler &&
-        !(dt <= (1.0 + rounding) * p.model.stable_step()))
+    if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding) * model.stable_step()))
         throw InputError("a step of " + io::format_number(dt) + " s is above the stable step of " +
-                         io::format_number(p.model.stable_step()) + " s");
-    p.has_failed = true;
-    p.step_to(time);
-    p.has_failed = false;
-    return p.report;
+                         io::format_number(model.stable_step()) + " s");
+    has_failed = true;
+    step_to(end);
+    has_failed = false;
+    return report;
 }
 
 const StepReport& World::report() const { return parts_->report; }
@@ -51,6 +52,11 @@ bool World::has_failed() const { return parts_->has_failed; }
 double World::time() const { return parts_->time; }
 std::uint64_t World::num_steps() const { return parts_->num_steps; }
 double World::stable_step() const { return parts_->model.stable_step(); }
+
+topology::BoundarySurface& World::Parts::built_surface() {
+    if (!surface) surface.emplace(mesh);
+    return *surface;
+}
 
 World::Parts::Tool& World::Parts::tool_of(ToolId id) {
     if (id.index >= tools.size())
@@ -83,6 +89,7 @@ void World::place_tool(ToolId id, const Pose& pose) {
         throw InputError("tool '" + tool.def.name +
                          "' is in the tissue: withdraw it before it is put elsewhere");
     tool.is_present = true;
+    tool.is_leaving = false;
     tool.pose = tool.target = pose;
 }
 
@@ -130,8 +137,8 @@ ConstraintId World::grasp(std::string name, std::vector<NodeId> nodes, const Pos
 
 void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
     Parts& p = *parts_;
-    const std::size_t place = p.constraints.place(grasp.index);
-    const std::string name = "constraint '" + p.model.constraint_name(place) + "'";
+    const std::size_t index = p.constraints.position_of(grasp.index);
+    const std::string name = "constraint '" + p.model.constraint_name(index) + "'";
     const auto found = p.grasps.find(grasp.index);
     if (found == p.grasps.end()) throw InputError(name + " is no grasp");
     if (!pose.is_sound()) throw InputError(name + ": its pose is none");
@@ -140,18 +147,24 @@ void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
 
 void World::release(ConstraintId constraint) {
     Parts& p = *parts_;
-    p.model.remove_constraint(p.constraints.place(constraint.index));
+    p.model.remove_constraint(p.constraints.position_of(constraint.index));
     p.constraints.remove(constraint.index);
     p.grasps.erase(constraint.index);
 }
 
 const physics::Reaction& World::reaction(ConstraintId constraint) const {
-    return parts_->model.reactions()[parts_->constraints.place(constraint.index)];
+    return parts_->model.reactions()[parts_->constraints.position_of(constraint.index)];
 }
 
 void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
     if (!term) throw InputError("a force term is given as null");
     parts_->model.add_force_term(std::move(term));
+    parts_->loads_have_changed = true;
+}
+
+void World::remove_force_term(const physics::ForceTerm* term) {
+    if (!parts_->model.remove_force_term(term))
+        throw InputError("the world does not have this force term");
     parts_->loads_have_changed = true;
 }
 
@@ -165,25 +178,24 @@ LoadId World::add_load(physics::Load load) {
 
 void World::set_load_factor(LoadId load, double factor) {
     Parts& p = *parts_;
-    const std::size_t place = p.loads.place(load.index);
+    const std::size_t index = p.loads.position_of(load.index);
     if (!std::isfinite(factor))
-        throw InputError("load '" + p.model.loads().all()[place].name +
+        throw InputError("load '" + p.model.loads().all()[index].name +
                          "': its factor is not finite");
-    p.model.set_load_factor(place, physics::TimeCurve<double>({{p.time, factor}}));
+    p.model.set_load_factor(index, physics::TimeCurve<double>({{p.time, factor}}));
     p.loads_have_changed = true;
 }
 
 void World::remove_load(LoadId load) {
     Parts& p = *parts_;
-    p.model.remove_load(p.loads.place(load.index));
+    p.model.remove_load(p.loads.position_of(load.index));
     p.loads.remove(load.index);
     p.loads_have_changed = true;
 }
 
-topology::BoundarySurface& World::surface() {
-    Parts& p = *parts_;
-    if (!p.surface) p.surface.emplace(p.mesh);
-    return *p.surface;
+const topology::BoundarySurface& World::surface() { return parts_->built_surface(); }
+std::vector<std::size_t> World::take_surface_changes() {
+    return parts_->built_surface().take_changes();
 }
 
 void World::set_num_threads(int n) {

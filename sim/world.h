@@ -54,7 +54,8 @@ struct WorldDef {
     int num_threads = 1;  ///< does not change any result
 };
 
-/// The number of a tool in its world. It is never used for another tool.
+/// The number of a tool in its world. It is never used for another tool. As with the other numbers
+/// below, that of a tool of another world is not recognised: the worlds count alike.
 struct ToolId {
     std::size_t index = 0;
     bool operator==(const ToolId&) const = default;
@@ -101,10 +102,10 @@ struct StepReport {
 
 /// Thrown if a tool meets something that it cannot cut.
 struct ToolError : InputError {
-    ToolError(const std::string& text, ToolId which, bool meets_undividable)
-        : InputError(text), tool(which), is_undividable(meets_undividable) {}
+    ToolError(const std::string& text, ToolId which, ElementId what)
+        : InputError(text), tool(which), undividable(what) {}
     ToolId tool;
-    bool is_undividable;  ///< true if the tool would divide an element that is no tetrahedron
+    ElementId undividable;  ///< no tetrahedron, and the tool would divide it; else invalid
 };
 
 /// A deformable body with its boundary conditions and the tools that cut it.
@@ -155,15 +156,16 @@ class World {
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
     /// radius that is not above 0.
     ToolId add_tool(ToolDef def);
-    /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose.
+    /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose, and a
+    /// withdrawal of it no longer holds.
     /// Throws InputError if the tool is a blade whose cut ends in the tissue.
     void place_tool(ToolId tool, const Pose& pose);
     /// Sets the pose of the tool at the end of the next step. Without a call the tool does not
     /// move. A tool that was not present appears at this pose.
     void set_tool_pose(ToolId tool, const Pose& pose);
-    /// Withdraws a tool at the end of the next step. The tool still takes part in this step, and
-    /// its cut ends at the position that the blade then has. A new pose makes the tool present
-    /// again.
+    /// Withdraws a tool at the end of the next step. The tool still takes part in this step, with
+    /// the pose that is set before or after this call, and its cut ends at the position that the
+    /// blade then has. After the step, a new pose makes the tool present again.
     /// @param pose_before  a pose shortly before the last one. The two poses give the direction in
     ///                     which the blade moved. If null, the direction is that of the last step
     ///                     in which the blade moved.
@@ -203,13 +205,19 @@ class World {
 
     /// Adds a force of your own, such as springs to points in space or a field. It acts in all
     /// steps from the next one on. Bytes of save() do not contain it: restore() keeps the terms
-    /// that the world has, and calls their update(). Throws InputError for null. Cost: O(n), for
-    /// the stable step.
+    /// that the world has, and calls their update().
+    /// Throws InputError, and adds nothing, for null and for a bound on the stiffness that is not
+    /// finite or below 0. Cost: O(n), for the stable step.
     void add_force_term(std::unique_ptr<physics::ForceTerm> term);
+    /// Removes and destroys a force term. Throws InputError if the world does not have it.
+    void remove_force_term(const physics::ForceTerm* term);
 
     /// Returns the surface of the body. The surface is built at the first call and then follows the
     /// edits.
-    topology::BoundarySurface& surface();
+    const topology::BoundarySurface& surface();
+    /// Returns the positions in the list of triangles that are new since the last call, in
+    /// ascending order; see BoundarySurface::take_changes().
+    std::vector<std::size_t> take_surface_changes();
 
     void set_num_threads(int n);
 
@@ -222,14 +230,16 @@ class World {
     /// run lists other members, or if a world computes other bits.
     static constexpr std::uint32_t state_format = 6;
 
-    /// Returns the state of the world as bytes: mesh, positions, velocities, constraints, loads,
-    /// tools and cuts in progress. The materials and the solver are not included.
+    /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
+    /// constraints, loads, tools and cuts in progress. The materials and the solver are not
+    /// included.
     /// Cost: some 100 bytes an element and as many a node.
     std::string save() const;
     /// Restores a state that save() has returned. Later steps give the same results bit for bit.
     /// Throws InputError, and changes nothing, for bytes that cannot be a state of a world with the
     /// same materials and the same solver. Force laws are compared by their kind and by their
-    /// moduli at rest. There is no checksum, so that a changed number may not be detected.
+    /// moduli at rest. The mesh may be any: that of the bytes. There is no checksum, so that a
+    /// changed number may not be detected.
     ///
     /// Cost: that of a new world and of topology::validate().
     /// @pre  the saved world had the same materials and the same solver

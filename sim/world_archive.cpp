@@ -46,9 +46,9 @@ void World::Parts::require_sound_grasps() const {
     const bool fits = constraints.fits(model.num_constraints()) &&
                       loads.fits(model.loads().all().size()) &&
                       std::ranges::all_of(grasps, [&](const auto& row) {
-                          const std::size_t place = constraints.place(row.first);
+                          const std::size_t index = constraints.position_of(row.first);
                           return row.second.pose.is_sound() && row.second.target.is_sound() &&
-                                 !model.constraints().all()[place].grip.is_empty();
+                                 !model.constraints().all()[index].grip.is_empty();
                       });
     if (!fits) throw InputError("its constraints and loads are those of another world");
 }
@@ -70,6 +70,7 @@ void World::Parts::prepare_tools() {
         require_sound(tool.def);
         require_sound_pose({i}, tool.pose);
         require_sound_pose({i}, tool.target);
+        if (tool.pose_before_end) require_sound_pose({i}, *tool.pose_before_end);
         const auto* blade = std::get_if<Blade>(&tool.def.shape);
         const bool splits = blade && blade->mode == CutMode::split;
         if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))

@@ -27,6 +27,8 @@ void require_curve(const physics::TimeCurve<Value>& curve, const std::string& wh
     const auto is_sound = [](const Value& value) {
         if constexpr (std::is_same_v<Value, double>)
             return std::isfinite(value);
+        else if constexpr (std::is_same_v<Value, Pose>)
+            return value.is_sound();
         else
             return value.allFinite();
     };
@@ -54,7 +56,9 @@ struct LoadRequirement {
 
     void operator()(const physics::NodalLoad& load) const {
         require_nodes(mesh, what, load.nodes);
-        require(load.shares.empty() && load.force.allFinite());
+        if (!load.shares.empty())
+            throw InputError(what + ": its shares must be empty, since the body finds them");
+        require(load.force.allFinite());
     }
     void operator()(const physics::TractionLoad& load) const {
         require_faces(load.faces);
@@ -162,6 +166,9 @@ void require_sound(const physics::Constraint& constraint, const Mesh& mesh) {
         throw InputError(what + ": it prescribes no component");
     require_curve(constraint.displacement, what + ": its displacement");
     require_curve(constraint.angle, what + ": its angle");
+    require_curve(constraint.grip, what + ": its grip");
+    if (!std::ranges::all_of(constraint.gripped, is_finite, &std::pair<const NodeId, Vec3>::second))
+        throw InputError(what + ": the position of a node in its grip is not finite");
     if (!is_finite(constraint.point)) throw InputError(what + ": its point is not finite");
     if (!(std::abs(constraint.axis.norm() - 1.0) < 1e-6))
         throw InputError(what + ": its axis has a length of " +
@@ -189,6 +196,9 @@ struct FaultOfMethod {
         if (!(links.inversion_threshold > 0.0 && links.inversion_threshold < 1.0))
             return "its inversion threshold is " + io::format_number(links.inversion_threshold) +
                    ": it must be between 0 and 1";
+        if (links.prony_rule != physics::PronyRule::stress &&
+            links.prony_rule != physics::PronyRule::nodal)
+            return "there is no such rule of its Prony series";
         double sum = 0.0;
         for (const physics::PronyTerm& term : links.prony) {
             if (!(term.alpha > 0.0 && term.tau > 0.0 && std::isfinite(term.tau)))
@@ -236,8 +246,12 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
             throw InputError("region " + std::to_string(region) + " has material " +
                              std::to_string(material) + ", and there are " +
                              std::to_string(def.materials.size()));
-    if (def.fibres.size() > mesh.element_capacity() || !std::ranges::all_of(def.fibres, is_finite))
+    if (!def.fibres.empty() && (def.fibres.size() != mesh.element_capacity() ||
+                                !std::ranges::all_of(def.fibres, is_finite)))
         throw InputError("fibres must have one finite direction for each element");
+    if (def.precision != physics::Precision::double_precision &&
+        def.precision != physics::Precision::single_precision)
+        throw InputError("there is no such precision");
     if (!is_finite(def.gravity)) throw InputError("gravity is not finite");
     if (!(def.damping >= 0.0 && std::isfinite(def.damping)))
         throw InputError("damping is " + io::format_number(def.damping) +

@@ -51,11 +51,15 @@ struct World::Parts {
     void prepare_tools();
     void require_sound_grasps() const;
 
+    /// Steps to the time `end`, after checks. `dt` is the length that was asked for: far from time
+    /// 0 the difference of the times is another one.
+    const StepReport& checked_step(double end, double dt);
     void step_to(double end);
     void cut_with(ToolId id, double end);
     cutting::Split split_with(Tool& tool);
     void follow(ToolId id, cutting::Split done, double end);
     Tool& tool_of(ToolId id);
+    topology::BoundarySurface& built_surface();
     void require_sound_pose(ToolId id, const Pose& pose) const;
     bool is_any_tool_present() const {
         return std::ranges::any_of(tools, [](const Tool& tool) { return tool.is_present; });

@@ -89,7 +89,7 @@ void World::Parts::step_to(double end) {
     if (loads_have_changed) model.compute_forces(time);
     loads_have_changed = false;
     for (auto& [number, grasp] : grasps) {
-        model.set_grip(constraints.place(number),
+        model.set_grip(constraints.position_of(number),
                        physics::TimeCurve<Pose>({{time, grasp.pose}, {end, grasp.target}}));
         grasp.pose = grasp.target;
     }
@@ -124,8 +124,8 @@ void World::Parts::cut_with(ToolId id, double end) {
         } catch (const InputError& error) {
             std::ostringstream text;
             text << "tool '" << tool.def.name << "', at t = " << end << " s: " << error.what();
-            throw ToolError(text.str(), id,
-                            dynamic_cast<const cutting::UndividableElement*>(&error) != nullptr);
+            const auto* undividable = dynamic_cast<const cutting::UndividableElement*>(&error);
+            throw ToolError(text.str(), id, undividable ? undividable->element : ElementId());
         }
     };
     follow(id, carry_out([&] { return split_with(tool); }), end);

@@ -17,8 +17,8 @@ namespace incise::topology {
 /// cause a volume of this size.
 /// @param volume  the signed volume of the cell
 inline bool is_flat_to_rounding(CellKind kind, std::span<const Vec3> corners, double volume) {
-    double reach = 0.0, longest = 0.0;
-    for (const Vec3& x : corners) reach = std::max(reach, x.cwiseAbs().maxCoeff());
+    double largest = 0.0, longest = 0.0;
+    for (const Vec3& x : corners) largest = std::max(largest, x.cwiseAbs().maxCoeff());
     const CellTraits& t = traits(kind);
     for (int k = 0; k < t.num_edges; ++k) {
         const auto [a, b] = t.edges[static_cast<std::size_t>(k)];
@@ -27,7 +27,7 @@ inline bool is_flat_to_rounding(CellKind kind, std::span<const Vec3> corners, do
             (corners[static_cast<std::size_t>(b)] - corners[static_cast<std::size_t>(a)]).norm());
     }
     constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
-    return std::abs(volume) <= rounding * reach * longest * longest;
+    return std::abs(volume) <= rounding * largest * longest * longest;
 }
 
 }  // namespace incise::topology

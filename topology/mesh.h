@@ -37,7 +37,9 @@ class Mesh {
     /// out. Pinched points, at which elements are not connected through faces, get several nodes.
     /// There are warnings about both.
     /// Throws InputError with the errors of check(). Cost: O(n log n), some 0.5 us an element.
-    static BuiltMesh build(const MeshData& data);
+    /// @param data    the mesh
+    /// @param advice  the words of the warning of points that are not joined
+    static BuiltMesh build(const MeshData& data, const WeldAdvice& advice = {});
 
     /// Returns the epoch: the number of edits so far, without those that were undone.
     std::uint64_t epoch() const { return epoch_; }

@@ -272,7 +272,7 @@ void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& res
 
 }  // namespace
 
-MeshCheck check(const MeshData& data) {
+MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     MeshCheck result;
     Complaints errors(result.errors), warnings(result.warnings);
     if (data.num_cells() == 0) {
@@ -321,7 +321,7 @@ MeshCheck check(const MeshData& data) {
     errors.finish();
     warnings.finish();
     if (result.errors.empty())
-        if (auto warning = coincidence_warning(data))
+        if (auto warning = coincidence_warning(data, advice))
             result.warnings.push_back(std::move(*warning));
     return result;
 }

@@ -48,6 +48,6 @@ struct MeshCheck {
 /// There are warnings about points that no cell uses, and about points at one position that are not
 /// joined (see mesh_repair.h). Messages name cells and points by their numbers from 0 and by their
 /// numbers in the source. Cost: O(n), some 0.3 us a cell.
-MeshCheck check(const MeshData& data);
+MeshCheck check(const MeshData& data, const WeldAdvice& advice = {});
 
 }  // namespace incise::topology

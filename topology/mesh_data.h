@@ -66,4 +66,11 @@ struct MeshData {
     }
 };
 
+/// What messages about points that are not joined tell the user to do. The defaults are for
+/// programs that use the library.
+struct WeldAdvice {
+    std::string join = "join them with topology::weld()";
+    std::string keep = "set MeshData::points_may_coincide";  ///< if the gap is meant
+};
+
 }  // namespace incise::topology

@@ -48,7 +48,8 @@ std::string refusal(const std::vector<std::string>& errors) {
 /// The steps of Mesh::build, which share the mesh under construction.
 class MeshImport {
   public:
-    explicit MeshImport(const MeshData& data) : data_(data), check_(check(data)) {
+    MeshImport(const MeshData& data, const WeldAdvice& advice)
+        : data_(data), check_(check(data, advice)) {
         if (!check_.errors.empty()) throw InputError(refusal(check_.errors));
     }
 
@@ -190,6 +191,8 @@ class MeshImport {
     std::vector<ElementId> element_of_cell_;
 };
 
-BuiltMesh Mesh::build(const MeshData& data) { return MeshImport(data).run(); }
+BuiltMesh Mesh::build(const MeshData& data, const WeldAdvice& advice) {
+    return MeshImport(data, advice).run();
+}
 
 }  // namespace incise::topology

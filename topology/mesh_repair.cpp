@@ -114,10 +114,10 @@ std::string corner_name(const MeshData& data, std::size_t point) {
 }
 
 /// Returns a sentence that says whether and how to weld the points.
-std::string remedy_for_coincidence(const MeshData& data) {
+std::string remedy_for_coincidence(const MeshData& data, const WeldAdvice& advice) {
     const std::string apart =
-        "if they are meant to be apart, as the faces of a cut are, say 'weld = false' ";
-    const std::string or_apart = ", or, " + apart + "in [mesh] of a scenario";
+        "if they are meant to be apart, as the faces of a cut are, " + advice.keep;
+    const std::string or_apart = ", or, " + apart;
     const WeldOutlook outlook = outlook_of_weld(data);
     if (outlook.error)
         return "welding them leaves no sound mesh (" + *outlook.error + "): remesh" + or_apart;
@@ -131,18 +131,17 @@ std::string remedy_for_coincidence(const MeshData& data) {
                (outlook.unlike_faces ? "use one kind of element"
                                      : "let the meshes match where they meet") +
                or_apart;
-    std::string text =
-        "join them with 'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a "
-        "scenario";
+    std::string text = advice.join;
     if (outlook.num_idle > 0)
         text += ", which joins no cells at " + std::to_string(outlook.num_idle) +
                 " of them, since " + obstacle;
-    return text + "; " + apart + "there";
+    return text + "; " + apart;
 }
 
 /// Returns a warning if boundary points are near each other but not joined.
 std::optional<std::string> nearness_warning(const MeshData& data,
-                                            const std::vector<std::int64_t>& lowest) {
+                                            const std::vector<std::int64_t>& lowest,
+                                            const WeldAdvice& advice) {
     const auto is_on_boundary = points_of_boundary(data);
     std::size_t num_near = 0, example = 0;
     for (const std::size_t p : doubles(lowest)) {
@@ -159,21 +158,20 @@ std::optional<std::string> nearness_warning(const MeshData& data,
          << (data.points[example] - data.points[other]).norm()
          << " apart; move them onto each other where the mesh is made, since welding joins only "
             "points within "
-         << weld_tolerance
-         << " of it, or, if the gap is meant, say 'weld = false' in [mesh] of a scenario";
+         << weld_tolerance << " of it, or, if the gap is meant, " << advice.keep;
     return text.str();
 }
 
 }  // namespace
 
-std::optional<std::string> coincidence_warning(const MeshData& data) {
+std::optional<std::string> coincidence_warning(const MeshData& data, const WeldAdvice& advice) {
     if (data.points_may_coincide) return std::nullopt;
     const auto near = lowest_at_position(data, near_tolerance);
     if (doubles(near).empty()) return std::nullopt;
     const auto lowest = lowest_at_position(data, weld_tolerance);
     const auto found = doubles(lowest);
     // In a mesh that has been welded, points at one position differ only by rounding.
-    if (found.empty() || !data.welded_to.empty()) return nearness_warning(data, near);
+    if (found.empty() || !data.welded_to.empty()) return nearness_warning(data, near, advice);
     const std::size_t example = found.front();
     const Vec3& x = data.points[example];
     std::ostringstream text;
@@ -183,7 +181,7 @@ std::optional<std::string> coincidence_warning(const MeshData& data) {
          << " at the same position, so the cells do not hang together there: "
          << corner_name(data, static_cast<std::size_t>(lowest[example])) << " and "
          << corner_name(data, example) << " are both at (" << x.x() << ", " << x.y() << ", "
-         << x.z() << "); " << remedy_for_coincidence(data);
+         << x.z() << "); " << remedy_for_coincidence(data, advice);
     return text.str();
 }
 

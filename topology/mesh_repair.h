@@ -25,7 +25,7 @@ inline constexpr double near_tolerance = 1e-2;
 /// welding joins cells. There is no warning if MeshData::points_may_coincide is set.
 /// Cost: O(n log n) in the number of points, some 0.3 us each.
 /// @pre  corners are valid point numbers, and all coordinates are finite
-std::optional<std::string> coincidence_warning(const MeshData& data);
+std::optional<std::string> coincidence_warning(const MeshData& data, const WeldAdvice& advice = {});
 
 /// Joins points at one position: cells then use the one with the lowest number. Returns how many
 /// points were joined to a lower one. No point is removed or renumbered; MeshData::welded_to names

@@ -47,7 +47,7 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void tell(std::size_t done) {
+    void show(std::size_t done) {
         if (total_ < 2) return;
         const std::size_t tenth = std::max<std::size_t>(1, total_ / 10);
         if (is_terminal_)
@@ -157,7 +157,7 @@ SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& fram
         const auto grid = read_colored(list.frames[frames[i]].path, options.color, field);
         if (grid->GetNumberOfPoints() > 0) settings.bounds.AddBounds(grid->GetBounds());
         settings.range.include(*grid, *field);
-        progress.tell(i + 1);
+        progress.show(i + 1);
     }
     settings.field = *field;
     if (!settings.bounds.IsValid()) settings.bounds.SetBounds(0, 1, 0, 1, 0, 1);
@@ -185,7 +185,7 @@ void run(const Options& options) {
         io::write_file(path, scene.png(*grid, caption_of(file, *grid, digits)));
         if (!(std::cout << path.string() << std::endl))
             throw OutputError("stdout: cannot be written");
-        progress.tell(i + 1);
+        progress.show(i + 1);
     }
 }
 

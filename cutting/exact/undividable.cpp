@@ -16,8 +16,9 @@ using topology::Mesh;
 
 void refuse_to_divide(const Mesh& mesh, ElementId e) {
     throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
-                             topology::traits(mesh.kind(e)).name +
-                             ", and only tetrahedra can be split");
+                                 topology::traits(mesh.kind(e)).name +
+                                 ", and only tetrahedra can be split",
+                             e);
 }
 
 namespace {

@@ -16,7 +16,9 @@ namespace incise::cutting {
 /// Thrown if a cut would divide an element that is no tetrahedron. The text names the element by
 /// its label. Callers add what the user can change.
 struct UndividableElement : InputError {
-    using InputError::InputError;
+    UndividableElement(const std::string& text, ElementId which)
+        : InputError(text), element(which) {}
+    ElementId element;
 };
 
 /// Throws UndividableElement for an element.

@@ -59,9 +59,9 @@ class CutSurface {
     virtual std::optional<bool> ends_inside(const std::array<MovingPoint, 3>&) const {
         return std::nullopt;
     }
-    /// Returns false only if the cut does not go on within `reach`, m, of a point. The point is
+    /// Returns false only if the cut does not go on within `radius`, m, of a point. The point is
     /// that after the step.
-    virtual bool ends_near(const Vec3&, double /*reach*/) const { return true; }
+    virtual bool ends_near(const Vec3&, double /*radius*/) const { return true; }
 };
 
 }  // namespace incise::cutting

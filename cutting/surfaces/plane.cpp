@@ -9,10 +9,10 @@ namespace incise::cutting {
 
 bool Plane::may_meet(const Box& box) const {
     const Vec3 half = 0.5 * box.sizes();
-    const double reach = normal_.cwiseAbs().dot(half), offset = normal_.dot(box.center() - point_);
+    const double radius = normal_.cwiseAbs().dot(half), offset = normal_.dot(box.center() - point_);
     // 1e-12 of this size is far above the rounding errors.
     const double size = normal_.cwiseAbs().dot(box.center().cwiseAbs() + point_.cwiseAbs() + half);
-    return std::abs(offset) <= reach + 1e-12 * size;
+    return std::abs(offset) <= radius + 1e-12 * size;
 }
 
 int Plane::side(const Vec3& x) const {

@@ -152,7 +152,7 @@ struct MeetingPairs {
 
 }  // namespace
 
-std::vector<std::string> defects_of_sheet(const topology::SurfaceData& surface) {
+std::vector<std::string> defects_of_surface(const topology::SurfaceData& surface) {
     const auto triangles = placed_triangles(surface);
     if (triangles.empty()) return {};
     const std::string consequence =

@@ -22,6 +22,6 @@ namespace incise::cutting {
 /// the boundary of another triangle is no defect. So sheets are not found that cross exactly along
 /// edges of both, if these edges are divided differently. Decisions hold to rounding errors.
 /// Cost: O(n log n).
-std::vector<std::string> defects_of_sheet(const topology::SurfaceData& surface);
+std::vector<std::string> defects_of_surface(const topology::SurfaceData& surface);
 
 }  // namespace incise::cutting

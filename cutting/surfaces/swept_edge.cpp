@@ -43,9 +43,9 @@ bool SweptEdge::may_meet(const Box& box) const {
     for (const Bounds& bounds : bounds_) {
         if (!bounds.box.intersects(box)) continue;
         const double middle = bounds.normal.dot(centre);
-        const double reach =
+        const double radius =
             bounds.normal.cwiseAbs().dot(half) + rounding_of_heights(bounds.normal, box);
-        if (middle + reach >= bounds.low && middle - reach <= bounds.high) return true;
+        if (middle + radius >= bounds.low && middle - radius <= bounds.high) return true;
     }
     return false;
 }
@@ -91,12 +91,12 @@ std::optional<bool> SweptEdge::ends_inside(const std::array<MovingPoint, 3>& tri
     return is_odd;
 }
 
-bool SweptEdge::ends_near(const Vec3& x, double reach) const {
+bool SweptEdge::ends_near(const Vec3& x, double radius) const {
     for (const MovingSegment& s : segments_) {
         const Vec3 along = s.b[1] - s.a[1], from = x - s.a[1];
         const double square = along.squaredNorm();
         const double t = square > 0.0 ? std::clamp(from.dot(along) / square, 0.0, 1.0) : 0.0;
-        if ((from - t * along).squaredNorm() < reach * reach) return true;
+        if ((from - t * along).squaredNorm() < radius * radius) return true;
     }
     return false;
 }

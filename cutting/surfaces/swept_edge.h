@@ -19,7 +19,7 @@ class SweptEdge final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
     std::optional<bool> ends_inside(const std::array<MovingPoint, 3>& triangle) const override;
-    bool ends_near(const Vec3& x, double reach) const override;
+    bool ends_near(const Vec3& x, double radius) const override;
 
   private:
     /// Bounds of what a segment sweeps: a box, and two planes across `normal`.

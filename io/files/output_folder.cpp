@@ -19,7 +19,7 @@ OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) 
         if (errno == EWOULDBLOCK)
             throw InputError(path_.string() +
                              ": another run is writing there; wait for its end or stop it, or "
-                             "choose another folder with --out");
+                             "choose another folder");
         if (errno != EINTR) break;
     }
     remove_unfinished_files(path_);

@@ -16,8 +16,7 @@ namespace {
 
 [[noreturn]] void refuse_file(const std::filesystem::path& path, const char* what_has_happened) {
     throw InputError(path.string() + ": has " + what_has_happened +
-                     " since the run was stopped; put the former one back, or begin anew without "
-                     "--resume");
+                     " since the run was stopped; put the former one back");
 }
 
 }  // namespace
@@ -33,8 +32,7 @@ void require_begins_with(const std::filesystem::path& path, const BytesWritten& 
     std::ifstream file(path, std::ios::binary);
     if (!file)
         throw InputError(path.string() +
-                         ": cannot be read, and the run goes on from it; check its permissions, or "
-                         "begin anew without --resume");
+                         ": cannot be read, and the run goes on from it; check its permissions");
     std::array<char, 1 << 16> part;
     BytesWritten found;
     while (found.size < bytes.size) {

@@ -112,13 +112,14 @@ void Constraints::remove(const topology::Mesh& mesh, std::size_t i) {
 void Constraints::index(const topology::Mesh& mesh, NodeId n) {
     constexpr std::array<int, 3> free{-1, -1, -1};
     std::array<int, 3> row = free;
+    const auto refuse = [&](const ConstraintConflict& conflict) {
+        throw ConflictingConstraints(describe(conflict, mesh, constraints_), conflict);
+    };
     for (std::size_t s = 0; s < constraints_.size() && mesh.is_alive(n); ++s) {
         if (!constraints_[s].nodes.contains(n)) continue;
         for (std::size_t c = 0; c < 3; ++c) {
             if (!constraints_[s].components[c]) continue;
-            if (row[c] >= 0)
-                throw InputError(
-                    describe({n, c, static_cast<std::size_t>(row[c]), s}, mesh, constraints_));
+            if (row[c] >= 0) refuse({n, c, static_cast<std::size_t>(row[c]), s});
             row[c] = static_cast<int>(s);
         }
     }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "incise/base/error.h"
 #include "incise/base/types.h"
 #include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
@@ -63,6 +64,13 @@ struct ConstraintConflict {
     NodeId node;
     std::size_t component;
     std::size_t first, second;  ///< indices of the constraints, in ascending order
+};
+
+/// Thrown if two constraints prescribe the same component of a node.
+struct ConflictingConstraints : InputError {
+    ConflictingConstraints(const std::string& text, const ConstraintConflict& what)
+        : InputError(text), conflict(what) {}
+    ConstraintConflict conflict;
 };
 
 /// Returns the pairs of constraints that prescribe the same component of a living node. Each pair

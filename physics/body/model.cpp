@@ -213,17 +213,35 @@ void Model::remove_load(std::size_t i) {
 
 void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
     term->update(view());
+    for (const NodeId n : mesh_.nodes())
+        if (const double bound = term->stiffness_bound(n); !(bound >= 0.0 && std::isfinite(bound)))
+            throw InputError("a force term bounds its stiffness at node " +
+                             std::to_string(mesh_.label(n)) + " by " + std::to_string(bound) +
+                             " N/m: it must be finite, and 0 or more");
     added_terms_.push_back(std::move(term));
     for (const NodeId n : mesh_.nodes()) gather(n);
     ++structure_version_;
 }
 
+bool Model::remove_force_term(const ForceTerm* term) {
+    if (std::erase_if(added_terms_, [&](const auto& t) { return t.get() == term; }) == 0)
+        return false;
+    for (const NodeId n : mesh_.nodes()) gather(n);
+    ++structure_version_;
+    return true;
+}
+
 void Model::take_force_terms(Model& former, double time) {
     if (former.added_terms_.empty()) return;
-    added_terms_ = std::move(former.added_terms_);
-    update_outer_terms();
-    for (const NodeId n : mesh_.nodes()) gather(n);
-    compute_forces(time);
+    added_terms_.swap(former.added_terms_);
+    try {
+        update_outer_terms();
+        for (const NodeId n : mesh_.nodes()) gather(n);
+        compute_forces(time);
+    } catch (...) {  // what a term throws
+        added_terms_.swap(former.added_terms_);
+        throw;
+    }
 }
 
 void Model::save(ArchiveWriter& ar) const {

@@ -197,10 +197,14 @@ class Model {
     const Loads& loads() const { return loads_; }
 
     /// Adds a term to the outer forces. Archives do not contain added terms: after a restore, the
-    /// caller must add them again. Cost: O(n), for the stable step.
+    /// caller must add them again. Throws InputError, and adds nothing, for a bound on the
+    /// stiffness that is not finite or below 0. Cost: O(n), for the stable step.
     void add_force_term(std::unique_ptr<ForceTerm> term);
+    /// Removes an added term. Returns false if the model does not have it. Cost: O(n).
+    bool remove_force_term(const ForceTerm* term);
     /// Takes the added terms of a model that this one replaces, and computes the forces anew: for
-    /// a model that was just read from an archive. Cost: O(n).
+    /// a model that was just read from an archive. Changes nothing if a term throws.
+    /// Cost: O(n).
     void take_force_terms(Model& former, double time);
 
     /// Writes everything but the mesh, the materials and the added force terms: state, history,

@@ -56,7 +56,7 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
         return FailureCause::step_above_bound;
     }
     if (model.constraints().of_node(n.index())) {
-        text << "its support is moved too fast";
+        text << "its constraint moves too fast";
         return FailureCause::constraint_too_fast;
     }
     if (outer.norm() > elastic.norm()) {

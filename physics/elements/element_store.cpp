@@ -43,20 +43,6 @@ std::size_t history_size(const HyperElasticLinks& links) {
                : ViscousKernel::history_size(links.prony.size());
 }
 
-/// Returns the remedy if the method of a material does not suit this kind of cell.
-std::string remedy(CellKind kind) {
-    switch (kind) {
-        case CellKind::tetrahedron:
-            return "; the method hybmss needs hexahedra: give the region a material with method = "
-                   "\"heml\"";
-        case CellKind::hexahedron:
-            return "; the methods heml and mass-spring need tetrahedra: give the region a material "
-                   "with method = \"hybmss\"";
-        default:
-            return ", for which no method has forces; use tetrahedra or hexahedra";
-    }
-}
-
 /// Calls visit(range, begin, end) for each range of node ids that has some of `nodes`. These are
 /// nodes[begin] to before nodes[end], and `nodes` is in ascending order.
 template <class Visit>
@@ -94,28 +80,36 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
 void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
     const int region = mesh.region(e);
     const std::string name = "element " + std::to_string(mesh.label(e));
+    const auto refuse = [&](MaterialMisfit why, const std::string& text) {
+        throw UnsuitableMaterial(e, region, why, name + text);
+    };
+    const std::string of_region = ", of region " + std::to_string(region) + ", ";
     if (!table_.of_region.contains(region))
-        throw UnsuitableMaterial(
-            region, name + " has region " + std::to_string(region) +
-                        ", for which there is no material; add one, or one without regions");
+        refuse(MaterialMisfit::other,
+               " has region " + std::to_string(region) +
+                   ", for which there is no material; add one, or one without regions");
     const Material& material = table_.materials[table_.of_region.at(region)];
     const auto* hybrid = std::get_if<HybridSprings>(&material.method);
-    const CellKind kind = mesh.kind(e),
-                   wanted = hybrid ? CellKind::hexahedron : CellKind::tetrahedron;
-    if (kind != wanted)
-        throw UnsuitableMaterial(region, name + ", of region " + std::to_string(region) +
-                                             ", is a " + traits(kind).name + remedy(kind));
+    const CellKind kind = mesh.kind(e);
+    const std::string is_a = of_region + "is a " + traits(kind).name;
+    if (kind != CellKind::tetrahedron && kind != CellKind::hexahedron)
+        refuse(MaterialMisfit::other,
+               is_a + ", for which no method has forces; use tetrahedra or hexahedra");
+    if (hybrid && kind != CellKind::hexahedron)
+        refuse(MaterialMisfit::needs_hexahedra, is_a + "; the method hybmss needs hexahedra");
+    if (!hybrid && kind != CellKind::tetrahedron)
+        refuse(MaterialMisfit::needs_tetrahedra,
+               is_a + "; the methods heml and mass-spring need tetrahedra");
     constexpr double rounding = 1e-12;
     if (material.has_fibres() && !(std::abs(fibre_of(e).norm() - 1.0) <= rounding))
-        throw UnsuitableMaterial(
-            region, name + ", of region " + std::to_string(region) +
-                        ", has no direction of fibres of unit length, which its material needs");
+        refuse(MaterialMisfit::other,
+               of_region + "has no direction of fibres of unit length, which its material needs");
     if (!hybrid) return;
     std::array<Vec3, 8> corners;
     for (std::size_t k = 0; k < corners.size(); ++k)
         corners[k] = mesh.rest_position(mesh.corners(e)[k]);
     if (const auto reason = why_no_cell(*hybrid, corners))
-        throw UnsuitableMaterial(region, name + " " + *reason);
+        refuse(MaterialMisfit::needs_cubes, " " + *reason);
 }
 
 std::size_t ElementStore::block_index(ElementId e, int region) const {

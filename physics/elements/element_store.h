@@ -37,11 +37,21 @@ struct MaterialTable {
     Precision precision = Precision::double_precision;
 };
 
+/// Why a material does not suit an element.
+enum class MaterialMisfit {
+    needs_tetrahedra,  ///< its method is for tetrahedra, and the element is a hexahedron
+    needs_hexahedra,   ///< its method is for hexahedra, and the element is a tetrahedron
+    needs_cubes,       ///< its method is for cubes or nearly cubic boxes
+    other,
+};
+
 /// Thrown if a region has no material, or if its material does not suit one of its elements.
 struct UnsuitableMaterial : InputError {
-    UnsuitableMaterial(int of_region, const std::string& text)
-        : InputError(text), region(of_region) {}
+    UnsuitableMaterial(ElementId which, int of_region, MaterialMisfit why, const std::string& text)
+        : InputError(text), element(which), region(of_region), cause(why) {}
+    ElementId element;
     int region;
+    MaterialMisfit cause;
 };
 
 /// The elements of a body in blocks.

@@ -113,7 +113,7 @@ std::optional<std::string> why_no_cell(const HybridSprings& material,
         text << "without face diagonals the method hybmss needs cubes";
     else
         text << "the method hybmss needs cubes, or boxes whose longest edge is at most 1.4 times "
-                "the shortest; make cubes of an image by incise mesh --hex --size";
+                "the shortest";
     return text.str();
 }
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "incise/base/error.h"
 #include "incise/physics/laws/law_response.h"
 
 namespace incise::physics {
@@ -25,8 +26,11 @@ class CustomLaw {
         virtual double rest_mu() const = 0;      ///< Pa
     };
 
+    /// Throws InputError for null.
     explicit CustomLaw(std::shared_ptr<const Functions> functions)
-        : functions_(std::move(functions)) {}
+        : functions_(std::move(functions)) {
+        if (!functions_) throw InputError("a law is given as null");
+    }
 
     double rest_lambda() const { return functions_->rest_lambda(); }
     double rest_mu() const { return functions_->rest_mu(); }

@@ -191,12 +191,12 @@ move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
     EXPECT_EQ(outcome.out, "");
     const testing::Matcher<const std::string&> has_its_form = testing::MatchesRegex(
         "incise: scene: step [0-9]+, t = 0\\.03[0-9]* s: element [0-9]+, "
-        "node [0-9]+ .*support is moved too fast.*scene\\.pvd\n");
+        "node [0-9]+ .*constraint moves too fast.*scene\\.pvd\n");
     EXPECT_TRUE(has_its_form.Matches(outcome.err)) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     EXPECT_EQ(expect_readable(folder_ / "scene.out"), 4u);  // 0 to 0.03
     EXPECT_EQ(summary().at("status"), "failed");
-    EXPECT_NE(summary().at("message").get<std::string>().find("moved too fast"), std::string::npos);
+    EXPECT_NE(summary().at("message").get<std::string>().find("moves too fast"), std::string::npos);
     EXPECT_EQ(summary().at("frames"), 4);
 }
 

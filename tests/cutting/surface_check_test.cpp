@@ -53,7 +53,7 @@ std::vector<Corners> together(std::vector<Corners> a, const std::vector<Corners>
 /// "pass", "lie" or "share", one of them for each defect.
 std::string kinds_of_defects(const SurfaceData& surface) {
     std::string kinds;
-    for (const std::string& defect : defects_of_sheet(surface))
+    for (const std::string& defect : defects_of_surface(surface))
         for (const std::string kind : {"pass", "lie", "share"})
             if (defect.find(" " + kind + " ") != std::string::npos)
                 kinds += (kinds.empty() ? "" : " ") + kind;
@@ -102,7 +102,7 @@ TEST(SurfaceCheck, FindsBranches) {
     auto sheets = parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
     sheets = together(sheets, parallelogram({0, 1, 0}, {1, 0, 0}, {0, 1, 0}, 2));
     sheets = together(sheets, parallelogram({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 2));
-    const auto defects = defects_of_sheet(loose(sheets));
+    const auto defects = defects_of_surface(loose(sheets));
     ASSERT_EQ(defects.size(), 1u);
     EXPECT_EQ(defects[0],
               "more than two triangles share 2 edges, the first at (0.25, 1, 0): there a cut may "

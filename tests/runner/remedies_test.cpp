@@ -46,7 +46,7 @@ nodal_force = [0, 0, 1e9]
 where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }
 move = [{ time = 0, by = [0, 0, 0] }, { time = 0.01, by = [0, 0, 1e3] }]
 )" + dynamics(0.1));
-    EXPECT_TRUE(thrown.ends_with("its support is moved too fast; move it more slowly")) << thrown;
+    EXPECT_TRUE(thrown.ends_with("its constraint moves too fast; move it more slowly")) << thrown;
     const std::string afloat = failure_of(R"([[tool]]
 kind = "cut"
 time = 0.05

@@ -171,7 +171,8 @@ TEST(Selection, NamesConstraintOrLoadOfMissingNodesOnce) {
     absent.nodes = {{125}};
     empty.regions = {{3}};
     const std::string no_node =
-        "where.nodes names node 125, which no element has; the nodes of the mesh are numbered from "
+        "the selection names node 125, which no element has; the nodes of the mesh are numbered "
+        "from "
         "0 to 124";
     const std::string between = "; the mesh lies between [0, 0, 0] and [4, 4, 4]";
     Scenario scenario;
@@ -278,6 +279,19 @@ TEST(Selection, AnEmptyOneTellsWhereTheMeshIs) {
     }
 }
 
+TEST(Selection, RefusesRegionsThatAreNotFinite) {
+    const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.0, 0)).mesh;
+    const double nan = std::nan("");
+    for (const Selection& where :
+         {Selection{.box = BoxRegion{{0, 0, 0}, {1, nan, 1}}},
+          Selection{.sphere = SphereRegion{{0, 0, 0}, nan}},
+          Selection{.half_space = HalfSpaceRegion{{0, 0, nan}, {0, 0, 1}}}}) {
+        EXPECT_THROW(select_nodes(mesh, where), InputError);
+        EXPECT_THROW(select_faces(mesh, where), InputError);
+        EXPECT_THROW(select_elements(mesh, where), InputError);
+    }
+}
+
 TEST(Selection, RefusesANodeThatIsNotThere) {
     const auto built = topology::Mesh::build(test::jittered_cube(2, 0.0, 0));
     Selection where;
@@ -287,7 +301,7 @@ TEST(Selection, RefusesANodeThatIsNotThere) {
         FAIL() << "accepted";
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
-                     "where.nodes names node 27, which no element has; the nodes of the mesh "
+                     "the selection names node 27, which no element has; the nodes of the mesh "
                      "are numbered from 0 to 26");
     }
 }

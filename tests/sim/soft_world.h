@@ -12,6 +12,7 @@
 namespace incise::sim {
 
 using cutting::Blade;
+using cutting::CutMode;
 
 inline constexpr double size = 0.1;  // of the cube, m
 
@@ -38,16 +39,20 @@ inline std::vector<NodeId> nodes_where(const World& world,
     return nodes;
 }
 
-/// Held at its bottom.
-inline World held_world(Solver solver = Solver::semi_implicit_euler) {
-    World world(soft_body(solver));
+/// Holds a cube at its bottom.
+inline World held(World world) {
     world.add_constraint({.name = "floor",
                           .nodes = physics::NodeSet(
                               nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))});
     return world;
 }
+inline World held_world(Solver solver = Solver::semi_implicit_euler) {
+    return held(World(soft_body(solver)));
+}
 
-inline ToolDef scalpel() { return {"scalpel", Blade{{{0, -0.02, 0.051}, {0, 0.12, 0.053}}}}; }
+inline ToolDef scalpel(CutMode mode = CutMode::split) {
+    return {"scalpel", Blade{{{0, -0.02, 0.051}, {0, 0.12, 0.053}}, mode}};
+}
 
 inline Pose at(const Vec3& position) { return {Eigen::Quaterniond::Identity(), position}; }
 
@@ -66,8 +71,8 @@ inline std::string input_error_of(const std::function<void()>& act) {
 /// Steps with a cut across the body, a grasp and a load that come and go.
 class Session {
   public:
-    explicit Session(World world) : world_(std::move(world)) {
-        knife_ = world_.add_tool(scalpel());
+    explicit Session(World world, ToolDef knife = scalpel()) : world_(std::move(world)) {
+        knife_ = world_.add_tool(std::move(knife));
     }
 
     void run(int from, int to) {

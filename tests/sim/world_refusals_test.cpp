@@ -60,6 +60,27 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
                  {.name = "wind", .kind = physics::TractionLoad{{{{ElementId(3), 9}}}, {}}});
          },
          "is not on the surface"},
+        {[&] {
+             physics::Constraint grip = physics::make_grip(
+                 "hand", {NodeId(124)}, world.model().positions(), at({0, 0, size}));
+             grip.gripped.begin()->second.x() = std::nan("");
+             world.add_constraint(std::move(grip));
+         },
+         "in its grip is not finite"},
+        {[&] {
+             physics::Constraint grip = physics::make_grip(
+                 "hand", {NodeId(124)}, world.model().positions(), at({0, 0, size}));
+             grip.grip = physics::TimeCurve<Pose>({{1.0, at({})}, {0.0, at({})}});
+             world.add_constraint(std::move(grip));
+         },
+         "times do not ascend"},
+        {[&] {
+             physics::NodalLoad load{physics::NodeSet(std::vector{NodeId(124)}), {1, 0, 0}};
+             load.shares = {1.0};
+             world.add_load({.name = "push", .kind = load});
+         },
+         "its shares must be empty"},
+        {[] { physics::CustomLaw law(nullptr); }, "given as null"},
         {[&] { world.restore(""); }, "end too early"}};
     for (const auto& [misuse, why] : misuses) {
         const std::string message = input_error_of(misuse);
@@ -83,6 +104,11 @@ TEST(World, RefusesDefinitionsThatCannotBe) {
     const physics::NodeSet nowhere(std::vector{NodeId(100000)});
     using Spoil = std::function<void(WorldDef&)>;
     const std::vector<std::pair<Spoil, const char*>> faults = {
+        {[](WorldDef& d) { d.precision = static_cast<physics::Precision>(9); },
+         "no such precision"},
+        {[](WorldDef& d) { d.fibres = {Vec3::UnitX()}; }, "one finite direction for each element"},
+        {[&](WorldDef& d) { links(d).prony_rule = static_cast<physics::PronyRule>(7); },
+         "no such rule"},
         {[](WorldDef& d) { d.materials.clear(); }, "has no material"},
         {[](WorldDef& d) { d.materials[0].density = -1060; }, "its density is -1060"},
         {[&](WorldDef& d) { d.materials[0].density = nan; }, "its density is"},

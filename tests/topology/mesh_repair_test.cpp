@@ -55,8 +55,12 @@ TEST(Coincidence, NamesPointsPositionCellsAndRemedies) {
               "3 points are not joined to others at the same position, so the cells do not hang "
               "together there: point 3 of cell 0 (tetrahedron, number 7 in the file) and point 4 "
               "of cell 1 (tetrahedron, number 9 in the file) are both at (0, 0, 1); join them with "
-              "'incise convert --weld IN OUT' or with 'weld = true' in [mesh] of a scenario; if "
-              "they are meant to be apart, as the faces of a cut are, say 'weld = false' there");
+              "topology::weld(); if they are meant to be apart, as the faces of a cut are, set "
+              "MeshData::points_may_coincide");
+    const auto advised = coincidence_warning(soup, {"glue them", "say so"});
+    ASSERT_TRUE(advised);
+    EXPECT_TRUE(advised->ends_with(
+        "(0, 0, 1); glue them; if they are meant to be apart, as the faces of a cut are, say so"));
 }
 
 /// The cells of both, each with its own points.
@@ -83,8 +87,8 @@ std::string tail_of_warning(const MeshData& data) {
 }
 
 const std::string or_apart =
-    ", or, if they are meant to be apart, as the faces of a cut are, say 'weld = false' in [mesh] "
-    "of a scenario";
+    ", or, if they are meant to be apart, as the faces of a cut are, set "
+    "MeshData::points_may_coincide";
 
 TEST(Coincidence, OffersNoWeldingOfUnlikeFaces) {
     const auto both = beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2),
@@ -115,8 +119,7 @@ TEST(Coincidence, ReportsHowManyPointsWeldingLeavesLoose) {
                               brick_box(CellKind::hexahedron, {-1, 0, 0}, 2));
     const auto text = tail_of_warning(three);
     EXPECT_TRUE(
-        text.starts_with("join them with 'incise convert --weld IN OUT' or with 'weld = "
-                         "true' in [mesh] of a scenario, which joins no cells at 4 of them, "
+        text.starts_with("join them with topology::weld(), which joins no cells at 4 of them, "
                          "since no faces there have the same corners; if they "))
         << text;
 }
@@ -146,7 +149,7 @@ TEST(Coincidence, IsReportedForGapsThatAreHardlyMeant) {
                 << warnings[0];
             EXPECT_NE(warnings[0].find(" apart; move them onto each other where the mesh is made, "
                                        "since welding joins only points within 0.0001 of it, or, "
-                                       "if the gap is meant, say 'weld = false'"),
+                                       "if the gap is meant, set MeshData::"),
                       std::string::npos)
                 << warnings[0];
             both.points_may_coincide = true;

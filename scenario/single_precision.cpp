@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/sim/single_precision.h"
+#include "incise/scenario/single_precision.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include "incise/io/files/number_format.h"
 #include "incise/topology/mesh_metrics.h"
 
-namespace incise::sim {
+namespace incise::scenario {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) 
            "); use \"double\", or a mesh without them";
 }
 
-}  // namespace incise::sim
+}  // namespace incise::scenario

@@ -7,10 +7,10 @@
 
 #include "incise/topology/mesh.h"
 
-namespace incise::sim {
+namespace incise::scenario {
 
 /// Returns a warning if there are tetrahedra that are too thin at rest for forces in single
 /// precision: see docs/theory.md, Accuracy. Cost: O(#elements).
 std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh);
 
-}  // namespace incise::sim
+}  // namespace incise::scenario
