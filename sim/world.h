@@ -54,20 +54,21 @@ struct WorldDef {
     int num_threads = 1;  ///< does not change any result
 };
 
-/// The number of a tool in its world. It is never used for another tool. As with the other numbers
-/// below, that of a tool of another world is not recognised: the worlds count alike.
+/// The number of a tool in its world. It is not used for another tool, except after a restore()
+/// that forgets the tool. As with the numbers below, worlds count alike: that of a tool of another
+/// world is not recognised.
 struct ToolId {
     std::size_t index = 0;
     bool operator==(const ToolId&) const = default;
 };
 
-/// The number of a constraint in its world. It is never used for another constraint.
+/// The number of a constraint in its world. See ToolId.
 struct ConstraintId {
     std::size_t index = 0;
     bool operator==(const ConstraintId&) const = default;
 };
 
-/// The number of a load in its world. It is never used for another load.
+/// The number of a load in its world. See ToolId.
 struct LoadId {
     std::size_t index = 0;
     bool operator==(const LoadId&) const = default;
