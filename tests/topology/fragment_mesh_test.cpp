@@ -1,0 +1,258 @@
+// Fragments of carriers: what they carry, how they are connected, and how they follow edits.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/fragment_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "incise/base/disjoint_set.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_edit.h"
+#include "support/exact_plane.h"
+#include "support/mesh_families.h"
+#include "support/num_cases.h"
+
+namespace incise::topology {
+namespace {
+
+double volume_of(const Mesh& mesh, ElementId e) {
+    std::vector<Vec3> x;
+    for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+    return signed_volume(mesh.kind(e), x);
+}
+
+double volume_of(const Mesh& mesh) {
+    double sum = 0.0;
+    for (const ElementId e : mesh.elements()) sum += volume_of(mesh, e);
+    return sum;
+}
+
+int num_components(const FragmentMesh& fragments) {
+    DisjointSet connected(fragments.node_capacity());
+    for (const ElementId e : fragments.elements())
+        for (const NodeId n : fragments.corners(e))
+            connected.join(fragments.corners(e)[0].value, n.value);
+    std::set<std::int32_t> found;
+    for (const NodeId n : fragments.nodes()) found.insert(connected.find(n.value));
+    return static_cast<int>(found.size());
+}
+
+/// Reports what does not hold of any fragment mesh of a material.
+void expect_sound(const FragmentMesh& fragments, const Mesh& material) {
+    double volume = 0.0;
+    std::size_t num_elements = 0, num_nodes = 0;
+    std::vector<ElementId> star;
+    std::set<NodeId> used;
+    for (const ElementId e : fragments.elements()) {
+        ++num_elements;
+        volume += fragments.share(e) * fragments.carrier_volume(e);
+        EXPECT_GT(fragments.share(e), 0.0);
+        EXPECT_FALSE(fragments.cells_of(e).empty());
+        for (const ElementId cell : fragments.cells_of(e)) {
+            ASSERT_TRUE(material.is_alive(cell));
+            EXPECT_EQ(fragments.fragment_of_cell(cell), e);
+            EXPECT_EQ(material.region(cell), fragments.region(e));
+        }
+        std::vector<Vec3> x;
+        for (const NodeId n : fragments.corners(e)) {
+            ASSERT_TRUE(n.is_valid());
+            EXPECT_TRUE(fragments.is_alive(n));
+            used.insert(n);
+            x.push_back(fragments.rest_position(n));
+            fragments.star(n, star);
+            EXPECT_TRUE(std::ranges::binary_search(star, e));
+        }
+        EXPECT_EQ(signed_volume(fragments.kind(e), x), fragments.carrier_volume(e));
+    }
+    for (const NodeId n : fragments.nodes()) {
+        ++num_nodes;
+        EXPECT_TRUE(used.contains(n));
+    }
+    EXPECT_EQ(num_elements, fragments.num_elements());
+    EXPECT_EQ(num_nodes, fragments.num_nodes());
+    for (const ElementId cell : material.elements()) {
+        const ElementId e = fragments.fragment_of_cell(cell);
+        EXPECT_EQ(std::ranges::count(fragments.cells_of(e), cell), 1);
+    }
+    EXPECT_NEAR(volume, volume_of(material), 1e-12 * volume_of(material));
+    for (const NodeId n : material.nodes()) {
+        const Embedding at = fragments.embedding(material, n);
+        Vec3 x = Vec3::Zero();
+        double sum = 0.0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
+            EXPECT_TRUE(fragments.is_alive(at.nodes[k]));
+            x += at.weights[k] * fragments.rest_position(at.nodes[k]);
+            sum += at.weights[k];
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-12);
+        EXPECT_LT((x - material.rest_position(n)).norm(), 1e-12);
+    }
+}
+
+/// What a fragment mesh is, whatever its ids: by cell, the cells of its fragment, its share, and
+/// which corners of fragments are the same node.
+struct Shape {
+    std::map<ElementId, std::pair<std::vector<ElementId>, double>> of_cell;
+    std::set<std::vector<std::pair<ElementId, int>>> nodes;  // by lowest cell, and corner
+    bool operator==(const Shape&) const = default;
+};
+
+Shape shape_of(const FragmentMesh& fragments) {
+    Shape shape;
+    std::map<NodeId, std::vector<std::pair<ElementId, int>>> corners;
+    for (const ElementId e : fragments.elements()) {
+        const auto listed = fragments.cells_of(e);
+        const std::vector<ElementId> cells(listed.begin(), listed.end());
+        for (const ElementId cell : cells) shape.of_cell[cell] = {cells, fragments.share(e)};
+        const auto nodes = fragments.corners(e);
+        for (std::size_t k = 0; k < nodes.size(); ++k)
+            corners[nodes[k]].emplace_back(cells.front(), static_cast<int>(k));
+    }
+    for (auto& [n, list] : corners) {
+        std::sort(list.begin(), list.end());
+        shape.nodes.insert(std::move(list));
+    }
+    return shape;
+}
+
+/// One edit with the effect of several.
+ChangeSet joined(const std::vector<ChangeSet>& edits) {
+    ChangeSet all = edits.front();
+    for (std::size_t i = 1; i < edits.size(); ++i) {
+        const ChangeSet& next = edits[i];
+        all.epoch_after = next.epoch_after;
+        all.element_capacity_after = next.element_capacity_after;
+        all.node_capacity_after = next.node_capacity_after;
+        const auto append = [](auto& list, const auto& more) {
+            list.insert(list.end(), more.begin(), more.end());
+        };
+        append(all.elements_added, next.elements_added);
+        append(all.elements_removed, next.elements_removed);
+        append(all.faces_opened, next.faces_opened);
+        append(all.faces_closed, next.faces_closed);
+    }
+    return all;
+}
+
+Vec3 random_point(const Mesh& mesh, test::Random& random) {
+    std::vector<ElementId> elements;
+    for (const ElementId e : mesh.elements()) elements.push_back(e);
+    Vec3 sum = Vec3::Zero();
+    const auto corners = mesh.corners(elements[random.below(elements.size())]);
+    for (const NodeId n : corners) sum += mesh.rest_position(n);
+    return sum / static_cast<double>(corners.size());
+}
+
+TEST(FragmentMesh, IsTheMeshItselfWithoutDivisions) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            test::Random random(seed);
+            Mesh material = Mesh::build(family.data).mesh;
+            FragmentMesh fragments(material);
+            for (int i = 0; i < 6 && material.num_elements() > 1; ++i) {
+                MeshEdit edit(material);
+                std::vector<FaceId> faces = test::inner_faces(material);
+                for (int k = 0; k < 8 && !faces.empty(); ++k) {
+                    const FaceId f = faces[random.below(faces.size())];
+                    if (material.neighbor(f).is_valid()) edit.open(f);
+                }
+                std::vector<ElementId> elements;
+                for (const ElementId e : material.elements()) elements.push_back(e);
+                if (i % 2 == 1) edit.remove(elements[random.below(elements.size())]);
+                const ChangeSet changes = edit.commit();
+                const FragmentChanges done = fragments.apply(material, changes);
+                EXPECT_EQ(done.mesh.nodes_added, changes.nodes_added);
+                EXPECT_EQ(done.mesh.rewired, changes.rewired);
+                EXPECT_EQ(done.mesh.elements_removed, changes.elements_removed);
+                EXPECT_TRUE(done.shares.empty());
+            }
+            ASSERT_EQ(fragments.node_capacity(), material.node_capacity());
+            for (const ElementId e : material.elements()) {
+                EXPECT_TRUE(std::ranges::equal(fragments.corners(e), material.corners(e)));
+                EXPECT_EQ(fragments.share(e), 1.0);
+            }
+            for (std::size_t i = 0; i < material.node_capacity(); ++i)
+                EXPECT_EQ(fragments.is_alive(NodeId(i)), material.is_alive(NodeId(i)));
+            expect_sound(fragments, material);
+        }
+    }
+}
+
+TEST(FragmentMesh, FollowsPlanesAsIfBuiltInOneEdit) {
+    int num_light = 0, num_fragments = 0;
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            for (const double light_share : {0.0, default_light_share}) {
+                test::Random random(seed);
+                Mesh material = Mesh::build(family->data).mesh;
+                FragmentMesh fragments(material, light_share), at_once(material, light_share);
+                std::vector<ChangeSet> edits;
+                for (int i = 0; i < 3; ++i) {
+                    edits.push_back(test::cut_along_plane(material, random_point(material, random),
+                                                          random.vector(1.0)));
+                    if (edits.back().is_empty()) {
+                        edits.pop_back();
+                        continue;
+                    }
+                    fragments.apply(material, edits.back());
+                    expect_sound(fragments, material);
+                    EXPECT_EQ(num_components(fragments), components(material).count);
+                }
+                if (edits.empty()) continue;
+                at_once.apply(material, joined(edits));
+                expect_sound(at_once, material);
+                EXPECT_TRUE(shape_of(fragments) == shape_of(at_once));
+                num_fragments += static_cast<int>(fragments.num_elements());
+                for (const ElementId cell : material.elements())
+                    num_light += fragments.is_at_home(cell) ? 0 : 1;
+            }
+        }
+    EXPECT_GT(num_fragments, 1000);
+    EXPECT_GT(num_light, 100);
+}
+
+TEST(FragmentMesh, FollowsAnyEdits) {
+    for (const auto& family : test::mesh_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(10); ++seed) {
+            SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
+            test::Random random(seed);
+            Mesh material = Mesh::build(family.data).mesh;
+            FragmentMesh fragments(material);
+            for (int i = 0; i < 8; ++i) {
+                fragments.apply(material, test::random_edit(material, random));
+                expect_sound(fragments, material);
+            }
+        }
+}
+
+TEST(FragmentMesh, KeepsCarriersThatAreCutInPart) {
+    Mesh material = Mesh::build(test::jittered_cube(4, 0.1, 3)).mesh;
+    FragmentMesh fragments(material);
+    const FragmentMesh before = fragments;
+    // Divided, but nothing opened: nothing changes for the physics.
+    FragmentChanges done =
+        fragments.apply(material, test::cut_along_plane(material, {0.51, 0.5, 0.5}, {1, 0.1, 0.2},
+                                                        [](const Vec3&) { return false; }));
+    EXPECT_TRUE(done.mesh.is_empty());
+    EXPECT_TRUE(done.shares.empty());
+    EXPECT_FALSE(done.cells.empty());
+    for (const ElementId e : fragments.elements()) EXPECT_EQ(fragments.share(e), 1.0);
+    expect_sound(fragments, material);
+    // Opened on one half: carriers at the end of the cut stay whole.
+    Mesh half = Mesh::build(test::jittered_cube(4, 0.1, 3)).mesh;
+    FragmentMesh of_half(half);
+    of_half.apply(half, test::cut_along_plane(half, {0.51, 0.5, 0.5}, {1, 0.1, 0.2},
+                                              [](const Vec3& x) { return x.y() < 0.5; }));
+    expect_sound(of_half, half);
+    EXPECT_GT(of_half.num_elements(), before.num_elements());
+    EXPECT_EQ(num_components(of_half), 1);
+}
+
+}  // namespace
+}  // namespace incise::topology

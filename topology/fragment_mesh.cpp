@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/fragment_mesh.h"
+
+#include <algorithm>
+
+#include "incise/topology/fragment_update.h"
+#include "incise/topology/geometry.h"
+
+namespace incise::topology {
+
+FragmentMesh::FragmentMesh(const Mesh& material, double light_share)
+    : light_share_(light_share), epoch_(material) {
+    std::vector<Vec3> x;
+    std::vector<std::size_t> num_carriers(material.node_capacity() + 1, 0);
+    for (std::size_t i = 0; i < material.element_capacity(); ++i) {
+        const ElementId e(i);
+        const auto corners = material.corners(e);
+        x.clear();
+        for (const NodeId n : corners) x.push_back(material.rest_position(n));
+        kinds_.push_back(material.kind(e));
+        regions_.push_back(material.region(e));
+        volumes_.push_back(signed_volume(material.kind(e), x));
+        origins_of_carrier_.insert(origins_of_carrier_.end(), corners.begin(), corners.end());
+        origin_begin_.push_back(origins_of_carrier_.size());
+        carriers_.push_back(e);
+        is_alive_.push_back(material.is_alive(e) ? 1 : 0);
+        num_elements_ += material.is_alive(e) ? 1 : 0;
+        shares_.push_back(1.0);
+        carrier_of_cell_.push_back(e);
+        fragment_of_cell_.push_back(e);
+        if (material.is_alive(e))
+            for (const NodeId n : corners) ++num_carriers[n.index() + 1];
+    }
+    corner_begin_ = origin_begin_;
+    corners_ = origins_of_carrier_;
+    for (std::size_t i = 0; i < material.node_capacity(); ++i) {
+        origins_.emplace_back(i);
+        is_node_alive_.push_back(material.is_alive(NodeId(i)) ? 1 : 0);
+        num_carriers[i + 1] += num_carriers[i];
+    }
+    num_nodes_ = material.num_nodes();
+    first_part_.assign(kinds_.size(), -1);
+    rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
+    carrier_begin_ = num_carriers;
+    carriers_at_.resize(carrier_begin_.back());
+    for (const ElementId e : material.elements())
+        for (const NodeId n : material.corners(e)) carriers_at_[num_carriers[n.index()]++] = e;
+}
+
+FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& changes) {
+    if (changes.is_empty()) return {};
+    epoch_.advance(material, changes, "fragment mesh");
+    return FragmentUpdate(*this, material, changes).run();
+}
+
+int FragmentMesh::corner_of(ElementId e, NodeId n) const {
+    const auto nodes = corners(e);
+    const auto it = std::find(nodes.begin(), nodes.end(), n);
+    return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
+}
+
+std::span<const ElementId> FragmentMesh::fragments_of(const ElementId& carrier) const {
+    const auto it = fragments_of_carrier_.find(carrier);
+    if (it != fragments_of_carrier_.end()) return it->second;
+    return {&carrier, is_alive(carrier) ? 1u : 0u};
+}
+
+std::span<const ElementId> FragmentMesh::cells_of_carrier(const ElementId& carrier) const {
+    const auto it = cells_of_carrier_.find(carrier);
+    return it != cells_of_carrier_.end() ? std::span<const ElementId>(it->second)
+                                         : std::span<const ElementId>(&carrier, 1);
+}
+
+std::span<const ElementId> FragmentMesh::cells_of(const ElementId& e) const {
+    const auto it = cells_of_fragment_.find(e);
+    return it != cells_of_fragment_.end() ? std::span<const ElementId>(it->second)
+                                          : std::span<const ElementId>(&e, 1);
+}
+
+std::span<const NodeId> FragmentMesh::origins_of(ElementId carrier) const {
+    return {origins_of_carrier_.data() + origin_begin_[carrier.index()],
+            origin_begin_[carrier.index() + 1] - origin_begin_[carrier.index()]};
+}
+
+std::span<const ElementId> FragmentMesh::carriers_at(NodeId origin) const {
+    return {carriers_at_.data() + carrier_begin_[origin.index()],
+            carrier_begin_[origin.index() + 1] - carrier_begin_[origin.index()]};
+}
+
+void FragmentMesh::star(NodeId n, std::vector<ElementId>& elements) const {
+    elements.clear();
+    for (const ElementId carrier : carriers_at(origins_[n.index()]))
+        for (const ElementId e : fragments_of(carrier))
+            if (corner_of(e, n) >= 0) elements.push_back(e);
+    std::sort(elements.begin(), elements.end());
+}
+
+Embedding FragmentMesh::embedding(const Mesh& material, NodeId n) const {
+    std::vector<ElementId> cells;
+    material.star(n, cells);
+    ElementId at_home, lowest;
+    for (const ElementId cell : cells) {
+        const ElementId e = fragment_of_cell(cell);
+        if (!lowest.is_valid() || e < lowest) lowest = e;
+        if (is_at_home(cell) && (!at_home.is_valid() || e < at_home)) at_home = e;
+    }
+    return embedding_of(at_home.is_valid() ? at_home : lowest, material.rest_position(n));
+}
+
+Embedding FragmentMesh::embedding_of(ElementId e, const Vec3& x) const {
+    Embedding result{e, {}, {}, 0};
+    const auto nodes = corners(e);
+    for (const NodeId n : nodes)
+        if (rest_position(n) == x) {
+            result.nodes[0] = n;
+            result.weights[0] = 1.0;
+            result.count = 1;
+            return result;
+        }
+    // Only tetrahedra are divided.
+    Eigen::Matrix3d edges;
+    for (int k = 0; k < 3; ++k)
+        edges.col(k) =
+            rest_position(nodes[static_cast<std::size_t>(k) + 1]) - rest_position(nodes[0]);
+    const Vec3 local = edges.partialPivLu().solve(x - rest_position(nodes[0]));
+    result.weights = {1.0 - local.sum(), local[0], local[1], local[2]};
+    std::copy(nodes.begin(), nodes.end(), result.nodes.begin());
+    result.count = 4;
+    return result;
+}
+
+}  // namespace incise::topology

@@ -1,0 +1,176 @@
+// The mesh of the physics of a body that is cut: fragments of the elements before any cut.
+// Source: Molino, Bao, Fedkiw 2004; Sifakis, Der, Fedkiw 2007; Badia, Verdugo, Martin 2018.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "incise/base/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/follower.h"
+#include "incise/topology/living_ids.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::topology {
+
+/// A fragment with less than this share of its carrier is light.
+inline constexpr double default_light_share = 0.2;
+
+/// A change of the share of a fragment that existed before and after the edit.
+struct ShareChange {
+    ElementId fragment;
+    double from = 0.0, to = 0.0;
+    bool operator==(const ShareChange&) const = default;
+};
+
+/// A cell that an edit gave to another fragment. Invalid: the cell did not exist, or was removed.
+struct CarriedCell {
+    ElementId cell, carrier;
+    ElementId from, to;
+    bool operator==(const CarriedCell&) const = default;
+};
+
+/// The record of an edit of a fragment mesh.
+struct FragmentChanges {
+    /// Fragments and their nodes. The parent of an added fragment is the one that carried its first
+    /// cell before. No faces: fragments have none.
+    ChangeSet mesh;
+    std::vector<ShareChange> shares;  ///< in ascending order of fragments
+    std::vector<CarriedCell> cells;   ///< in ascending order of cells
+    bool operator==(const FragmentChanges&) const = default;
+};
+
+/// The position of a node of the material in a fragment: a combination of the corners of the
+/// fragment, with weights that sum to 1. In a fragment that carries material of another carrier,
+/// weights can be negative.
+struct Embedding {
+    ElementId fragment;
+    std::array<NodeId, max_corners> nodes{};
+    std::array<double, max_corners> weights{};
+    int count = 0;  ///< 1 for a node that is a corner of the fragment
+};
+
+/// Fragments and their nodes: the elements and nodes of the physics.
+///
+/// The *material* of a body is a Mesh, whose elements are called cells here. A *carrier* is a cell
+/// as it was before any cut: its parts share it. A *fragment* consists of those parts of a carrier
+/// that hang together through faces inside the carrier. It moves as the whole carrier would, with
+/// the share of the carrier's mass and stiffness that its volume is of the carrier's volume. Its
+/// corners are those of the carrier, whether there is material at them or not.
+///
+/// A node of the carrier has as many copies as its fragments have connected groups. Two fragments
+/// are connected at a node if cells of theirs share a face in a face of their carriers at the node.
+/// A *light* fragment is no element of its own: another fragment carries its cells.
+///
+/// A body without cuts has one fragment for each element, with the same ids, and the same nodes.
+/// Ids of fragments and nodes are numbers of their own: those of the material after cuts differ.
+class FragmentMesh {
+  public:
+    /// Takes every living element of `material` as a carrier. Cost: O(n).
+    /// @param material     the body before its first cut
+    /// @param light_share  see default_light_share; with 0 no fragment is light
+    explicit FragmentMesh(const Mesh& material, double light_share = default_light_share);
+
+    /// Follows an edit of the material, and returns what it did to the fragments.
+    /// Throws InputError, and changes nothing, for an edit out of turn.
+    /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
+    FragmentChanges apply(const Mesh& material, const ChangeSet& changes);
+
+    std::size_t node_capacity() const { return origins_.size(); }
+    std::size_t element_capacity() const { return carriers_.size(); }
+    bool is_alive(NodeId n) const { return is_node_alive_[n.index()] != 0; }
+    bool is_alive(ElementId e) const { return is_alive_[e.index()] != 0; }
+    std::size_t num_nodes() const { return num_nodes_; }
+    std::size_t num_elements() const { return num_elements_; }
+    LivingIds<NodeId, FragmentMesh> nodes() const { return {*this, node_capacity()}; }
+    LivingIds<ElementId, FragmentMesh> elements() const { return {*this, element_capacity()}; }
+
+    CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
+    int region(ElementId e) const { return regions_[carriers_[e.index()].index()]; }
+    /// Returns the corners in the order of cell_kind.h. A dead fragment keeps its last corners.
+    std::span<const NodeId> corners(ElementId e) const {
+        return {corners_.data() + corner_begin_[e.index()],
+                corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
+    }
+    /// Returns which corner of `e` the node is; -1 if it is none.
+    int corner_of(ElementId e, NodeId n) const;
+    /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
+    /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
+    /// are missing.
+    double share(ElementId e) const { return shares_[e.index()]; }
+    /// Returns the volume of the carrier at rest, m3.
+    double carrier_volume(ElementId e) const { return volumes_[carriers_[e.index()].index()]; }
+    const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
+    std::span<const Vec3> rest_positions() const { return rest_positions_; }
+    /// Writes the fragments with the node as a corner to `elements`, in ascending order.
+    void star(NodeId n, std::vector<ElementId>& elements) const;
+
+    /// Returns the carrier of a fragment: the element that the body had before any cut.
+    ElementId carrier(ElementId e) const { return carriers_[e.index()]; }
+    /// Returns the carrier of a cell of the material.
+    ElementId carrier_of_cell(ElementId cell) const { return carrier_of_cell_[cell.index()]; }
+    /// Returns the fragment that carries a living cell of the material.
+    ElementId fragment_of_cell(ElementId cell) const { return fragment_of_cell_[cell.index()]; }
+    /// Returns the cells that a living fragment carries, in ascending order.
+    /// @param e  must outlive the span
+    std::span<const ElementId> cells_of(const ElementId& e) const;
+    std::span<const ElementId> cells_of(ElementId&&) const = delete;
+    /// True if a cell belongs to the carrier of the fragment that carries it.
+    bool is_at_home(ElementId cell) const {
+        return carriers_[fragment_of_cell(cell).index()] == carrier_of_cell(cell);
+    }
+    /// Returns the combination of nodes that a living node of the material follows. Of the
+    /// fragments at the node it is in the lowest one that has cells of its own carrier there, or
+    /// else in the lowest one.
+    Embedding embedding(const Mesh& material, NodeId n) const;
+
+  private:
+    friend class FragmentUpdate;
+
+    std::span<const ElementId> fragments_of(const ElementId& carrier) const;
+    std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
+    std::span<const NodeId> origins_of(ElementId carrier) const;
+    std::span<const ElementId> carriers_at(NodeId origin) const;
+    Embedding embedding_of(ElementId e, const Vec3& x) const;
+
+    double light_share_;
+    FollowedEpoch epoch_;
+    std::size_t num_nodes_ = 0, num_elements_ = 0;
+
+    // By carrier, that is by id of an element before any cut. These never change.
+    std::vector<CellKind> kinds_;
+    std::vector<int> regions_;
+    std::vector<double> volumes_;  // at rest, m3
+    std::vector<std::size_t> origin_begin_{0};
+    std::vector<NodeId> origins_of_carrier_;  // its corners before any cut
+    // By node before any cut: the carriers at it, in ascending order.
+    std::vector<std::size_t> carrier_begin_;
+    std::vector<ElementId> carriers_at_;
+
+    // By fragment.
+    std::vector<ElementId> carriers_;
+    std::vector<std::uint8_t> is_alive_;
+    std::vector<double> shares_;
+    std::vector<std::size_t> corner_begin_{0};
+    std::vector<NodeId> corners_;
+    // By node.
+    std::vector<NodeId> origins_;  // the node before any cut that it is, or is a copy of
+    std::vector<Vec3> rest_positions_;
+    std::vector<std::uint8_t> is_node_alive_;
+    // By cell of the material.
+    std::vector<ElementId> carrier_of_cell_, fragment_of_cell_;
+    // Scratch of FragmentUpdate, -1 between edits: by cell its part, by carrier its first part.
+    std::vector<std::int32_t> part_of_cell_, first_part_;
+
+    // Exceptions: a carrier that is not listed has itself as its only cell and its only fragment.
+    std::unordered_map<ElementId, std::vector<ElementId>> cells_of_carrier_;
+    std::unordered_map<ElementId, std::vector<ElementId>> fragments_of_carrier_;
+    std::unordered_map<ElementId, std::vector<ElementId>> cells_of_fragment_;
+};
+
+}  // namespace incise::topology

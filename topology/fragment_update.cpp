@@ -1,0 +1,550 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/fragment_update.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <deque>
+#include <iterator>
+
+#include "incise/base/disjoint_set.h"
+#include "incise/topology/geometry.h"
+
+namespace incise::topology {
+
+namespace {
+
+/// The volumes of the cells of a carrier add up to its own but for rounding, unless one is gone.
+constexpr double volume_rounding = 1e-10;
+
+template <class T>
+void make_sorted_set(std::vector<T>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+template <class T>
+void insert_sorted(std::vector<T>& values, const T& value) {
+    values.insert(std::upper_bound(values.begin(), values.end(), value), value);
+}
+
+double volume_of(const Mesh& mesh, ElementId e) {
+    std::array<Vec3, max_corners> x;
+    const auto corners = mesh.corners(e);
+    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
+    return signed_volume(mesh.kind(e), {x.data(), corners.size()});
+}
+
+}  // namespace
+
+FragmentChanges FragmentUpdate::run() {
+    node_capacity_before_ = fragments_.node_capacity();
+    element_capacity_before_ = fragments_.element_capacity();
+    follow_cells();
+    join_light_parts();
+    assign_fragments();
+    assign_nodes();
+    return differences();
+}
+
+/// Takes the cells that came and went, and notes the carriers that the edit touches.
+void FragmentUpdate::follow_cells() {
+    auto& carrier_of = fragments_.carrier_of_cell_;
+    auto& fragment_of = fragments_.fragment_of_cell_;
+    const std::size_t capacity = std::max(carrier_of.size(), changes_.element_capacity_after);
+    carrier_of.resize(capacity);
+    fragment_of.resize(capacity);
+    fragments_.part_of_cell_.resize(capacity, -1);
+    const auto list_of = [&](ElementId carrier) -> std::vector<ElementId>& {
+        return fragments_.cells_of_carrier_.try_emplace(carrier, 1, carrier).first->second;
+    };
+    const auto touch = [&](ElementId cell) {
+        touched_carriers_.push_back(carrier_of[cell.index()]);
+    };
+    for (const ElementRecord& record : changes_.elements_removed) {
+        std::erase(list_of(carrier_of[record.id.index()]), record.id);
+        touch(record.id);
+    }
+    for (const ElementRecord& record : changes_.elements_added) {  // parents before their parts
+        const ElementId cell = record.id;
+        if (cell.index() >= changes_.element_capacity_before) {
+            carrier_of[cell.index()] = carrier_of[record.parent.index()];
+            fragment_of[cell.index()] = fragment_of[record.parent.index()];
+        }
+        insert_sorted(list_of(carrier_of[cell.index()]), cell);
+        touch(cell);
+    }
+    for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
+        for (const FacePair& pair : *pairs) {
+            touch(pair.a.element);
+            touch(pair.b.element);
+        }
+    make_sorted_set(touched_carriers_);
+}
+
+FragmentUpdate::PartRange FragmentUpdate::parts_of(ElementId carrier) {
+    std::int32_t& first = fragments_.first_part_[carrier.index()];
+    if (first < 0) {
+        first = static_cast<std::int32_t>(parts_.size());
+        carriers_found_.push_back(carrier);
+        find_parts(carrier);
+    }
+    const auto begin = static_cast<std::size_t>(first);
+    std::size_t end = begin;
+    while (end < parts_.size() && parts_[end].carrier == carrier) ++end;
+    return {begin, end};
+}
+
+std::size_t FragmentUpdate::part_of(ElementId cell) {
+    std::int32_t& part = fragments_.part_of_cell_[cell.index()];
+    if (part < 0) parts_of(fragments_.carrier_of_cell(cell));
+    return static_cast<std::size_t>(part);
+}
+
+void FragmentUpdate::add_part(ElementId carrier, std::vector<ElementId> cells, double volume) {
+    const std::size_t index = parts_.size();
+    for (const ElementId cell : cells)
+        fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
+    Part part;
+    part.carrier = carrier;
+    part.volume = volume;
+    part.master = index;
+    part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
+    // A part that no edit has touched is carried as before.
+    part.fragment = fragments_.fragment_of_cell(cells.front());
+    part.is_element = fragments_.carrier(part.fragment) == carrier;
+    part.cells = std::move(cells);
+    parts_.push_back(std::move(part));
+}
+
+void FragmentUpdate::find_parts(ElementId carrier) {
+    if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole
+        if (material_.is_alive(carrier))
+            add_part(carrier, {carrier}, fragments_.volumes_[carrier.index()]);
+        return;
+    }
+    std::vector<ElementId> cells;
+    for (const ElementId cell : fragments_.cells_of_carrier(carrier))
+        if (material_.is_alive(cell)) cells.push_back(cell);
+    DisjointSet groups(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        for (int f = 0; f < material_.num_faces(cells[i]); ++f) {
+            const ElementId other = material_.neighbor({cells[i], f}).element;
+            if (!other.is_valid() || other > cells[i] ||
+                fragments_.carrier_of_cell(other) != carrier)
+                continue;
+            const auto it = std::lower_bound(cells.begin(), cells.end(), other);
+            groups.join(static_cast<std::int32_t>(i),
+                        static_cast<std::int32_t>(it - cells.begin()));
+        }
+    std::vector<std::vector<ElementId>> members(cells.size());
+    std::vector<double> volumes(cells.size(), 0.0);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto first = static_cast<std::size_t>(groups.find(static_cast<std::int32_t>(i)));
+        members[first].push_back(cells[i]);
+        volumes[first] += volume_of(material_, cells[i]);
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        if (!members[i].empty()) add_part(carrier, std::move(members[i]), volumes[i]);
+}
+
+/// Returns the parts of other carriers that share faces with a part, in the order of their heads.
+const std::vector<FragmentUpdate::Neighbor>& FragmentUpdate::neighbors(std::size_t index) {
+    Part& part = parts_[index];
+    if (part.has_neighbors) return part.neighbors;
+    part.has_neighbors = true;
+    for (const ElementId cell : part.cells)
+        for (int f = 0; f < material_.num_faces(cell); ++f) {
+            const ElementId other = material_.neighbor({cell, f}).element;
+            if (!other.is_valid() || fragments_.carrier_of_cell(other) == part.carrier) continue;
+            const std::size_t neighbor = part_of(other);
+            const double area = part.is_light ? rest_area(material_, {cell, f}) : 0.0;
+            const auto known = std::ranges::find(part.neighbors, neighbor, &Neighbor::part);
+            if (known == part.neighbors.end())
+                part.neighbors.push_back({neighbor, area});
+            else
+                known->area += area;
+        }
+    std::ranges::sort(part.neighbors, {}, [&](const Neighbor& n) { return parts_[n.part].head(); });
+    return part.neighbors;
+}
+
+/// Returns the light parts whose masters the edit may change, in the order of their heads: those of
+/// touched carriers and beside them, and all that are connected with these through light parts or
+/// carriers.
+std::vector<std::size_t> FragmentUpdate::light_cluster() {
+    std::vector<std::size_t> cluster;
+    const auto add = [&](std::size_t part) {
+        if (!parts_[part].is_light || parts_[part].is_in_cluster) return;
+        parts_[part].is_in_cluster = true;
+        cluster.push_back(part);
+    };
+    const auto add_beside = [&](std::size_t part) {
+        for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
+    };
+    for (const ElementId carrier : touched_carriers_)
+        for (auto [part, end] = parts_of(carrier); part < end; ++part) {
+            add(part);
+            add_beside(part);
+        }
+    for (std::size_t next = 0; next < cluster.size(); ++next) {
+        add_beside(cluster[next]);
+        // All parts of a carrier are assigned together.
+        for (auto [part, end] = parts_of(parts_[cluster[next]].carrier); part < end; ++part)
+            add(part);
+    }
+    std::ranges::sort(cluster, {}, [&](std::size_t part) { return parts_[part].head(); });
+    return cluster;
+}
+
+// Light parts join, across faces and within their region, the part behind the largest area. First
+// those do that have a neighbour which is an element; then those beside these, and so on. Those
+// that reach none join their largest light neighbour if it is larger. The largest of all becomes an
+// element although it is light.
+void FragmentUpdate::join_light_parts() {
+    std::vector<std::size_t> lights = light_cluster();
+    open_carriers_ = touched_carriers_;
+    for (const std::size_t part : lights) open_carriers_.push_back(parts_[part].carrier);
+    make_sorted_set(open_carriers_);
+    join_in_rounds(lights);
+    join_larger_lights(lights);
+}
+
+void FragmentUpdate::join_in_rounds(std::vector<std::size_t>& lights) {
+    for (const std::size_t part : lights) parts_[part].is_waiting = true;
+    while (!lights.empty()) {
+        std::vector<std::pair<std::size_t, std::size_t>> joined;  // part, master
+        for (const std::size_t part : lights) {
+            const Neighbor* best = nullptr;
+            for (const Neighbor& neighbor : neighbors(part))
+                if (!parts_[neighbor.part].is_waiting && are_in_one_region(neighbor.part, part) &&
+                    (!best || neighbor.area > best->area))
+                    best = &neighbor;
+            if (best) joined.emplace_back(part, parts_[best->part].master);
+        }
+        if (joined.empty()) break;
+        for (const auto& [part, master] : joined) {
+            parts_[part].master = master;
+            parts_[part].is_waiting = false;
+        }
+        std::erase_if(lights, [&](std::size_t part) { return !parts_[part].is_waiting; });
+    }
+}
+
+void FragmentUpdate::join_larger_lights(const std::vector<std::size_t>& lights) {
+    const auto is_larger = [&](std::size_t a, std::size_t b) {
+        if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
+        return parts_[a].head() < parts_[b].head();
+    };
+    for (const std::size_t part : lights) {
+        std::size_t largest = part;
+        for (const Neighbor& neighbor : neighbors(part))
+            if (are_in_one_region(neighbor.part, part) && is_larger(neighbor.part, largest))
+                largest = neighbor.part;
+        parts_[part].master = largest;
+    }
+    // Along masters the volume rises, so that each chain ends at a part that is its own master.
+    for (const std::size_t part : lights)
+        while (parts_[part].master != parts_[parts_[part].master].master)
+            parts_[part].master = parts_[parts_[part].master].master;
+}
+
+ElementId FragmentUpdate::add_fragment(ElementId carrier, ElementId parent) {
+    const ElementId e(fragments_.element_capacity());
+    fragments_.carriers_.push_back(carrier);
+    fragments_.is_alive_.push_back(1);
+    fragments_.shares_.push_back(0.0);
+    const auto origins = fragments_.origins_of(carrier);
+    fragments_.corners_.insert(fragments_.corners_.end(), origins.size(), NodeId());
+    fragments_.corner_begin_.push_back(fragments_.corners_.size());
+    fragments_.cells_of_fragment_[e] = {};
+    ++fragments_.num_elements_;
+    parents_.push_back(parent);
+    return e;
+}
+
+void FragmentUpdate::assign_fragments() {
+    for (const ElementId carrier : open_carriers_) assign_fragments_of(carrier);
+    carry_cells();
+    update_shares();
+}
+
+/// Gives each part of a carrier that is an element a fragment: one that has carried cells of it
+/// before, or a new one.
+void FragmentUpdate::assign_fragments_of(ElementId carrier) {
+    const auto listed = fragments_.fragments_of(carrier);
+    const std::vector<ElementId> before(listed.begin(), listed.end());
+    for (const ElementId e : before) note_corners(e);
+    std::vector<ElementId> now;
+    for (auto [i, end] = parts_of(carrier); i < end; ++i) {
+        Part& part = parts_[i];
+        part.is_element = part.master == i;
+        if (!part.is_element) continue;
+        ElementId own;
+        for (const ElementId cell : part.cells) {
+            const ElementId e = fragments_.fragment_of_cell(cell);
+            if (fragments_.carrier(e) == carrier && fragments_.is_alive(e) &&
+                std::ranges::find(now, e) == now.end() && (!own.is_valid() || e < own))
+                own = e;
+        }
+        part.fragment =
+            own.is_valid() ? own : add_fragment(carrier, fragments_.fragment_of_cell(part.head()));
+        insert_sorted(now, part.fragment);
+    }
+    for (const ElementId e : before) {
+        if (std::ranges::binary_search(now, e)) continue;
+        fragments_.is_alive_[e.index()] = 0;
+        --fragments_.num_elements_;
+        died_.push_back(e);
+    }
+    if (now.size() == 1 && now.front() == carrier)
+        fragments_.fragments_of_carrier_.erase(carrier);
+    else
+        fragments_.fragments_of_carrier_[carrier] = std::move(now);
+}
+
+/// Writes which fragment carries each cell.
+void FragmentUpdate::carry_cells() {
+    auto& lists = fragments_.cells_of_fragment_;
+    const auto list_of = [&](ElementId e) -> std::vector<ElementId>& {
+        shares_before_.try_emplace(e, fragments_.share(e));
+        return lists.try_emplace(e, 1, e).first->second;
+    };
+    const auto leave = [&](ElementId cell) {
+        const ElementId from = fragments_.fragment_of_cell(cell);
+        fragment_before_.emplace_back(cell, from);
+        std::erase(list_of(from), cell);
+    };
+    for (const ElementRecord& record : changes_.elements_removed) {
+        leave(record.id);
+        fragments_.fragment_of_cell_[record.id.index()] = {};
+    }
+    for (const ElementRecord& record : changes_.elements_added)
+        fragment_before_.emplace_back(record.id, ElementId());
+    for (const ElementId carrier : open_carriers_)
+        for (auto [i, end] = parts_of(carrier); i < end; ++i) {
+            const ElementId to = parts_[parts_[i].master].fragment;
+            shares_before_.try_emplace(to, fragments_.share(to));  // a cell may have shrunk
+            for (const ElementId cell : parts_[i].cells) {
+                const ElementId from = fragments_.fragment_of_cell(cell);
+                if (is_added(cell))
+                    insert_sorted(list_of(to), cell);
+                else if (from != to) {
+                    leave(cell);
+                    insert_sorted(list_of(to), cell);
+                }
+                fragments_.fragment_of_cell_[cell.index()] = to;
+            }
+        }
+}
+
+void FragmentUpdate::update_shares() {
+    for (const auto& [e, before] : shares_before_) {
+        if (!fragments_.is_alive(e)) continue;
+        fragments_.shares_[e.index()] = share_of(e);
+        const auto cells = fragments_.cells_of(e);
+        if (cells.size() == 1 && cells.front() == e) fragments_.cells_of_fragment_.erase(e);
+    }
+}
+
+double FragmentUpdate::share_of(ElementId fragment) {
+    const ElementId carrier = fragments_.carrier(fragment);
+    const double whole = fragments_.volumes_[carrier.index()];
+    double own = 0.0, others = 0.0;
+    for (const ElementId cell : fragments_.cells_of(fragment))
+        (fragments_.carrier_of_cell(cell) == carrier ? own : others) += volume_of(material_, cell);
+    own /= whole;
+    if (std::abs(own - 1.0) < volume_rounding) own = 1.0;
+    return own + others / whole;
+}
+
+void FragmentUpdate::note_corners(ElementId fragment) {
+    const auto corners = fragments_.corners(fragment);
+    corners_before_.try_emplace(fragment, corners.begin(), corners.end());
+}
+
+bool FragmentUpdate::is_added(ElementId cell) const {
+    return std::ranges::binary_search(changes_.elements_added, cell, {}, &ElementRecord::id);
+}
+
+/// Returns the node that a fragment, or the fragment of its own carrier that it comes from, had at
+/// a corner before the edit.
+NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
+    if (const ElementId parent = parent_of(fragment); parent.is_valid()) {
+        const bool is_own = fragments_.carrier(parent) == fragments_.carrier(fragment);
+        return is_own ? node_before(parent, origin) : NodeId();
+    }
+    const auto it = corners_before_.find(fragment);
+    const std::span<const NodeId> corners = it != corners_before_.end()
+                                                ? std::span<const NodeId>(it->second)
+                                                : fragments_.corners(fragment);
+    for (const NodeId n : corners)
+        if (fragments_.origins_[n.index()] == origin) return n;
+    return {};
+}
+
+/// Appends the groups of parts that are connected at a node before any cut.
+void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
+    std::vector<std::size_t> parts;
+    for (const ElementId carrier : fragments_.carriers_at(origin))
+        for (auto [part, end] = parts_of(carrier); part < end; ++part) {
+            parts_[part].local = static_cast<std::int32_t>(parts.size());
+            parts.push_back(part);
+        }
+    DisjointSet connected(parts.size());
+    for (const std::size_t part : parts)
+        for (const Neighbor& neighbor : neighbors(part))
+            if (const std::int32_t local = parts_[neighbor.part].local; local >= 0)
+                connected.join(parts_[part].local, local);
+    std::vector<Group> found(parts.size());
+    for (const std::size_t part : parts) {
+        Group& group = found[static_cast<std::size_t>(connected.find(parts_[part].local))];
+        if (!parts_[part].is_element) continue;
+        const ElementId e = parts_[part].fragment;
+        group.origin = origin;
+        insert_sorted(group.fragments, e);
+        const NodeId before = node_before(e, origin);
+        if (before.is_valid() && (!group.before.is_valid() || before < group.before))
+            group.before = before;
+    }
+    for (const std::size_t part : parts) parts_[part].local = -1;
+    for (Group& group : found)
+        if (!group.fragments.empty()) groups.push_back(std::move(group));
+}
+
+NodeId FragmentUpdate::add_node(const Group& group) {
+    const NodeId n(fragments_.node_capacity());
+    NodeRecord record{n, fragments_.rest_position(group.origin), {}, 1};
+    if (group.before.is_valid()) {
+        record.sources[0] = {group.before, 1.0};
+    } else {
+        // A light part becomes an element: it goes on from where it was carried.
+        const Embedding from =
+            fragments_.embedding_of(parent_of(group.fragments.front()), record.rest_position);
+        record.num_sources = from.count;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(from.count); ++k)
+            record.sources[k] = {from.nodes[k], from.weights[k]};
+    }
+    nodes_added_.push_back(record);
+    fragments_.origins_.push_back(group.origin);
+    fragments_.rest_positions_.push_back(record.rest_position);
+    fragments_.is_node_alive_.push_back(1);
+    ++fragments_.num_nodes_;
+    return n;
+}
+
+void FragmentUpdate::set_node(ElementId fragment, NodeId origin, NodeId node) {
+    const auto origins = fragments_.origins_of(fragments_.carrier(fragment));
+    const auto k = static_cast<std::size_t>(std::ranges::find(origins, origin) - origins.begin());
+    assert(k < origins.size() && fragments_.origins_[node.index()] == origin);
+    NodeId& corner = fragments_.corners_[fragments_.corner_begin_[fragment.index()] + k];
+    if (corner == node) return;
+    if (!parent_of(fragment).is_valid()) note_corners(fragment);
+    corner = node;
+}
+
+// A node stays with the group that has its lowest fragment. The others get copies.
+void FragmentUpdate::assign_nodes() {
+    std::vector<NodeId> origins, touched;
+    for (const ElementId carrier : open_carriers_)
+        for (const NodeId origin : fragments_.origins_of(carrier)) origins.push_back(origin);
+    make_sorted_set(origins);
+    std::vector<Group> groups;
+    for (const NodeId origin : origins) find_groups(origin, groups);
+    for (const auto& [e, corners] : corners_before_)
+        for (const NodeId n : corners)
+            if (n.is_valid()) touched.push_back(n);
+
+    const auto key = [](const Group& group) {
+        return std::pair(group.before.is_valid() ? 0 : 1,
+                         std::pair(group.before, group.fragments.front()));
+    };
+    std::ranges::sort(groups, {}, key);
+    std::map<NodeId, NodeId> survivors;  // of nodes that are joined to another
+    NodeId last;
+    for (const Group& group : groups) {
+        const bool keeps = group.before.is_valid() && group.before != last;
+        const NodeId node = keeps ? group.before : add_node(group);
+        last = group.before;
+        for (const ElementId e : group.fragments) {
+            if (const NodeId before = node_before(e, group.origin);
+                before.is_valid() && before != node)
+                survivors.try_emplace(before, node);
+            set_node(e, group.origin, node);
+        }
+    }
+    remove_unused_nodes(touched, survivors);
+}
+
+void FragmentUpdate::remove_unused_nodes(const std::vector<NodeId>& touched,
+                                         const std::map<NodeId, NodeId>& survivors) {
+    std::vector<NodeId> nodes(touched);
+    for (const auto& [before, node] : survivors) nodes.push_back(before);
+    make_sorted_set(nodes);
+    std::vector<ElementId> star;
+    for (const NodeId n : nodes) {
+        if (!fragments_.is_alive(n)) continue;
+        fragments_.star(n, star);
+        if (!star.empty()) continue;
+        NodeRecord record{n, fragments_.rest_position(n), {}, 0};
+        if (const auto it = survivors.find(n); it != survivors.end()) {
+            record.sources[0] = {it->second, 1.0};
+            record.num_sources = 1;
+        }
+        nodes_removed_.push_back(record);
+        fragments_.is_node_alive_[n.index()] = 0;
+        --fragments_.num_nodes_;
+    }
+}
+
+FragmentChanges FragmentUpdate::differences() {
+    FragmentChanges result;
+    ChangeSet& edit = result.mesh;
+    edit.epoch_before = changes_.epoch_before;
+    edit.epoch_after = changes_.epoch_after;
+    edit.node_capacity_before = node_capacity_before_;
+    edit.node_capacity_after = fragments_.node_capacity();
+    edit.element_capacity_before = element_capacity_before_;
+    edit.element_capacity_after = fragments_.element_capacity();
+    edit.nodes_added = std::move(nodes_added_);
+    edit.nodes_removed = std::move(nodes_removed_);
+    for (std::size_t i = element_capacity_before_; i < fragments_.element_capacity(); ++i) {
+        const ElementId e(i);
+        const auto corners = fragments_.corners(e);
+        edit.elements_added.push_back({e,
+                                       fragments_.kind(e),
+                                       fragments_.region(e),
+                                       parent_of(e),
+                                       {corners.begin(), corners.end()}});
+    }
+    std::sort(died_.begin(), died_.end());
+    for (const ElementId e : died_)
+        edit.elements_removed.push_back(
+            {e, fragments_.kind(e), fragments_.region(e), {}, corners_before_.at(e)});
+    for (const auto& [e, before] : corners_before_) {
+        if (!fragments_.is_alive(e)) continue;
+        const auto now = fragments_.corners(e);
+        for (std::size_t k = 0; k < now.size(); ++k)
+            if (before[k] != now[k])
+                edit.rewired.push_back({e, static_cast<int>(k), before[k], now[k]});
+    }
+    std::ranges::sort(edit.rewired, {},
+                      [](const Rewiring& r) { return std::pair(r.element, r.corner); });
+    for (const auto& [e, before] : shares_before_)
+        if (fragments_.is_alive(e) && fragments_.share(e) != before && !parent_of(e).is_valid())
+            result.shares.push_back({e, before, fragments_.share(e)});
+    std::ranges::sort(result.shares, {}, &ShareChange::fragment);
+    std::sort(fragment_before_.begin(), fragment_before_.end());
+    for (const auto& [cell, before] : fragment_before_) {
+        const ElementId now =
+            material_.is_alive(cell) ? fragments_.fragment_of_cell(cell) : ElementId();
+        if (now != before)
+            result.cells.push_back({cell, fragments_.carrier_of_cell(cell), before, now});
+    }
+    for (const ElementId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
+    for (const Part& part : parts_)
+        for (const ElementId cell : part.cells) fragments_.part_of_cell_[cell.index()] = -1;
+    return result;
+}
+
+}  // namespace incise::topology
