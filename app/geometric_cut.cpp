@@ -196,7 +196,7 @@ void add(const CutCounts& counts, CutCounts& total) {
     total.volume_removed += counts.volume_removed;
     total.split_seconds += counts.split_seconds;
     if (const auto& distance = counts.surface_distance) {
-        if (!total.surface_distance) total.surface_distance.emplace();
+        if (!total.surface_distance) total.surface_distance = CutCounts::Distance{};
         auto& largest = *total.surface_distance;
         largest.nodes = std::max(largest.nodes, distance->nodes);
         largest.faces = std::max(largest.faces, distance->faces);
@@ -368,8 +368,7 @@ class CountingCutter {
             std::ranges::sort(points, [](const Vec3& a, const Vec3& b) {
                 return std::ranges::lexicographical_compare(a, b);
             });
-            const auto [end, last] = std::ranges::unique(points);
-            points.erase(end, last);
+            points.erase(std::unique(points.begin(), points.end()), points.end());
             double value = 0.0;
             for (const Vec3& x : points) value = std::max(value, distance(x));
             return value;

@@ -17,7 +17,7 @@ namespace {
 
 /// Welds the mesh and returns a report. Throws InputError with the problems of the welded mesh.
 std::string weld(topology::MeshData& mesh, const std::string& prefix) {
-    const auto report = topology::weld_report(topology::weld(mesh));
+    std::string report = topology::weld_report(topology::weld(mesh));
     const auto errors = topology::check(mesh).errors;
     if (!errors.empty()) throw InputError(prefixed(prefix, joined(errors)));
     topology::drop_welded_points(mesh);

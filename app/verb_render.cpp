@@ -17,6 +17,7 @@ int render(const RenderOptions& options) {
     std::vector<std::string> words = {program.string()};
     words.insert(words.end(), options.arguments.begin(), options.arguments.end());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     std::cout.flush();

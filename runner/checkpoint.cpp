@@ -143,7 +143,7 @@ void remove_checkpoints_of_stops(const fs::path& folder) {
         folder, [](const CheckpointName& name) { return name.kind == CheckpointKind::of_a_stop; });
 }
 
-Checkpoint::Checkpoint(fs::path path, std::string bytes) : path_(std::move(path)) {
+Checkpoint::Checkpoint(fs::path path, const std::string& bytes) : path_(std::move(path)) {
     ArchiveReader ar(bytes);
     std::string version;
     name_location([&] { ar(version); });

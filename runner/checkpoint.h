@@ -84,7 +84,7 @@ class Checkpoint {
     const Written& written() const { return written_; }
 
   private:
-    Checkpoint(std::filesystem::path path, std::string bytes);
+    Checkpoint(std::filesystem::path path, const std::string& bytes);
     void name_location(const std::function<void()>& read) const;
 
     std::filesystem::path path_;

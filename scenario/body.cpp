@@ -47,6 +47,7 @@ physics::Material build_material(const MaterialSpec& spec) {
 template <class Value>
 physics::TimeCurve<Value> curve(const std::vector<TimeKey<Value>>& keys) {
     std::vector<std::pair<double, Value>> pairs;
+    pairs.reserve(keys.size());
     for (const TimeKey<Value>& key : keys) pairs.emplace_back(key.time, key.value);
     return physics::TimeCurve<Value>(std::move(pairs));
 }

@@ -25,7 +25,7 @@ constexpr Keys factor_keys[] = {"time", "value"};
 sim::BoxRegion read_box(const TableReader& box) {
     box.require("min", "the lowest corner, as in min = [0, 0, 0]");
     box.require("max", "the highest corner, as in max = [1, 1, 1]");
-    const sim::BoxRegion region{box.vector("min"), box.vector("max")};
+    sim::BoxRegion region{box.vector("min"), box.vector("max")};
     if (box.is_sound("min") && box.is_sound("max") &&
         (region.max.array() < region.min.array()).any())
         box.error("max", "is not allowed: no coordinate may be below that of min");

@@ -62,6 +62,7 @@ std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) c
         return key(a.location) < key(b.location);
     });
     std::vector<std::string> texts;
+    texts.reserve(findings.size());
     for (const auto& [location, text, path] : findings)
         texts.push_back(text_of(location) + ": " + text);
     return texts;

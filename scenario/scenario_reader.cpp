@@ -178,7 +178,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
 std::filesystem::path read_file_name(const TableReader& table, std::string_view key,
                                      const std::filesystem::path& folder, const std::string& kind) {
     const std::string name = table.text(key);
-    const std::filesystem::path file = folder / name;
+    std::filesystem::path file = folder / name;
     std::error_code error;
     if (name.empty()) {
         if (table.is_text(key)) table.error(key, "is empty: name a " + kind);
@@ -305,7 +305,7 @@ std::vector<Expectation> read_expectations(const TableReader& root,
 
 std::string read_name(const TableReader& table, const std::string& fallback,
                       std::vector<std::string>& used) {
-    const std::string name = table.text("name", fallback);
+    std::string name = table.text("name", fallback);
     if (name.empty() || !std::all_of(name.begin(), name.end(), is_name_character))
         table.error("name", in_quotes(name) + " is not allowed: use letters, digits, _ and -");
     if (std::find(used.begin(), used.end(), name) == used.end())

@@ -105,7 +105,7 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
     try {
         topology::BuiltMesh built = topology::Mesh::build(file.mesh, weld_advice());
         file.warnings.insert(file.warnings.end(), built.warnings.begin(), built.warnings.end());
-        for (std::string& warning : file.warnings) warning = prefix + warning;
+        for (std::string& warning : file.warnings) warning.insert(0, prefix);
         return {std::move(built.mesh),
                 std::move(file.warnings),
                 {path ? path->string() : "", std::move(file.cell_vectors)}};

@@ -220,9 +220,11 @@ template <class Row>
 std::string inline_tables(const std::vector<Row>& rows, const std::string& first_key,
                           double Row::*first, const std::string& second_key, double Row::*second) {
     std::string text;
-    for (const auto& row : rows)
-        text += (text.empty() ? "{ " : ", { ") + first_key + " = " + io::format_number(row.*first) +
-                ", " + second_key + " = " + io::format_number(row.*second) + " }";
+    for (const auto& row : rows) {
+        text += text.empty() ? "{ " : ", { ";
+        text += first_key + " = " + io::format_number(row.*first) + ", ";
+        text += second_key + " = " + io::format_number(row.*second) + " }";
+    }
     return text;
 }
 

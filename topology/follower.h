@@ -24,6 +24,7 @@ class FollowedEpoch {
     explicit FollowedEpoch(const Mesh& mesh) : epoch_(mesh.epoch()) {}
 
     std::uint64_t value() const { return epoch_; }
+    bool operator==(const FollowedEpoch&) const = default;
 
     /// Advances to the end of an edit, for a follower that reads only the record. Throws
     /// InputError, and changes nothing, if the edit does not begin at the present epoch.

@@ -40,6 +40,7 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share)
     }
     num_nodes_ = material.num_nodes();
     first_part_.assign(kinds_.size(), -1);
+    part_of_cell_.assign(kinds_.size(), -1);
     rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
     carrier_begin_ = num_carriers;
     carriers_at_.resize(carrier_begin_.back());
@@ -51,6 +52,92 @@ FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& chang
     if (changes.is_empty()) return {};
     epoch_.advance(material, changes, "fragment mesh");
     return FragmentUpdate(*this, material, changes).run();
+}
+
+void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
+    const ChangeSet& edit = changes.mesh;
+    if (edit.epoch_before == edit.epoch_after) return;
+    ChangeSet back;
+    back.epoch_before = edit.epoch_after;
+    back.epoch_after = edit.epoch_before;
+    epoch_.advance(material, back, "fragment mesh");
+
+    for (const CarriedCell& cell : changes.cells) {
+        if (cell.from.is_valid() && cell.to.is_valid()) continue;
+        auto& cells = cells_of_carrier_.try_emplace(cell.carrier, 1, cell.carrier).first->second;
+        if (cell.from.is_valid())
+            cells.insert(std::ranges::upper_bound(cells, cell.cell), cell.cell);
+        else
+            std::erase(cells, cell.cell);
+        drop_if_trivial(cells_of_carrier_, cell.carrier);
+    }
+    std::vector<ElementId> carriers;
+    for (const auto* records : {&edit.elements_added, &edit.elements_removed})
+        for (const ElementRecord& record : *records) carriers.push_back(carrier(record.id));
+    for (const Rewiring& rewiring : edit.rewired)
+        corners_[corner_begin_[rewiring.element.index()] +
+                 static_cast<std::size_t>(rewiring.corner)] = rewiring.from;
+    for (const ElementRecord& record : edit.elements_removed) is_alive_[record.id.index()] = 1;
+    for (const ElementRecord& record : edit.elements_added) is_alive_[record.id.index()] = 0;
+    for (const ShareChange& share : changes.shares) shares_[share.fragment.index()] = share.from;
+    for (const NodeRecord& record : edit.nodes_removed) is_node_alive_[record.id.index()] = 1;
+    for (const CarriedCell& cell : changes.cells) move_cell(cell.cell, cell.to, cell.from);
+    for (const ElementId e : carriers) {
+        std::vector<ElementId> living;
+        for (const ElementId known : fragments_of(e))
+            if (is_alive(known)) living.push_back(known);
+        for (const ElementRecord& record : edit.elements_removed)
+            if (carrier(record.id) == e && std::ranges::find(living, record.id) == living.end())
+                living.push_back(record.id);
+        std::ranges::sort(living);
+        set_fragments(e, std::move(living));
+    }
+    for (const ElementRecord& record : edit.elements_added) cells_of_fragment_.erase(record.id);
+    num_elements_ += edit.elements_removed.size();
+    num_elements_ -= edit.elements_added.size();
+    num_nodes_ += edit.nodes_removed.size();
+    num_nodes_ -= edit.nodes_added.size();
+    truncate(edit.node_capacity_before, edit.element_capacity_before, material.element_capacity());
+}
+
+void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,
+                            std::size_t num_cells) {
+    carriers_.resize(num_elements);
+    is_alive_.resize(num_elements);
+    shares_.resize(num_elements);
+    corner_begin_.resize(num_elements + 1);
+    corners_.resize(corner_begin_.back());
+    origins_.resize(num_nodes);
+    rest_positions_.resize(num_nodes);
+    is_node_alive_.resize(num_nodes);
+    carrier_of_cell_.resize(num_cells);
+    fragment_of_cell_.resize(num_cells);
+    part_of_cell_.resize(num_cells, -1);
+}
+
+void FragmentMesh::drop_if_trivial(std::unordered_map<ElementId, std::vector<ElementId>>& lists,
+                                   ElementId key) {
+    const auto it = lists.find(key);
+    if (it != lists.end() && it->second.size() == 1 && it->second.front() == key) lists.erase(it);
+}
+
+void FragmentMesh::move_cell(ElementId cell, ElementId from, ElementId to) {
+    const auto list_of = [&](ElementId e) -> std::vector<ElementId>& {
+        return cells_of_fragment_.try_emplace(e, 1, e).first->second;
+    };
+    if (from.is_valid()) std::erase(list_of(from), cell);
+    if (to.is_valid()) {
+        auto& cells = list_of(to);
+        cells.insert(std::ranges::upper_bound(cells, cell), cell);
+    }
+    fragment_of_cell_[cell.index()] = to;
+    if (from.is_valid()) drop_if_trivial(cells_of_fragment_, from);
+    if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
+}
+
+void FragmentMesh::set_fragments(ElementId carrier, std::vector<ElementId> fragments) {
+    fragments_of_carrier_[carrier] = std::move(fragments);
+    drop_if_trivial(fragments_of_carrier_, carrier);
 }
 
 int FragmentMesh::corner_of(ElementId e, NodeId n) const {

@@ -80,6 +80,13 @@ class FragmentMesh {
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
     FragmentChanges apply(const Mesh& material, const ChangeSet& changes);
+    /// Takes back an edit that apply() has followed, with all its ids: those that it gave out are
+    /// free again.
+    /// @param material  the material, on which the inverse of the edit was replayed
+    /// @param changes   what apply() returned
+    /// Throws InputError, and changes nothing, unless the edit is the last one.
+    /// Cost: proportional to the edit.
+    void undo(const Mesh& material, const FragmentChanges& changes);
 
     std::size_t node_capacity() const { return origins_.size(); }
     std::size_t element_capacity() const { return carriers_.size(); }
@@ -129,9 +136,19 @@ class FragmentMesh {
     /// else in the lowest one.
     Embedding embedding(const Mesh& material, NodeId n) const;
 
+    bool operator==(const FragmentMesh&) const = default;
+
   private:
     friend class FragmentUpdate;
 
+    void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
+    /// Moves a cell from the list of one fragment to that of another; either may be invalid.
+    void move_cell(ElementId cell, ElementId from, ElementId to);
+    /// Sets the living fragments of a carrier, in ascending order.
+    void set_fragments(ElementId carrier, std::vector<ElementId> fragments);
+    /// Drops the entry of a list that has become what an absent entry means.
+    static void drop_if_trivial(std::unordered_map<ElementId, std::vector<ElementId>>& lists,
+                                ElementId key);
     std::span<const ElementId> fragments_of(const ElementId& carrier) const;
     std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
     std::span<const NodeId> origins_of(ElementId carrier) const;

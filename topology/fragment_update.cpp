@@ -187,6 +187,7 @@ std::vector<std::size_t> FragmentUpdate::light_cluster() {
             add(part);
             add_beside(part);
         }
+    // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
     for (std::size_t next = 0; next < cluster.size(); ++next) {
         add_beside(cluster[next]);
         // All parts of a carrier are assigned together.
@@ -297,10 +298,7 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
         --fragments_.num_elements_;
         died_.push_back(e);
     }
-    if (now.size() == 1 && now.front() == carrier)
-        fragments_.fragments_of_carrier_.erase(carrier);
-    else
-        fragments_.fragments_of_carrier_[carrier] = std::move(now);
+    fragments_.set_fragments(carrier, std::move(now));
 }
 
 /// Writes which fragment carries each cell.

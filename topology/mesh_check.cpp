@@ -219,7 +219,7 @@ std::string number_list(std::span<const FaceKey> faces, NumberOf number_of) {
 }
 
 std::string cell_numbers(const MeshData& data, std::span<const FaceKey> faces) {
-    const auto here = number_list(faces, [](const FaceKey& f) { return f.face.cell; });
+    std::string here = number_list(faces, [](const FaceKey& f) { return f.face.cell; });
     if (data.source_cells.empty()) return here;
     return here + " (in the file " +
            number_list(faces, [&](const FaceKey& f) { return data.source_cells[f.face.cell]; }) +

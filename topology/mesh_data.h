@@ -60,7 +60,7 @@ struct MeshData {
 
     /// Returns a name for messages, such as "point 3", with its number in the source.
     std::string point_name(std::size_t p) const {
-        const std::string name = "point " + std::to_string(p);
+        std::string name = "point " + std::to_string(p);
         if (p >= source_points.size()) return name;
         return name + " (number " + std::to_string(source_points[p]) + " in the file)";
     }

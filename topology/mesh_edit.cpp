@@ -305,8 +305,8 @@ void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
 
 NodeId MeshEdit::survivor_of(NodeId n) const {
     // A survivor may itself have been absorbed later, always by a node with a lower id.
-    for (std::size_t i = 0; i < merged_.size(); ++i)
-        if (merged_[i].first == n) return survivor_of(merged_[i].second);
+    for (const auto& [absorbed, survivor] : merged_)
+        if (absorbed == n) return survivor_of(survivor);
     return n;
 }
 

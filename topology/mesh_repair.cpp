@@ -73,19 +73,19 @@ std::vector<std::int64_t> lowest_at_position(const MeshData& data, double part) 
     std::iota(leader_of.begin(), leader_of.end(), 0);
     std::vector<Leader> leaders;
     std::size_t begin = 0;  // of the leaders that may be near later points
-    for (const auto& [at, across, point] : order) {
-        while (begin < leaders.size() && leaders[begin].at < at - 2.0 * tolerance) ++begin;
-        const Vec3& here = position_of(data, point);
+    for (const Leader& one : order) {
+        while (begin < leaders.size() && leaders[begin].at < one.at - 2.0 * tolerance) ++begin;
+        const Vec3& here = position_of(data, one.point);
         const auto found = std::find_if(
             leaders.begin() + static_cast<std::ptrdiff_t>(begin), leaders.end(),
             [&](const Leader& leader) {
-                return !(std::abs(leader.across - across) > 2.0 * tolerance) &&
+                return !(std::abs(leader.across - one.across) > 2.0 * tolerance) &&
                        (position_of(data, leader.point) - here).stableNorm() <= tolerance;
             });
         if (found == leaders.end())
-            leaders.push_back({at, across, point});
+            leaders.push_back(one);
         else
-            leader_of[static_cast<std::size_t>(point)] = found->point;
+            leader_of[static_cast<std::size_t>(one.point)] = found->point;
     }
 
     std::vector<std::int64_t> lowest(data.points.size(), -1);

@@ -43,7 +43,8 @@ NodesOnSurface::NodesOnSurface(const CutSurface& surface, const TissueMotion& ti
         double length, length_at_rest;
     };
     std::vector<End> ends;
-    for (const auto& [edge, element] : edges) {
+    for (const EdgeList::Entry& entry : edges) {
+        const Edge& edge = entry.edge;
         const auto length = [&](auto position) {
             return (position(edge.b) - position(edge.a)).norm();
         };

@@ -66,7 +66,7 @@ class Recognizer {
         std::optional<Crossing> other;
         for (const int s : {0, 1, -1})
             for (const int t : {0, 1, -1}) {
-                const auto intersection =
+                auto intersection =
                     intersection_by(n, record.to_surface + s * u + t * v, record.normal, length);
                 if (intersection && is_along(record, intersection->normal)) return intersection;
                 if (!other) other = intersection;

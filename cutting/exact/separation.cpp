@@ -106,8 +106,9 @@ void SliverFragments::keep() {
         const auto comes_off = [&](ElementId e) {
             return std::find(coming_off.begin(), coming_off.end(), e) != coming_off.end();
         };
-        for (const auto& [t, f] : std::ranges::subrange(begin, end))
-            for (const ElementId e : {f.element, mesh_.neighbor(f).element}) {
+        for (auto entry = begin; entry != end; ++entry)
+            for (const ElementId e :
+                 {entry->second.element, mesh_.neighbor(entry->second).element}) {
                 if (comes_off(e) || !collect_piece(e, now, piece)) continue;
                 const bool is_decided = !may_hang(piece);
                 if (is_decided && !hangs(piece)) continue;
@@ -115,8 +116,10 @@ void SliverFragments::keep() {
                 auto& kind = is_decided ? elements_ : waiting_;
                 kind.insert(kind.end(), piece.begin(), piece.end());
             }
-        for (const auto& [t, f] : std::ranges::subrange(begin, end))
+        for (auto entry = begin; entry != end; ++entry) {
+            const FaceId f = entry->second;
             if (comes_off(f.element) != comes_off(mesh_.neighbor(f).element)) kept_.insert(f);
+        }
         begin = end;
     }
 }

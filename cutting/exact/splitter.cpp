@@ -570,7 +570,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
                         const EdgeIntersection& intersection) {
     const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, t);
-    const auto& [middle, ring, elements] = division;
+    const NodeId middle = division.middle;
+    const std::vector<NodeId>& ring = division.ring;
     put_on(middle, t == intersection.place, local_edge_length);
 
     const auto holder = [&](NodeId other) {
@@ -584,6 +585,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
         return intersections(edge_between(other, middle), holder(other));
     };
     std::vector<EdgeIntersections> to_ring;
+    to_ring.reserve(ring.size());
     for (const NodeId n : ring) to_ring.push_back(ask(n));
     EdgeIntersections to_a = ask(edge.a), to_b = ask(edge.b);
     const auto has_boundary = [&](NodeId p, NodeId q, NodeId r) {

@@ -48,6 +48,7 @@ std::vector<ElementId> elements_at(const Mesh& mesh, const CutFront& front) {
         marks[n.index()] = on_cut;
         add(mesh.incident_element(n));
     });
+    // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
     for (std::size_t next = 0; next < elements.size(); ++next)
         for (int f = 0; f < mesh.num_faces(elements[next]); ++f)
             if (const FaceId other = mesh.neighbor({elements[next], f}); other.is_valid())

@@ -169,7 +169,7 @@ Target target_of(const fs::path& path) {
     if (is_there && S_ISDIR(status.st_mode)) throw_output_error(path, EISDIR);
     // Links of the system to pipes, such as /dev/stdout, cannot be followed by name.
     if (is_there && !S_ISREG(status.st_mode)) return {path, true};
-    const Target target{follow_links(path), false};
+    Target target{follow_links(path), false};
     if (!target.path.has_filename()) throw_output_error(path, EISDIR);
     return target;
 }

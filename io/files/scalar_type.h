@@ -56,6 +56,7 @@ std::vector<Target> convert_scalars(std::string_view bytes, ScalarType type, boo
     std::vector<Target> values(bytes.size() / size_of(type));
     const auto convert = [&]<class Source>(Source) {
         for (std::size_t i = 0; i < values.size(); ++i)
+            // NOLINTNEXTLINE(bugprone-signed-char-misuse): int8 is a number here
             values[i] =
                 static_cast<Target>(load_scalar<Source>(bytes.data() + i * sizeof(Source), swap));
     };
@@ -84,6 +85,7 @@ std::vector<Target> convert_scalars(std::string_view bytes, ScalarType type, boo
         case ScalarType::uint64:
             convert(std::uint64_t{});
             break;
+        // NOLINTNEXTLINE(bugprone-branch-clone): alike only where Target is an integer
         case ScalarType::float32:
             if constexpr (!std::integral<Target>) convert(float{});
             break;

@@ -311,7 +311,7 @@ std::filesystem::path data_file_path(const InputFile& file, std::string_view nam
     if (name.size() > longest || std::ranges::any_of(name, is_control))
         refuse("the name of the data file, " + in_quotes(name) +
                ", is too long or has control characters; the header is damaged");
-    const auto path = file.path.parent_path() / std::string(name);
+    auto path = file.path.parent_path() / std::string(name);
     std::error_code error;  // if a file does not exist, the files are not the same
     if (std::filesystem::equivalent(path, file.path, error))
         refuse("names itself as the file of the data; name the file that has the values");

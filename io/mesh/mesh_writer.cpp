@@ -83,6 +83,7 @@ void check_writable(const std::filesystem::path& path) {
 
 std::vector<std::string> writable_suffixes() {
     std::vector<std::string> suffixes;
+    suffixes.reserve(std::size(written_formats));
     for (const auto& format : written_formats) suffixes.emplace_back(format.suffix);
     return suffixes;
 }

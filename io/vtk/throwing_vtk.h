@@ -63,7 +63,7 @@ class SequentialVtk {
 class FastBase64Stream final : public vtkOutputStream {
   public:
     static vtkSmartPointer<FastBase64Stream> make() {
-        const auto made = vtkSmartPointer<FastBase64Stream>::Take(new FastBase64Stream);
+        auto made = vtkSmartPointer<FastBase64Stream>::Take(new FastBase64Stream);
         made->InitializeObjectBase();
         return made;
     }
@@ -93,7 +93,7 @@ class FastBase64Stream final : public vtkOutputStream {
 class ThrowingGridWriter final : public vtkXMLUnstructuredGridWriter {
   public:
     static vtkSmartPointer<ThrowingGridWriter> make() {
-        const auto made = vtkSmartPointer<ThrowingGridWriter>::Take(new ThrowingGridWriter);
+        auto made = vtkSmartPointer<ThrowingGridWriter>::Take(new ThrowingGridWriter);
         made->InitializeObjectBase();
         made->SetDataStream(FastBase64Stream::make());
         return made;
@@ -117,7 +117,7 @@ class ThrowingCompressor final : public VtkCompressor {
     /// @param known  blocks that need not be compressed again, or null
     /// @lifetime  `known` must outlive the compressor
     static vtkSmartPointer<ThrowingCompressor> make(int level, PackedBlocks* known) {
-        const auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor(known));
+        auto made = vtkSmartPointer<ThrowingCompressor>::Take(new ThrowingCompressor(known));
         made->InitializeObjectBase();
         made->SetCompressionLevel(level);
         return made;

@@ -48,7 +48,7 @@ double work_against(const std::array<Vec3, 4>& f, const std::array<Vec3, 4>& g,
 
 Mat3 second_piola_kirchhoff(const LawResponse<double>& r, const Mat3& twice_strain, double J,
                             double J0, const Vec3& fibre) {
-    const Mat3 S = second_stress_without_volume(r, twice_strain, fibre);
+    Mat3 S = second_stress_without_volume(r, twice_strain, fibre);
     if (r.w_J == 0.0) return S;
     const Mat3 C = Mat3::Identity() + twice_strain;
     return S + r.w_J * J / std::max(J * J, J0 * J0) * cofactors(C);

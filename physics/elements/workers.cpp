@@ -31,6 +31,7 @@ namespace {
 void require_threads(int count) {
     std::mutex gate;
     std::vector<std::jthread> threads;  // joined after the gate is unlocked
+    threads.reserve(static_cast<std::size_t>(count));
     const std::lock_guard closed(gate);
     for (int i = 0; i < count; ++i)
         threads.emplace_back([&gate] { const std::lock_guard opened(gate); });

@@ -85,7 +85,7 @@ template <class Law, class Number>
     const LinkVectors<Number>& edges) {
     using Scalar = Lanes<Number>;
     using Vector = Lanes3<Number>;
-    const auto& [v1, v2, v3] = edges;
+    const Vector &v1 = edges[0], &v2 = edges[1], &v3 = edges[2];  // no bindings: lambdas take them
     const Symmetric<Scalar> G = load_metric(group, first);
     const auto columns = [&](const Symmetric<Scalar>& T) -> LinkVectors<Number> {
         return {T.d1 * v1 + T.s12 * v2 + T.s31 * v3, T.s12 * v1 + T.d2 * v2 + T.s23 * v3,

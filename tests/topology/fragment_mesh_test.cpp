@@ -10,6 +10,7 @@
 #include <set>
 
 #include "incise/base/disjoint_set.h"
+#include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/exact_plane.h"
@@ -229,6 +230,46 @@ TEST(FragmentMesh, FollowsAnyEdits) {
                 expect_sound(fragments, material);
             }
         }
+}
+
+TEST(FragmentMesh, UndoesEditsWithTheirIds) {
+    for (const auto& family : test::mesh_families()) {
+        const bool is_divisible = std::ranges::all_of(
+            family.data.kinds, [](CellKind kind) { return kind == CellKind::tetrahedron; });
+        for (std::uint64_t seed = 0; seed < test::num_cases(6); ++seed) {
+            SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
+            test::Random random(seed);
+            Mesh material = Mesh::build(family.data).mesh;
+            FragmentMesh fragments(material);
+            std::vector<FragmentMesh> before;
+            std::vector<std::pair<ChangeSet, FragmentChanges>> done;
+            for (int i = 0; i < 5; ++i) {
+                before.push_back(fragments);
+                const ChangeSet changes =
+                    i % 2 == 0 || !is_divisible
+                        ? test::random_edit(material, random)
+                        : test::cut_along_plane(material, {0.4, 0.3, 0.5}, random.vector(1.0));
+                done.emplace_back(changes, fragments.apply(material, changes));
+            }
+            for (; !done.empty(); done.pop_back(), before.pop_back()) {
+                if (done.back().first.is_empty()) continue;
+                const FragmentChanges& undone = done.back().second;
+                if (done.size() > 1 && !done[done.size() - 2].first.is_empty()) {
+                    EXPECT_THROW(fragments.undo(material, done[done.size() - 2].second),
+                                 InputError);
+                }
+                replay(material, inverse(done.back().first));
+                fragments.undo(material, undone);
+                EXPECT_TRUE(fragments == before.back());
+                expect_sound(fragments, material);
+                // Done again, it has the same effect.
+                replay(material, done.back().first);
+                EXPECT_TRUE(fragments.apply(material, done.back().first) == undone);
+                replay(material, inverse(done.back().first));
+                fragments.undo(material, undone);
+            }
+        }
+    }
 }
 
 TEST(FragmentMesh, KeepsCarriersThatAreCutInPart) {
