@@ -13,7 +13,7 @@ std::string output_of(const std::string& command) {
     return output;
 }
 
-TEST_F(Run, OfHelloCutHasTheNumbersOfTheExample) {
+TEST_F(Run, OfHelloCutHasTheExamplesNumbers) {
     const auto outcome = run({INCISE_EXAMPLES "/hello_cut.toml", "--quiet", "--out", "scene.out"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const json summary = json::parse(read_text(folder_ / "scene.out/summary.json"));
