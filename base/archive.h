@@ -91,6 +91,7 @@ class ArchiveWriter {
     template <class Key, class T>
     void put(const std::unordered_map<Key, T>& map) {
         std::vector<Key> keys;
+        keys.reserve(map.size());
         for (const auto& [key, value] : map) keys.push_back(key);
         std::sort(keys.begin(), keys.end());
         put(std::uint64_t{keys.size()});

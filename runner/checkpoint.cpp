@@ -184,7 +184,7 @@ Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& 
                 "is removed");
             continue;
         }
-        return Checkpoint(path, std::move(bytes));
+        return Checkpoint(path, bytes);
     }
     throw InputError(folder.string() + ": there is no " + (all.empty() ? "" : "whole ") +
                      "checkpoint of a run to resume; check --out, or begin anew without --resume");

@@ -55,10 +55,11 @@ template <class Target>
 std::vector<Target> convert_scalars(std::string_view bytes, ScalarType type, bool swap) {
     std::vector<Target> values(bytes.size() / size_of(type));
     const auto convert = [&]<class Source>(Source) {
-        for (std::size_t i = 0; i < values.size(); ++i)
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const char* at = bytes.data() + i * sizeof(Source);
             // NOLINTNEXTLINE(bugprone-signed-char-misuse): int8 is a number here
-            values[i] =
-                static_cast<Target>(load_scalar<Source>(bytes.data() + i * sizeof(Source), swap));
+            values[i] = static_cast<Target>(load_scalar<Source>(at, swap));
+        }
     };
     switch (type) {
         case ScalarType::int8:
