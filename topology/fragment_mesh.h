@@ -139,6 +139,7 @@ class FragmentMesh {
     bool operator==(const FragmentMesh&) const = default;
 
   private:
+    friend class FragmentParts;
     friend class FragmentUpdate;
 
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
@@ -151,6 +152,7 @@ class FragmentMesh {
                                 ElementId key);
     std::span<const ElementId> fragments_of(const ElementId& carrier) const;
     std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
+    int region_of_carrier(ElementId carrier) const { return regions_[carrier.index()]; }
     std::span<const NodeId> origins_of(ElementId carrier) const;
     std::span<const ElementId> carriers_at(NodeId origin) const;
     Embedding embedding_of(ElementId e, const Vec3& x) const;
@@ -181,7 +183,7 @@ class FragmentMesh {
     std::vector<std::uint8_t> is_node_alive_;
     // By cell of the material.
     std::vector<ElementId> carrier_of_cell_, fragment_of_cell_;
-    // Scratch of FragmentUpdate, -1 between edits: by cell its part, by carrier its first part.
+    // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
     std::vector<std::int32_t> part_of_cell_, first_part_;
 
     // Exceptions: a carrier that is not listed has itself as its only cell and its only fragment.

@@ -28,20 +28,13 @@ void insert_sorted(std::vector<T>& values, const T& value) {
     values.insert(std::upper_bound(values.begin(), values.end(), value), value);
 }
 
-double volume_of(const Mesh& mesh, ElementId e) {
-    std::array<Vec3, max_corners> x;
-    const auto corners = mesh.corners(e);
-    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
-    return signed_volume(mesh.kind(e), {x.data(), corners.size()});
-}
-
 }  // namespace
 
 FragmentChanges FragmentUpdate::run() {
     node_capacity_before_ = fragments_.node_capacity();
     element_capacity_before_ = fragments_.element_capacity();
     follow_cells();
-    join_light_parts();
+    open_carriers_ = parts_.join_light(touched_carriers_);
     assign_fragments();
     assign_nodes();
     return differences();
@@ -82,174 +75,6 @@ void FragmentUpdate::follow_cells() {
     make_sorted_set(touched_carriers_);
 }
 
-FragmentUpdate::PartRange FragmentUpdate::parts_of(ElementId carrier) {
-    std::int32_t& first = fragments_.first_part_[carrier.index()];
-    if (first < 0) {
-        first = static_cast<std::int32_t>(parts_.size());
-        carriers_found_.push_back(carrier);
-        find_parts(carrier);
-    }
-    const auto begin = static_cast<std::size_t>(first);
-    std::size_t end = begin;
-    while (end < parts_.size() && parts_[end].carrier == carrier) ++end;
-    return {begin, end};
-}
-
-std::size_t FragmentUpdate::part_of(ElementId cell) {
-    std::int32_t& part = fragments_.part_of_cell_[cell.index()];
-    if (part < 0) parts_of(fragments_.carrier_of_cell(cell));
-    return static_cast<std::size_t>(part);
-}
-
-void FragmentUpdate::add_part(ElementId carrier, std::vector<ElementId> cells, double volume) {
-    const std::size_t index = parts_.size();
-    for (const ElementId cell : cells)
-        fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
-    Part part;
-    part.carrier = carrier;
-    part.volume = volume;
-    part.master = index;
-    part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
-    // A part that no edit has touched is carried as before.
-    part.fragment = fragments_.fragment_of_cell(cells.front());
-    part.is_element = fragments_.carrier(part.fragment) == carrier;
-    part.cells = std::move(cells);
-    parts_.push_back(std::move(part));
-}
-
-void FragmentUpdate::find_parts(ElementId carrier) {
-    if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole
-        if (material_.is_alive(carrier))
-            add_part(carrier, {carrier}, fragments_.volumes_[carrier.index()]);
-        return;
-    }
-    std::vector<ElementId> cells;
-    for (const ElementId cell : fragments_.cells_of_carrier(carrier))
-        if (material_.is_alive(cell)) cells.push_back(cell);
-    DisjointSet groups(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        for (int f = 0; f < material_.num_faces(cells[i]); ++f) {
-            const ElementId other = material_.neighbor({cells[i], f}).element;
-            if (!other.is_valid() || other > cells[i] ||
-                fragments_.carrier_of_cell(other) != carrier)
-                continue;
-            const auto it = std::lower_bound(cells.begin(), cells.end(), other);
-            groups.join(static_cast<std::int32_t>(i),
-                        static_cast<std::int32_t>(it - cells.begin()));
-        }
-    std::vector<std::vector<ElementId>> members(cells.size());
-    std::vector<double> volumes(cells.size(), 0.0);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto first = static_cast<std::size_t>(groups.find(static_cast<std::int32_t>(i)));
-        members[first].push_back(cells[i]);
-        volumes[first] += volume_of(material_, cells[i]);
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        if (!members[i].empty()) add_part(carrier, std::move(members[i]), volumes[i]);
-}
-
-/// Returns the parts of other carriers that share faces with a part, in the order of their heads.
-const std::vector<FragmentUpdate::Neighbor>& FragmentUpdate::neighbors(std::size_t index) {
-    Part& part = parts_[index];
-    if (part.has_neighbors) return part.neighbors;
-    part.has_neighbors = true;
-    for (const ElementId cell : part.cells)
-        for (int f = 0; f < material_.num_faces(cell); ++f) {
-            const ElementId other = material_.neighbor({cell, f}).element;
-            if (!other.is_valid() || fragments_.carrier_of_cell(other) == part.carrier) continue;
-            const std::size_t neighbor = part_of(other);
-            const double area = part.is_light ? rest_area(material_, {cell, f}) : 0.0;
-            const auto known = std::ranges::find(part.neighbors, neighbor, &Neighbor::part);
-            if (known == part.neighbors.end())
-                part.neighbors.push_back({neighbor, area});
-            else
-                known->area += area;
-        }
-    std::ranges::sort(part.neighbors, {}, [&](const Neighbor& n) { return parts_[n.part].head(); });
-    return part.neighbors;
-}
-
-/// Returns the light parts whose masters the edit may change, in the order of their heads: those of
-/// touched carriers and beside them, and all that are connected with these through light parts or
-/// carriers.
-std::vector<std::size_t> FragmentUpdate::light_cluster() {
-    std::vector<std::size_t> cluster;
-    const auto add = [&](std::size_t part) {
-        if (!parts_[part].is_light || parts_[part].is_in_cluster) return;
-        parts_[part].is_in_cluster = true;
-        cluster.push_back(part);
-    };
-    const auto add_beside = [&](std::size_t part) {
-        for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
-    };
-    for (const ElementId carrier : touched_carriers_)
-        for (auto [part, end] = parts_of(carrier); part < end; ++part) {
-            add(part);
-            add_beside(part);
-        }
-    // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
-    for (std::size_t next = 0; next < cluster.size(); ++next) {
-        add_beside(cluster[next]);
-        // All parts of a carrier are assigned together.
-        for (auto [part, end] = parts_of(parts_[cluster[next]].carrier); part < end; ++part)
-            add(part);
-    }
-    std::ranges::sort(cluster, {}, [&](std::size_t part) { return parts_[part].head(); });
-    return cluster;
-}
-
-// Light parts join, across faces and within their region, the part behind the largest area. First
-// those do that have a neighbour which is an element; then those beside these, and so on. Those
-// that reach none join their largest light neighbour if it is larger. The largest of all becomes an
-// element although it is light.
-void FragmentUpdate::join_light_parts() {
-    std::vector<std::size_t> lights = light_cluster();
-    open_carriers_ = touched_carriers_;
-    for (const std::size_t part : lights) open_carriers_.push_back(parts_[part].carrier);
-    make_sorted_set(open_carriers_);
-    join_in_rounds(lights);
-    join_larger_lights(lights);
-}
-
-void FragmentUpdate::join_in_rounds(std::vector<std::size_t>& lights) {
-    for (const std::size_t part : lights) parts_[part].is_waiting = true;
-    while (!lights.empty()) {
-        std::vector<std::pair<std::size_t, std::size_t>> joined;  // part, master
-        for (const std::size_t part : lights) {
-            const Neighbor* best = nullptr;
-            for (const Neighbor& neighbor : neighbors(part))
-                if (!parts_[neighbor.part].is_waiting && are_in_one_region(neighbor.part, part) &&
-                    (!best || neighbor.area > best->area))
-                    best = &neighbor;
-            if (best) joined.emplace_back(part, parts_[best->part].master);
-        }
-        if (joined.empty()) break;
-        for (const auto& [part, master] : joined) {
-            parts_[part].master = master;
-            parts_[part].is_waiting = false;
-        }
-        std::erase_if(lights, [&](std::size_t part) { return !parts_[part].is_waiting; });
-    }
-}
-
-void FragmentUpdate::join_larger_lights(const std::vector<std::size_t>& lights) {
-    const auto is_larger = [&](std::size_t a, std::size_t b) {
-        if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
-        return parts_[a].head() < parts_[b].head();
-    };
-    for (const std::size_t part : lights) {
-        std::size_t largest = part;
-        for (const Neighbor& neighbor : neighbors(part))
-            if (are_in_one_region(neighbor.part, part) && is_larger(neighbor.part, largest))
-                largest = neighbor.part;
-        parts_[part].master = largest;
-    }
-    // Along masters the volume rises, so that each chain ends at a part that is its own master.
-    for (const std::size_t part : lights)
-        while (parts_[part].master != parts_[parts_[part].master].master)
-            parts_[part].master = parts_[parts_[part].master].master;
-}
-
 ElementId FragmentUpdate::add_fragment(ElementId carrier, ElementId parent) {
     const ElementId e(fragments_.element_capacity());
     fragments_.carriers_.push_back(carrier);
@@ -277,7 +102,7 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
     const std::vector<ElementId> before(listed.begin(), listed.end());
     for (const ElementId e : before) note_corners(e);
     std::vector<ElementId> now;
-    for (auto [i, end] = parts_of(carrier); i < end; ++i) {
+    for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
         Part& part = parts_[i];
         part.is_element = part.master == i;
         if (!part.is_element) continue;
@@ -320,7 +145,7 @@ void FragmentUpdate::carry_cells() {
     for (const ElementRecord& record : changes_.elements_added)
         fragment_before_.emplace_back(record.id, ElementId());
     for (const ElementId carrier : open_carriers_)
-        for (auto [i, end] = parts_of(carrier); i < end; ++i) {
+        for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
             const ElementId to = parts_[parts_[i].master].fragment;
             shares_before_.try_emplace(to, fragments_.share(to));  // a cell may have shrunk
             for (const ElementId cell : parts_[i].cells) {
@@ -385,13 +210,13 @@ NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
 void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
     std::vector<std::size_t> parts;
     for (const ElementId carrier : fragments_.carriers_at(origin))
-        for (auto [part, end] = parts_of(carrier); part < end; ++part) {
+        for (auto [part, end] = parts_.of(carrier); part < end; ++part) {
             parts_[part].local = static_cast<std::int32_t>(parts.size());
             parts.push_back(part);
         }
     DisjointSet connected(parts.size());
     for (const std::size_t part : parts)
-        for (const Neighbor& neighbor : neighbors(part))
+        for (const Neighbor& neighbor : parts_.neighbors(part))
             if (const std::int32_t local = parts_[neighbor.part].local; local >= 0)
                 connected.join(parts_[part].local, local);
     std::vector<Group> found(parts.size());
@@ -539,9 +364,6 @@ FragmentChanges FragmentUpdate::differences() {
         if (now != before)
             result.cells.push_back({cell, fragments_.carrier_of_cell(cell), before, now});
     }
-    for (const ElementId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
-    for (const Part& part : parts_)
-        for (const ElementId cell : part.cells) fragments_.part_of_cell_[cell.index()] = -1;
     return result;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <span>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 
 #include "incise/topology/change_set.h"
 #include "incise/topology/fragment_mesh.h"
+#include "incise/topology/fragment_parts.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
@@ -26,53 +26,16 @@ class FragmentUpdate {
     FragmentChanges run();
 
   private:
-    struct Neighbor {
-        std::size_t part;
-        double area;  // of the shared faces, at rest, m2; only found for light parts
-    };
-    /// Cells of one carrier that hang together inside it.
-    struct Part {
-        ElementId carrier;
-        std::vector<ElementId> cells;     // in ascending order
-        std::vector<Neighbor> neighbors;  // in the order of their heads; see neighbors()
-        double volume = 0.0;              // at rest, m3
-        std::size_t master = 0;           // in an open carrier: the part whose fragment carries it
-        ElementId fragment;               // that carries it
-        std::int32_t local = -1;          // scratch of find_groups()
-        bool is_light = false;
-        bool is_element = false;     // carried by a fragment of its own carrier
-        bool has_neighbors = false;  // found
-        bool is_in_cluster = false;  // see light_cluster()
-        bool is_waiting = false;     // see join_in_rounds()
-        ElementId head() const { return cells.front(); }
-    };
+    using Part = FragmentParts::Part;
+    using Neighbor = FragmentParts::Neighbor;
     /// Parts that are connected at a node before any cut, with the node that they get.
     struct Group {
         NodeId origin;
         NodeId before;                     // the lowest node that they had there; invalid if none
         std::vector<ElementId> fragments;  // the elements among them, in ascending order
     };
-    /// The parts from `begin` to before `end`.
-    struct PartRange {
-        std::size_t begin, end;
-    };
-
     void follow_cells();
-    PartRange parts_of(ElementId carrier);
-    std::size_t part_of(ElementId cell);
-    void find_parts(ElementId carrier);
-    void add_part(ElementId carrier, std::vector<ElementId> cells, double volume);
     bool is_added(ElementId cell) const;
-    const std::vector<Neighbor>& neighbors(std::size_t index);
-
-    void join_light_parts();
-    std::vector<std::size_t> light_cluster();
-    bool are_in_one_region(std::size_t a, std::size_t b) const {
-        return fragments_.regions_[parts_[a].carrier.index()] ==
-               fragments_.regions_[parts_[b].carrier.index()];
-    }
-    void join_in_rounds(std::vector<std::size_t>& lights);
-    void join_larger_lights(const std::vector<std::size_t>& lights);
 
     void assign_fragments();
     void assign_fragments_of(ElementId carrier);
@@ -103,8 +66,7 @@ class FragmentUpdate {
 
     std::vector<ElementId> touched_carriers_;  // in ascending order
     std::vector<ElementId> open_carriers_;     // these, and those whose parts are joined anew
-    std::vector<ElementId> carriers_found_;    // whose parts are known
-    std::deque<Part> parts_;                   // those of a carrier follow each other
+    FragmentParts parts_{fragments_, material_};
 
     std::vector<std::pair<ElementId, ElementId>> fragment_before_;  // cell, and what carried it
     std::unordered_map<ElementId, std::vector<NodeId>> corners_before_;  // of fragments that change

@@ -1,4 +1,4 @@
-// The loop: when it steps, when it tells, what it keeps body_totals of.
+// The loop of a run: when it steps, what it reports, and what its ledger records.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/runner/simulation.h"
 
@@ -134,26 +134,6 @@ TEST(Simulation, FramesFallOnMultiplesUpToTheEnd) {
                 last = end;
             }
         }
-}
-
-TEST(Simulation, TakesThePolicyOfStepsThatItIsGiven) {
-    const Scenario scenario = scenario_of(soft_cube + dynamics(0.05));
-    Simulation even(scenario);
-    Recorder even_record, half_record;
-    even.add_observer(even_record);
-    run(even);
-    Simulation half(scenario, [](const StepSituation& s) {
-        const double end = even_steps(s);
-        return end < s.stop ? 0.5 * (s.time + end) : end;
-    });
-    half.add_observer(half_record);
-    run(half);
-    EXPECT_GT(half.num_steps(), even.num_steps());
-    EXPECT_EQ(half_record.frame_times, even_record.frame_times);
-    Simulation odd(scenario, [](const StepSituation& s) { return s.stop + 1.0; });
-    EXPECT_THROW(odd.step(), InputError);
-    Simulation stuck(scenario, [](const StepSituation& s) { return s.time; });
-    EXPECT_THROW(stuck.step(), InputError);
 }
 
 TEST(Simulation, AutomaticStepsFollowEditsBelowTheBound) {

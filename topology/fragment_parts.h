@@ -1,0 +1,83 @@
+// The parts of carriers near an edit, and the fragments that carry light ones. Internal to
+// topology. SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "incise/topology/fragment_mesh.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::topology {
+
+/// Returns the volume of an element at rest, m3.
+double volume_of(const Mesh& mesh, ElementId e);
+
+/// Finds the parts of carriers as they are asked for. A part consists of the cells of one carrier
+/// that hang together inside it. Uses scratch of the fragment mesh while it lives.
+class FragmentParts {
+  public:
+    struct Neighbor {
+        std::size_t part;
+        double area;  // of the shared faces, at rest, m2; only found for light parts
+    };
+    struct Part {
+        ElementId carrier;
+        std::vector<ElementId> cells;     // in ascending order
+        std::vector<Neighbor> neighbors;  // see neighbors()
+        double volume = 0.0;              // at rest, m3
+        std::size_t master = 0;           // the part whose fragment carries it; see join_light()
+        ElementId fragment;               // that carries it
+        std::int32_t local = -1;          // scratch of users
+        bool is_light = false;
+        bool is_element = false;     // carried by a fragment of its own carrier
+        bool has_neighbors = false;  // found
+        bool is_in_cluster = false;  // see light_cluster()
+        bool is_waiting = false;     // see join_in_rounds()
+        ElementId head() const { return cells.front(); }
+    };
+    /// The parts from `begin` to before `end`.
+    struct Range {
+        std::size_t begin, end;
+    };
+
+    /// @pre  the fragment mesh has the lists of cells after the edit
+    FragmentParts(FragmentMesh& fragments, const Mesh& material)
+        : fragments_(fragments), material_(material) {}
+    ~FragmentParts();
+    FragmentParts(const FragmentParts&) = delete;
+    FragmentParts& operator=(const FragmentParts&) = delete;
+
+    Part& operator[](std::size_t part) { return parts_[part]; }
+    /// Returns the parts of a carrier. References to parts stay valid.
+    Range of(ElementId carrier);
+    /// Returns the part of a living cell.
+    std::size_t of_cell(ElementId cell);
+    /// Returns the parts of other carriers that share faces with a part, in the order of their
+    /// heads.
+    const std::vector<Neighbor>& neighbors(std::size_t index);
+
+    /// Sets the masters of all parts of touched carriers, and of the light parts whose masters the
+    /// edit may change. Returns the carriers of these parts, in ascending order.
+    std::vector<ElementId> join_light(const std::vector<ElementId>& touched);
+
+  private:
+    void find(ElementId carrier);
+    void add(ElementId carrier, std::vector<ElementId> cells, double volume);
+    std::vector<std::size_t> light_cluster(const std::vector<ElementId>& touched);
+    bool are_in_one_region(std::size_t a, std::size_t b) const {
+        return fragments_.region_of_carrier(parts_[a].carrier) ==
+               fragments_.region_of_carrier(parts_[b].carrier);
+    }
+    void join_in_rounds(std::vector<std::size_t>& lights);
+    void join_larger_lights(const std::vector<std::size_t>& lights);
+
+    FragmentMesh& fragments_;
+    const Mesh& material_;
+    std::vector<ElementId> carriers_found_;  // whose parts are known
+    std::deque<Part> parts_;                 // those of a carrier follow each other
+};
+
+}  // namespace incise::topology
