@@ -31,11 +31,10 @@ void measure(benchmark::State& state, Edit edit) {
             for (std::size_t i = 0; i < batch; ++i) edit(mesh, transaction, ElementId(first + i));
             changes = transaction.commit();
         }
-        model.apply(model.mesh(), changes);
+        const auto done = model.apply(mesh, changes);
         state.PauseTiming();
-        const auto back = topology::inverse(changes);
-        topology::replay(mesh, back);
-        model.apply(model.mesh(), back);
+        topology::replay(mesh, topology::inverse(changes));
+        model.undo(mesh, changes, done);
         first = (first + batch) % (mesh.element_capacity() - batch);
         state.ResumeTiming();
     }
@@ -119,23 +118,23 @@ void split(benchmark::State& state) {
     double crossed = 0.0;
     for (auto _ : state) {
         state.PauseTiming();
-        cutting::Cutter cutter(mesh, model.positions(), cutting::uncut_body(mesh));
+        cutting::Cutter cutter(mesh, model.mesh_positions(), cutting::uncut_body(mesh));
         const cutting::CutId cut = cutter.begin_cut(cutting::default_snap);
         state.ResumeTiming();
-        std::vector<topology::ChangeSet> history;
+        std::vector<std::pair<topology::ChangeSet, physics::ModelChanges>> history;
         for (int step = 0; step < num_steps; ++step) {
-            auto done = cutter.split(cut, mesh, model.positions(), edge(step), edge(step + 1));
-            model.apply(model.mesh(), done.changes);
+            auto done = cutter.split(cut, mesh, model.mesh_positions(), edge(step), edge(step + 1));
+            auto of_model = model.apply(mesh, done.changes);
             cutter.apply(mesh, done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);
-            history.push_back(std::move(done.changes));
+            history.emplace_back(std::move(done.changes), std::move(of_model));
         }
         state.PauseTiming();
         for (; !history.empty(); history.pop_back()) {
-            if (history.back().is_empty()) continue;
-            const auto back = topology::inverse(history.back());
-            topology::replay(mesh, back);
-            model.apply(model.mesh(), back);
+            const auto& [changes, of_model] = history.back();
+            if (changes.is_empty()) continue;
+            topology::replay(mesh, topology::inverse(changes));
+            model.undo(mesh, changes, of_model);
         }
         state.ResumeTiming();
     }

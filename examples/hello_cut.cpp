@@ -44,6 +44,6 @@ int main() {
     std::cout << "elements: " << edited.num_elements() << "\ncomponents: " << num_components
               << "\ncut area, m2: " << cut_area
               << "\nkinetic energy, J: " << world.model().totals().kinetic_energy << '\n';
-    io::write_mesh("hello_cut.vtu", topology::to_mesh_data(edited, world.model().positions()));
+    io::write_mesh("hello_cut.vtu", topology::to_mesh_data(edited, world.positions()));
     return num_components == 2 ? 0 : 1;
 }

@@ -22,7 +22,7 @@ struct Picture {
     std::size_t num_uploaded = 0;
 
     void update(sim::World& world) {
-        const auto positions = world.model().positions();
+        const auto positions = world.positions();
         points.assign(positions.begin(), positions.end());
         const topology::BoundarySurface& surface = world.surface();
         const auto changes = world.take_surface_changes();

@@ -46,44 +46,54 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     : fields_(fields.begin(), fields.end()) {
     const topology::Mesh& mesh = model.mesh();
     std::vector<NodeId> nodes;
-    frame_.mesh = topology::to_mesh_data(mesh, model.positions(), &nodes, &elements_);
+    const auto positions = model.mesh_positions();
+    frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &elements_);
     frame_.time = time;
 
     auto& points = frame_.point_fields;
     const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
     if (has(scenario::Field::displacement)) {
         points.push_back(field<float>(name(scenario::Field::displacement), 3, nodes, [&](NodeId n) {
-            return Vec3(model.positions()[n.index()] - mesh.rest_position(n));
+            return Vec3(positions[n.index()] - mesh.rest_position(n));
         }));
         frame_.active_vectors = name(scenario::Field::displacement);
     }
     points.push_back(field<double>("rest_position", 3, nodes, rest));
     if (has(scenario::Field::velocity))
-        points.push_back(field<float>(name(scenario::Field::velocity), 3, nodes,
-                                      [&](NodeId n) { return model.velocities()[n.index()]; }));
-    if (has(scenario::Field::force))
+        points.push_back(field<float>(name(scenario::Field::velocity), 3, nodes, [&](NodeId n) {
+            return model.mesh_velocities()[n.index()];
+        }));
+    if (has(scenario::Field::force)) {
+        const auto forces = model.mesh_elastic_forces();
         points.push_back(field<float>(name(scenario::Field::force), 3, nodes,
-                                      [&](NodeId n) { return model.elastic_forces()[n.index()]; }));
-    if (has(scenario::Field::mass))
+                                      [&](NodeId n) { return forces[n.index()]; }));
+    }
+    if (has(scenario::Field::mass)) {
+        const auto masses = model.mesh_masses();
         points.push_back(field<double>(name(scenario::Field::mass), 1, nodes,
-                                       [&](NodeId n) { return model.masses()[n.index()]; }));
+                                       [&](NodeId n) { return masses[n.index()]; }));
+    }
     points.push_back(
         field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
 
     auto& cells = frame_.cell_fields;
     cells.push_back(field<std::int64_t>("element_id", 1, elements_,
                                         [&](ElementId e) { return mesh.label(e); }));
+    const topology::FragmentMesh& fragments = model.fragments();
     if (const auto fibres = model.fibres(); !fibres.empty())
-        cells.push_back(
-            field<double>("fibre", 3, elements_, [&](ElementId e) { return fibres[e.index()]; }));
+        cells.push_back(field<double>("fibre", 3, elements_, [&](ElementId e) {
+            return fibres[fragments.fragment_of_cell(e).index()];
+        }));
     if (has(scenario::Field::J) || has(scenario::Field::energy_density) ||
         has(scenario::Field::stress) || has(scenario::Field::von_mises))
         snapshot_.emplace(model);
+    if (snapshot_)
+        for (const ElementId e : elements_) fragments_.push_back(fragments.fragment_of_cell(e));
 }
 
 io::Frame FrameBuilder::finish() {
     if (!snapshot_) return std::move(frame_);
-    const auto results = snapshot_->results(elements_);
+    const auto results = snapshot_->results(fragments_);
     const auto add = [&](scenario::Field kind, int components, auto value) {
         if (has(kind))
             frame_.cell_fields.push_back(field<float>(name(kind), components, results, value));

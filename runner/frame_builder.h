@@ -37,7 +37,7 @@ class FrameBuilder {
     bool has(scenario::Field field) const;
 
     std::vector<scenario::Field> fields_;
-    std::vector<ElementId> elements_;                   // by row
+    std::vector<ElementId> elements_, fragments_;       // by row
     std::optional<physics::ElementSnapshot> snapshot_;  // if a field needs it
     io::Frame frame_;
 };

@@ -145,11 +145,9 @@ void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
             shape = &tool.shape;
     std::ostringstream text;
     text.precision(3);
-    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left "
-         << (shape && !scenario::divides(*shape) ? "stiff elements with so little mass"
-                                                 : "elements so thin")
-         << " that the stable step fell from " << warned_step_ << " to " << now
-         << " s: the run takes " << warned_step_ / now << " times as long from here on";
+    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left stiff "
+         << "elements with so little mass that the stable step fell from " << warned_step_ << " to "
+         << now << " s: the run takes " << warned_step_ / now << " times as long from here on";
     if (shape) text << "; " << scenario::for_longer_steps(*shape);
     warnings_.push_back(text.str());
     warned_step_ = now;
@@ -161,7 +159,7 @@ void Simulation::warn_of_lost_elements() {
     constexpr double least_volume_ratio = 0.01;
     std::size_t num_crushed = 0;
     if (model().min_volume_ratio() < least_volume_ratio)
-        for (const ElementId e : mesh().elements())
+        for (const ElementId e : model().fragments().elements())
             num_crushed += model().element_result(e).volume_ratio < least_volume_ratio;
     std::ostringstream text;
     text << "at the end, t = " << time() << " s, ";
@@ -171,7 +169,7 @@ void Simulation::warn_of_lost_elements() {
              << "): the body has been pressed through itself, which tissue cannot; see min_J in "
                 "history.csv for when, and use smaller motions or loads, a finer mesh, or law = "
                 "\"stable-neo-hookean\"";
-    } else if (const auto winding = physics::find_winding(mesh(), model().positions());
+    } else if (const auto winding = physics::find_winding(mesh(), world_.positions());
                winding.num_edges > 0) {
         text << "the body is wound up: round " << winding.num_edges
              << (winding.num_edges == 1 ? " edge" : " edges")

@@ -202,7 +202,7 @@ bool divides(const cutting::ToolShape& shape) {
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {
-    if (divides(shape)) return "use a larger tool.snap";
+    if (divides(shape)) return "move the cut away from the stiffest elements";
     const std::string extent = std::holds_alternative<Carver>(shape) ? "shape" : "edge";
     return "change tool." + extent +
            " or tool.path, so that it takes those as well or leaves "

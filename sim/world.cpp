@@ -129,8 +129,8 @@ ConstraintId World::grasp(std::string name, std::vector<NodeId> nodes, const Pos
         if (!n.is_valid() || n.index() >= p.mesh.node_capacity())
             throw InputError("grasp '" + name + "': there is no node " + std::to_string(n.value));
     if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
-    const ConstraintId id = add_constraint(
-        physics::make_grip(std::move(name), std::move(nodes), p.model.positions(), pose));
+    const ConstraintId id =
+        add_constraint(physics::make_grip(std::move(name), std::move(nodes), pose));
     p.grasps[id.index] = {pose, pose};
     return id;
 }
@@ -204,6 +204,9 @@ void World::set_num_threads(int n) {
 }
 
 const Mesh& World::mesh() const { return parts_->mesh; }
+std::span<const Vec3> World::positions() const { return parts_->model.mesh_positions(); }
+std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velocities(); }
+std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
 const Ledger& World::ledger() const { return parts_->ledger; }

@@ -83,8 +83,9 @@ struct ToolDef {
 /// One edit of the mesh by a tool.
 struct Edit {
     ToolId tool;
-    EditRecord record;            ///< conservation record of the edit
-    topology::ChangeSet changes;  ///< the changes of the mesh
+    EditRecord record;               ///< conservation record of the edit
+    topology::ChangeSet changes;     ///< the changes of the mesh
+    physics::ModelChanges of_model;  ///< what they changed in the model
 };
 
 /// The state of a tool after a step.
@@ -223,13 +224,22 @@ class World {
     void set_num_threads(int n);
 
     const topology::Mesh& mesh() const;
+    /// Returns the positions, m, and the velocities, m/s, of the nodes of the mesh, by id. Dead
+    /// nodes have values without meaning.
+    /// @lifetime Until the world is stepped, restored or destroyed.
+    std::span<const Vec3> positions() const;
+    std::span<const Vec3> velocities() const;
+    /// Returns the mass of the material at each node of the mesh, kg, by id. Cost: O(n).
+    std::vector<double> masses() const;
+    /// Returns the model. Its arrays are by node of its fragments: after a cut, these nodes have
+    /// other ids than those of the mesh.
     const physics::Model& model() const;
     const cutting::Cutter& cutter() const;
     const Ledger& ledger() const;
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 6;
+    static constexpr std::uint32_t state_format = 7;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, tools and cuts in progress. The materials and the solver are not

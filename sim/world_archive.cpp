@@ -32,7 +32,7 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
       integrator(make_integrator(former.solver)),
       solver(former.solver),
       ledger(model),
-      cutter(mesh, model.positions()) {
+      cutter(mesh, model.mesh_positions()) {
     integrator->restore(ar, model);
     ledger.restore(ar);
     ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);

@@ -167,8 +167,9 @@ void require_sound(const physics::Constraint& constraint, const Mesh& mesh) {
     require_curve(constraint.displacement, what + ": its displacement");
     require_curve(constraint.angle, what + ": its angle");
     require_curve(constraint.grip, what + ": its grip");
-    if (!std::ranges::all_of(constraint.gripped, is_finite, &std::pair<const NodeId, Vec3>::second))
-        throw InputError(what + ": the position of a node in its grip is not finite");
+    if (!constraint.gripped.empty())
+        throw InputError(what +
+                         ": its positions in a grip must be empty, since the body finds them");
     if (!is_finite(constraint.point)) throw InputError(what + ": its point is not finite");
     if (!(std::abs(constraint.axis.norm() - 1.0) < 1e-6))
         throw InputError(what + ": its axis has a length of " +

@@ -67,7 +67,7 @@ World::Parts::Parts(WorldDef def)
       integrator(make_integrator(def.solver)),
       solver(def.solver),
       ledger(model),
-      cutter(mesh, model.positions(), uncut_body(model)),
+      cutter(mesh, model.mesh_positions(), uncut_body(model)),
       constraints("constraint", model.num_constraints()),
       loads("load", model.loads().all().size()) {
     model.set_num_threads(def.num_threads);
@@ -79,11 +79,11 @@ void World::Parts::step_to(double end) {
     report.edits.clear();
     report.tools.clear();
     const auto begin_motion = [&] {
-        if (is_any_tool_present()) cutter.begin_motion(model.positions());
+        if (is_any_tool_present()) cutter.begin_motion(model.mesh_positions());
     };
     const auto end_motion = [&] {
         has_moved = true;
-        cutter.end_motion(mesh, model.positions(), model.largest_move());
+        cutter.end_motion(mesh, model.mesh_positions(), model.largest_mesh_move());
     };
 
     if (loads_have_changed) model.compute_forces(time);
@@ -139,15 +139,16 @@ void World::Parts::cut_with(ToolId id, double end) {
                 tool.motion[i] = tool.edge_after[i] - tool.edge_before[i];
         }
         const cutting::BladeEnd blade(tool.edge_after, tool.motion);
-        follow(id,
-               carry_out([&] { return cutter.end_cut(*tool.cut, mesh, model.positions(), blade); }),
+        follow(id, carry_out([&] {
+                   return cutter.end_cut(*tool.cut, mesh, model.mesh_positions(), blade);
+               }),
                end);
     }
     tool.is_present = tool.is_leaving = false;
 }
 
 cutting::Split World::Parts::split_with(Tool& tool) {
-    const auto now = model.positions();
+    const auto now = model.mesh_positions();
     if (const auto* carver = std::get_if<Carver>(&tool.def.shape))
         return cutter.carve(mesh, now, carver->shape, tool.pose, tool.target);
     if (const auto* plane = std::get_if<cutting::PlaneCut>(&tool.def.shape))
@@ -173,12 +174,12 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     const BodyTotals before = has_moved ? ledger.body_totals() : ledger.last();
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);
-    model.apply(mesh, changes);
+    physics::ModelChanges of_model = model.apply(mesh, changes);
     cutter.apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
     EditRecord record =
         ledger.record(end, num_steps, tools[id.index].def.name, done, before, mass_removed);
-    report.edits.push_back({id, std::move(record), std::move(done.changes)});
+    report.edits.push_back({id, std::move(record), std::move(done.changes), std::move(of_model)});
 }
 
 }  // namespace incise::sim

@@ -6,9 +6,9 @@
 namespace incise::topology {
 
 bool ChangeSet::is_empty() const {
-    return nodes_added.empty() && nodes_removed.empty() && elements_added.empty() &&
-           elements_removed.empty() && rewired.empty() && faces_opened.empty() &&
-           faces_closed.empty();
+    return epoch_before == epoch_after && nodes_added.empty() && nodes_removed.empty() &&
+           elements_added.empty() && elements_removed.empty() && rewired.empty() &&
+           faces_opened.empty() && faces_closed.empty();
 }
 
 ChangeSet inverse(const ChangeSet& changes) {

@@ -80,7 +80,8 @@ struct ChangeSet {
     std::vector<Rewiring> rewired;
     std::vector<FacePair> faces_opened, faces_closed;
 
-    /// True if the edit changed nothing.
+    /// True if nothing was edited. The record of an edit can have empty lists, but it leads to
+    /// another epoch.
     bool is_empty() const;
     bool operator==(const ChangeSet&) const = default;
     static void archive(auto& ar, auto& self) {

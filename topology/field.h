@@ -31,10 +31,10 @@ template <class T>
 class NodeField {
   public:
     /// Gives every node the same value.
-    NodeField(const Mesh& mesh, const T& value)
+    NodeField(const EditedMesh auto& mesh, const T& value)
         : epoch_(mesh), values_(mesh.node_capacity(), value) {}
     /// @param values  by node id
-    NodeField(const Mesh& mesh, std::span<const T> values)
+    NodeField(const EditedMesh auto& mesh, std::span<const T> values)
         : epoch_(mesh), values_(values.begin(), values.end()) {}
 
     const T& operator[](NodeId n) const { return values_[n.index()]; }
@@ -48,7 +48,7 @@ class NodeField {
     /// Follows an edit. Only the record is read, so that several edits can be followed one after
     /// the other when the mesh has already been edited further.
     /// Throws InputError for an edit out of turn. Cost: proportional to the nodes added.
-    void apply(const Mesh&, const ChangeSet& changes) {
+    void apply(const EditedMesh auto&, const ChangeSet& changes) {
         if (changes.is_empty()) return;
         epoch_.advance(changes, "field of nodes");
         values_.resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
@@ -74,10 +74,10 @@ template <class T>
 class ElementField {
   public:
     /// Gives every element the same value.
-    ElementField(const Mesh& mesh, const T& value)
+    ElementField(const EditedMesh auto& mesh, const T& value)
         : epoch_(mesh), values_(mesh.element_capacity(), value) {}
     /// @param values  by element id
-    ElementField(const Mesh& mesh, std::vector<T> values)
+    ElementField(const EditedMesh auto& mesh, std::vector<T> values)
         : epoch_(mesh), values_(std::move(values)) {}
 
     const T& operator[](ElementId e) const { return values_[e.index()]; }
@@ -88,7 +88,7 @@ class ElementField {
     /// Follows an edit. Only the record is read, so that several edits can be followed one after
     /// the other when the mesh has already been edited further.
     /// Throws InputError for an edit out of turn. Cost: proportional to the elements added.
-    void apply(const Mesh&, const ChangeSet& changes) {
+    void apply(const EditedMesh auto&, const ChangeSet& changes) {
         if (changes.is_empty()) return;
         epoch_.advance(changes, "field of elements");
         values_.resize(std::max(changes.element_capacity_before, changes.element_capacity_after));

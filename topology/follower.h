@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 
@@ -10,6 +11,12 @@
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
+
+/// A mesh with edits that can be followed: Mesh, or FragmentMesh.
+template <class T>
+concept EditedMesh = requires(const T& mesh) {
+    { mesh.epoch() } -> std::same_as<std::uint64_t>;
+};
 
 /// A type that keeps values of a mesh and follows its edits. apply(mesh, changes) is called for
 /// every edit, in order, with the mesh after the edit.
@@ -21,7 +28,8 @@ concept Follower = requires(T& follower, const Mesh& mesh, const ChangeSet& chan
 /// The epoch of the last edit that a follower has followed.
 class FollowedEpoch {
   public:
-    explicit FollowedEpoch(const Mesh& mesh) : epoch_(mesh.epoch()) {}
+    explicit FollowedEpoch(const EditedMesh auto& mesh) : epoch_(mesh.epoch()) {}
+    explicit FollowedEpoch(std::uint64_t epoch) : epoch_(epoch) {}
 
     std::uint64_t value() const { return epoch_; }
     bool operator==(const FollowedEpoch&) const = default;
@@ -37,7 +45,7 @@ class FollowedEpoch {
     /// Advances to the end of an edit, for a follower that also reads the mesh. Throws InputError,
     /// and changes nothing, if the edit does not begin at the present epoch, or if `mesh` is not at
     /// the epoch at which the edit ends.
-    void advance(const Mesh& mesh, const ChangeSet& changes, const char* who) {
+    void advance(const EditedMesh auto& mesh, const ChangeSet& changes, const char* who) {
         if (changes.epoch_before != epoch_ || changes.epoch_after != mesh.epoch())
             refuse(changes, who, " and the mesh at " + std::to_string(mesh.epoch()));
         epoch_ = changes.epoch_after;

@@ -2,50 +2,84 @@
 #include "incise/topology/fragment_mesh.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 
 #include "incise/topology/fragment_update.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::topology {
 
+namespace {
+
+/// Returns for each node the lowest one with the same rest position.
+std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions) {
+    std::vector<NodeId> nodes;
+    for (std::size_t n = 0; n < rest_positions.size(); ++n) nodes.emplace_back(n);
+    const auto position = [&](NodeId n) -> const Vec3& { return rest_positions[n.index()]; };
+    std::ranges::sort(nodes, [&](NodeId a, NodeId b) {
+        const Vec3 &x = position(a), &y = position(b);
+        for (int c = 0; c < 3; ++c)
+            if (x[c] != y[c]) return x[c] < y[c];
+        return a < b;
+    });
+    std::vector<NodeId> lowest(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const bool is_first = i == 0 || position(nodes[i - 1]) != position(nodes[i]);
+        lowest[nodes[i].index()] = is_first ? nodes[i] : lowest[nodes[i - 1].index()];
+    }
+    return lowest;
+}
+
+}  // namespace
+
 FragmentMesh::FragmentMesh(const Mesh& material, double light_share)
-    : light_share_(light_share), epoch_(material) {
-    std::vector<Vec3> x;
-    std::vector<std::size_t> num_carriers(material.node_capacity() + 1, 0);
+    : FragmentMesh(light_share, FollowedEpoch(material)) {
+    rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
+    origins_ = lowest_at_same_position(rest_positions_);
+    num_origins_ = origins_.size();
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
         const ElementId e(i);
         const auto corners = material.corners(e);
-        x.clear();
-        for (const NodeId n : corners) x.push_back(material.rest_position(n));
         kinds_.push_back(material.kind(e));
         regions_.push_back(material.region(e));
-        volumes_.push_back(signed_volume(material.kind(e), x));
-        origins_of_carrier_.insert(origins_of_carrier_.end(), corners.begin(), corners.end());
+        for (const NodeId n : corners) origins_of_carrier_.push_back(origins_[n.index()]);
+        corners_.insert(corners_.end(), corners.begin(), corners.end());
         origin_begin_.push_back(origins_of_carrier_.size());
         carriers_.push_back(e);
         is_alive_.push_back(material.is_alive(e) ? 1 : 0);
-        num_elements_ += material.is_alive(e) ? 1 : 0;
         shares_.push_back(1.0);
         carrier_of_cell_.push_back(e);
         fragment_of_cell_.push_back(e);
-        if (material.is_alive(e))
-            for (const NodeId n : corners) ++num_carriers[n.index() + 1];
     }
     corner_begin_ = origin_begin_;
-    corners_ = origins_of_carrier_;
-    for (std::size_t i = 0; i < material.node_capacity(); ++i) {
-        origins_.emplace_back(i);
+    for (std::size_t i = 0; i < material.node_capacity(); ++i)
         is_node_alive_.push_back(material.is_alive(NodeId(i)) ? 1 : 0);
-        num_carriers[i + 1] += num_carriers[i];
-    }
-    num_nodes_ = material.num_nodes();
+    complete();
+}
+
+void FragmentMesh::complete() {
+    num_nodes_ = static_cast<std::size_t>(std::ranges::count(is_node_alive_, 1));
+    num_elements_ = static_cast<std::size_t>(std::ranges::count(is_alive_, 1));
     first_part_.assign(kinds_.size(), -1);
-    part_of_cell_.assign(kinds_.size(), -1);
-    rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
-    carrier_begin_ = num_carriers;
-    carriers_at_.resize(carrier_begin_.back());
-    for (const ElementId e : material.elements())
-        for (const NodeId n : material.corners(e)) carriers_at_[num_carriers[n.index()]++] = e;
+    part_of_cell_.assign(carrier_of_cell_.size(), -1);
+    std::vector<std::size_t> end(num_origins_ + 1, 0);  // of the list of each node
+    std::vector<Vec3> x;
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+        x.clear();
+        for (const NodeId n : origins_of(ElementId(i))) {
+            x.push_back(rest_position(n));
+            if (!was_never_alive(ElementId(i))) ++end[n.index() + 1];
+        }
+        volumes_.push_back(signed_volume(kinds_[i], x));
+    }
+    for (std::size_t i = 0; i < num_origins_; ++i) end[i + 1] += end[i];
+    carrier_begin_ = end;
+    carriers_at_.resize(end.back());
+    for (std::size_t i = 0; i < kinds_.size(); ++i)
+        if (!was_never_alive(ElementId(i)))
+            for (const NodeId n : origins_of(ElementId(i)))
+                carriers_at_[end[n.index()]++] = ElementId(i);
 }
 
 FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& changes) {
@@ -182,6 +216,12 @@ void FragmentMesh::star(NodeId n, std::vector<ElementId>& elements) const {
     std::sort(elements.begin(), elements.end());
 }
 
+ElementId FragmentMesh::incident_element(NodeId n) const {
+    std::vector<ElementId> elements;
+    star(n, elements);
+    return elements.empty() ? ElementId() : elements.front();
+}
+
 Embedding FragmentMesh::embedding(const Mesh& material, NodeId n) const {
     std::vector<ElementId> cells;
     material.star(n, cells);
@@ -191,29 +231,52 @@ Embedding FragmentMesh::embedding(const Mesh& material, NodeId n) const {
         if (!lowest.is_valid() || e < lowest) lowest = e;
         if (is_at_home(cell) && (!at_home.is_valid() || e < at_home)) at_home = e;
     }
-    return embedding_of(at_home.is_valid() ? at_home : lowest, material.rest_position(n));
+    return embedding_in(at_home.is_valid() ? at_home : lowest, material.rest_position(n));
 }
 
-Embedding FragmentMesh::embedding_of(ElementId e, const Vec3& x) const {
-    Embedding result{e, {}, {}, 0};
+Embedding FragmentMesh::embedding_in(ElementId e, const Vec3& x) const {
+    Embedding result{e, {}, weights_in_carrier(carrier(e), x), 0};
     const auto nodes = corners(e);
-    for (const NodeId n : nodes)
-        if (rest_position(n) == x) {
-            result.nodes[0] = n;
-            result.weights[0] = 1.0;
-            result.count = 1;
-            return result;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (rest_position(nodes[k]) != x) continue;
+        result.nodes[0] = nodes[k];
+        result.weights = {1.0};
+        result.count = 1;
+        return result;
+    }
+    std::copy(nodes.begin(), nodes.end(), result.nodes.begin());
+    result.count = static_cast<int>(nodes.size());
+    return result;
+}
+
+std::array<double, max_corners> FragmentMesh::weights_in_carrier(ElementId carrier,
+                                                                 const Vec3& x) const {
+    std::array<double, max_corners> weights{};
+    const auto nodes = origins_of(carrier);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        if (rest_position(nodes[k]) == x) {
+            weights[k] = 1.0;
+            return weights;
         }
     // Only tetrahedra are divided.
+    assert(nodes.size() == 4);
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)
         edges.col(k) =
             rest_position(nodes[static_cast<std::size_t>(k) + 1]) - rest_position(nodes[0]);
     const Vec3 local = edges.partialPivLu().solve(x - rest_position(nodes[0]));
-    result.weights = {1.0 - local.sum(), local[0], local[1], local[2]};
-    std::copy(nodes.begin(), nodes.end(), result.nodes.begin());
-    result.count = 4;
-    return result;
+    weights = {1.0 - local.sum(), local[0], local[1], local[2]};
+    // A point on a face of the carrier depends on the corners of this face only.
+    constexpr double rounding = 1e-13;
+    std::size_t largest = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (std::abs(weights[k]) < rounding) weights[k] = 0.0;
+        if (weights[k] > weights[largest]) largest = k;
+    }
+    double others = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) others += k == largest ? 0.0 : weights[k];
+    weights[largest] = 1.0 - others;
+    return weights;
 }
 
 }  // namespace incise::topology

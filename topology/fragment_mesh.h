@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,8 @@ struct ShareChange {
 struct CarriedCell {
     ElementId cell, carrier;
     ElementId from, to;
+    /// True if that fragment is none of its own carrier: the cell is or was a part of a light one.
+    bool was_away = false, is_away = false;
     bool operator==(const CarriedCell&) const = default;
 };
 
@@ -42,6 +45,12 @@ struct FragmentChanges {
     ChangeSet mesh;
     std::vector<ShareChange> shares;  ///< in ascending order of fragments
     std::vector<CarriedCell> cells;   ///< in ascending order of cells
+    /// True if a light fragment joined another one or parted from it. Then other nodes carry a part
+    /// of the mass.
+    bool has_joins() const {
+        return std::ranges::any_of(
+            cells, [](const CarriedCell& cell) { return cell.was_away || cell.is_away; });
+    }
     bool operator==(const FragmentChanges&) const = default;
 };
 
@@ -88,6 +97,8 @@ class FragmentMesh {
     /// Cost: proportional to the edit.
     void undo(const Mesh& material, const FragmentChanges& changes);
 
+    /// Returns the epoch of the material that the fragments are those of.
+    std::uint64_t epoch() const { return epoch_.value(); }
     std::size_t node_capacity() const { return origins_.size(); }
     std::size_t element_capacity() const { return carriers_.size(); }
     bool is_alive(NodeId n) const { return is_node_alive_[n.index()] != 0; }
@@ -112,10 +123,17 @@ class FragmentMesh {
     double share(ElementId e) const { return shares_[e.index()]; }
     /// Returns the volume of the carrier at rest, m3.
     double carrier_volume(ElementId e) const { return volumes_[carriers_[e.index()].index()]; }
+    /// Returns the volume of the material that the fragment carries, at rest, m3.
+    double volume(ElementId e) const { return share(e) * carrier_volume(e); }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
+    /// Returns the node before any cut that the node is, or of which it is a copy: an id of the
+    /// material, too. Of several ones with the same rest position, it is the lowest.
+    NodeId origin(NodeId n) const { return origins_[n.index()]; }
     /// Writes the fragments with the node as a corner to `elements`, in ascending order.
     void star(NodeId n, std::vector<ElementId>& elements) const;
+    /// Returns the lowest fragment with the node as a corner; invalid for a dead node.
+    ElementId incident_element(NodeId n) const;
 
     /// Returns the carrier of a fragment: the element that the body had before any cut.
     ElementId carrier(ElementId e) const { return carriers_[e.index()]; }
@@ -135,12 +153,30 @@ class FragmentMesh {
     /// fragments at the node it is in the lowest one that has cells of its own carrier there, or
     /// else in the lowest one.
     Embedding embedding(const Mesh& material, NodeId n) const;
+    /// Returns the combination of the corners of a fragment that is at `x` at rest, m.
+    /// @pre  the fragment is a tetrahedron, or `x` is the place of one of its corners
+    Embedding embedding_in(ElementId e, const Vec3& x) const;
+    /// Returns the weights of the corners of a carrier, in their order, for a point at `x` at rest,
+    /// m. See embedding_in().
+    std::array<double, max_corners> weights_in_carrier(ElementId carrier, const Vec3& x) const;
+    /// Returns the origins of the corners of a carrier, in their order; see origin().
+    std::span<const NodeId> origins_of(ElementId carrier) const;
 
     bool operator==(const FragmentMesh&) const = default;
 
   private:
+    friend class FragmentArchive;
     friend class FragmentParts;
     friend class FragmentUpdate;
+
+    FragmentMesh(double light_share, FollowedEpoch epoch)
+        : light_share_(light_share), epoch_(epoch) {}
+    /// Computes what follows from the lists of carriers and nodes.
+    void complete();
+    /// True if the carrier was dead before any cut.
+    bool was_never_alive(ElementId carrier) const {
+        return !is_alive(carrier) && fragment_of_cell_[carrier.index()] == carrier;
+    }
 
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
@@ -153,20 +189,19 @@ class FragmentMesh {
     std::span<const ElementId> fragments_of(const ElementId& carrier) const;
     std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
     int region_of_carrier(ElementId carrier) const { return regions_[carrier.index()]; }
-    std::span<const NodeId> origins_of(ElementId carrier) const;
     std::span<const ElementId> carriers_at(NodeId origin) const;
-    Embedding embedding_of(ElementId e, const Vec3& x) const;
 
     double light_share_;
     FollowedEpoch epoch_;
     std::size_t num_nodes_ = 0, num_elements_ = 0;
+    std::size_t num_origins_ = 0;  // the nodes before any cut are those with lower ids
 
     // By carrier, that is by id of an element before any cut. These never change.
     std::vector<CellKind> kinds_;
     std::vector<int> regions_;
     std::vector<double> volumes_;  // at rest, m3
     std::vector<std::size_t> origin_begin_{0};
-    std::vector<NodeId> origins_of_carrier_;  // its corners before any cut
+    std::vector<NodeId> origins_of_carrier_;  // of its corners before any cut
     // By node before any cut: the carriers at it, in ascending order.
     std::vector<std::size_t> carrier_begin_;
     std::vector<ElementId> carriers_at_;
@@ -178,7 +213,9 @@ class FragmentMesh {
     std::vector<std::size_t> corner_begin_{0};
     std::vector<NodeId> corners_;
     // By node.
-    std::vector<NodeId> origins_;  // the node before any cut that it is, or is a copy of
+    // The node before any cut that it is, or is a copy of. Of several nodes with the same rest
+    // position, which an edit may join, it is the lowest.
+    std::vector<NodeId> origins_;
     std::vector<Vec3> rest_positions_;
     std::vector<std::uint8_t> is_node_alive_;
     // By cell of the material.

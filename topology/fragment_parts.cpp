@@ -2,19 +2,11 @@
 #include "incise/topology/fragment_parts.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "incise/base/disjoint_set.h"
-#include "incise/topology/geometry.h"
 
 namespace incise::topology {
-
-double volume_of(const Mesh& mesh, ElementId e) {
-    std::array<Vec3, max_corners> x;
-    const auto corners = mesh.corners(e);
-    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
-    return signed_volume(mesh.kind(e), {x.data(), corners.size()});
-}
 
 FragmentParts::~FragmentParts() {
     for (const ElementId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
@@ -41,6 +33,18 @@ std::size_t FragmentParts::of_cell(ElementId cell) {
     return static_cast<std::size_t>(part);
 }
 
+double FragmentParts::share_of(std::size_t part) {
+    const ElementId carrier = parts_[part].carrier;
+    const double whole = fragments_.volumes_[carrier.index()];
+    double all = 0.0;
+    std::size_t count = 0;
+    for (auto [i, end] = of(carrier); i < end; ++i, ++count) all += parts_[i].volume;
+    // The volumes of parts round. What a smaller part weighs that was taken away does not matter.
+    constexpr double rounding = 1e-10;
+    if (std::abs(all - whole) > rounding * whole) return parts_[part].volume / whole;
+    return count == 1 ? 1.0 : parts_[part].volume / all;
+}
+
 void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double volume) {
     const std::size_t index = parts_.size();
     for (const ElementId cell : cells)
@@ -58,9 +62,8 @@ void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double 
 }
 
 void FragmentParts::find(ElementId carrier) {
-    if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole
-        if (material_.is_alive(carrier))
-            add(carrier, {carrier}, fragments_.volumes_[carrier.index()]);
+    if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole, or what is left of it
+        if (material_.is_alive(carrier)) add(carrier, {carrier}, rest_volume(material_, carrier));
         return;
     }
     std::vector<ElementId> cells;
@@ -82,7 +85,7 @@ void FragmentParts::find(ElementId carrier) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const auto first = static_cast<std::size_t>(groups.find(static_cast<std::int32_t>(i)));
         members[first].push_back(cells[i]);
-        volumes[first] += volume_of(material_, cells[i]);
+        volumes[first] += rest_volume(material_, cells[i]);
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
         if (!members[i].empty()) add(carrier, std::move(members[i]), volumes[i]);

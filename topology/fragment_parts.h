@@ -12,9 +12,6 @@
 
 namespace incise::topology {
 
-/// Returns the volume of an element at rest, m3.
-double volume_of(const Mesh& mesh, ElementId e);
-
 /// Finds the parts of carriers as they are asked for. A part consists of the cells of one carrier
 /// that hang together inside it. Uses scratch of the fragment mesh while it lives.
 class FragmentParts {
@@ -55,6 +52,9 @@ class FragmentParts {
     Range of(ElementId carrier);
     /// Returns the part of a living cell.
     std::size_t of_cell(ElementId cell);
+    /// Returns the volume of a part over that of its carrier. The shares of all parts of a carrier
+    /// that no edit has taken anything from add up to 1.
+    double share_of(std::size_t part);
     /// Returns the parts of other carriers that share faces with a part, in the order of their
     /// heads.
     const std::vector<Neighbor>& neighbors(std::size_t index);

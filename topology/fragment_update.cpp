@@ -14,9 +14,6 @@ namespace incise::topology {
 
 namespace {
 
-/// The volumes of the cells of a carrier add up to its own but for rounding, unless one is gone.
-constexpr double volume_rounding = 1e-10;
-
 template <class T>
 void make_sorted_set(std::vector<T>& values) {
     std::sort(values.begin(), values.end());
@@ -73,6 +70,8 @@ void FragmentUpdate::follow_cells() {
             touch(pair.b.element);
         }
     make_sorted_set(touched_carriers_);
+    for (const ElementId carrier : touched_carriers_)
+        FragmentMesh::drop_if_trivial(fragments_.cells_of_carrier_, carrier);
 }
 
 ElementId FragmentUpdate::add_fragment(ElementId carrier, ElementId parent) {
@@ -135,7 +134,7 @@ void FragmentUpdate::carry_cells() {
     };
     const auto leave = [&](ElementId cell) {
         const ElementId from = fragments_.fragment_of_cell(cell);
-        fragment_before_.emplace_back(cell, from);
+        fragment_before_.push_back({cell, from, from});
         std::erase(list_of(from), cell);
     };
     for (const ElementRecord& record : changes_.elements_removed) {
@@ -143,7 +142,8 @@ void FragmentUpdate::carry_cells() {
         fragments_.fragment_of_cell_[record.id.index()] = {};
     }
     for (const ElementRecord& record : changes_.elements_added)
-        fragment_before_.emplace_back(record.id, ElementId());
+        fragment_before_.push_back(
+            {record.id, ElementId(), fragments_.fragment_of_cell(record.id)});
     for (const ElementId carrier : open_carriers_)
         for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
             const ElementId to = parts_[parts_[i].master].fragment;
@@ -172,13 +172,17 @@ void FragmentUpdate::update_shares() {
 
 double FragmentUpdate::share_of(ElementId fragment) {
     const ElementId carrier = fragments_.carrier(fragment);
-    const double whole = fragments_.volumes_[carrier.index()];
     double own = 0.0, others = 0.0;
-    for (const ElementId cell : fragments_.cells_of(fragment))
-        (fragments_.carrier_of_cell(cell) == carrier ? own : others) += volume_of(material_, cell);
-    own /= whole;
-    if (std::abs(own - 1.0) < volume_rounding) own = 1.0;
-    return own + others / whole;
+    std::vector<std::size_t> parts;
+    for (const ElementId cell : fragments_.cells_of(fragment)) {
+        const std::size_t part = parts_.of_cell(cell);
+        if (std::ranges::find(parts, part) != parts.end()) continue;
+        parts.push_back(part);
+        (parts_[part].carrier == carrier ? own : others) +=
+            parts_.share_of(part) * fragments_.volumes_[parts_[part].carrier.index()];
+    }
+    const double whole = fragments_.volumes_[carrier.index()];
+    return own == whole ? 1.0 + others / whole : (own + others) / whole;
 }
 
 void FragmentUpdate::note_corners(ElementId fragment) {
@@ -197,13 +201,16 @@ NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
         const bool is_own = fragments_.carrier(parent) == fragments_.carrier(fragment);
         return is_own ? node_before(parent, origin) : NodeId();
     }
-    const auto it = corners_before_.find(fragment);
-    const std::span<const NodeId> corners = it != corners_before_.end()
-                                                ? std::span<const NodeId>(it->second)
-                                                : fragments_.corners(fragment);
-    for (const NodeId n : corners)
+    for (const NodeId n : corners_before(fragment))
         if (fragments_.origins_[n.index()] == origin) return n;
     return {};
+}
+
+/// Returns the corners that a fragment had before the edit.
+std::span<const NodeId> FragmentUpdate::corners_before(ElementId fragment) const {
+    const auto it = corners_before_.find(fragment);
+    return it != corners_before_.end() ? std::span<const NodeId>(it->second)
+                                       : fragments_.corners(fragment);
 }
 
 /// Appends the groups of parts that are connected at a node before any cut.
@@ -227,8 +234,8 @@ void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
         group.origin = origin;
         insert_sorted(group.fragments, e);
         const NodeId before = node_before(e, origin);
-        if (before.is_valid() && (!group.before.is_valid() || before < group.before))
-            group.before = before;
+        if (before.is_valid() && group.before.is_valid()) merge(before, group.before);
+        if (before.is_valid()) group.before = before;
     }
     for (const std::size_t part : parts) parts_[part].local = -1;
     for (Group& group : found)
@@ -243,7 +250,7 @@ NodeId FragmentUpdate::add_node(const Group& group) {
     } else {
         // A light part becomes an element: it goes on from where it was carried.
         const Embedding from =
-            fragments_.embedding_of(parent_of(group.fragments.front()), record.rest_position);
+            fragments_.embedding_in(parent_of(group.fragments.front()), record.rest_position);
         record.num_sources = from.count;
         for (std::size_t k = 0; k < static_cast<std::size_t>(from.count); ++k)
             record.sources[k] = {from.nodes[k], from.weights[k]};
@@ -266,7 +273,19 @@ void FragmentUpdate::set_node(ElementId fragment, NodeId origin, NodeId node) {
     corner = node;
 }
 
-// A node stays with the group that has its lowest fragment. The others get copies.
+NodeId FragmentUpdate::survivor_of(NodeId n) const {
+    for (auto it = merged_.find(n); it != merged_.end(); it = merged_.find(n)) n = it->second;
+    return n;
+}
+
+void FragmentUpdate::merge(NodeId a, NodeId b) {
+    a = survivor_of(a);
+    b = survivor_of(b);
+    if (a != b) merged_[std::max(a, b)] = std::min(a, b);
+}
+
+// Nodes of parts that were joined again become one. A node stays with the group that has its lowest
+// fragment. The others get copies.
 void FragmentUpdate::assign_nodes() {
     std::vector<NodeId> origins, touched;
     for (const ElementId carrier : open_carriers_)
@@ -277,41 +296,52 @@ void FragmentUpdate::assign_nodes() {
     for (const auto& [e, corners] : corners_before_)
         for (const NodeId n : corners)
             if (n.is_valid()) touched.push_back(n);
+    merge_nodes_of_fragments();
+    for (Group& group : groups)
+        if (group.before.is_valid()) group.before = survivor_of(group.before);
 
     const auto key = [](const Group& group) {
         return std::pair(group.before.is_valid() ? 0 : 1,
                          std::pair(group.before, group.fragments.front()));
     };
     std::ranges::sort(groups, {}, key);
-    std::map<NodeId, NodeId> survivors;  // of nodes that are joined to another
     NodeId last;
     for (const Group& group : groups) {
         const bool keeps = group.before.is_valid() && group.before != last;
         const NodeId node = keeps ? group.before : add_node(group);
         last = group.before;
-        for (const ElementId e : group.fragments) {
-            if (const NodeId before = node_before(e, group.origin);
-                before.is_valid() && before != node)
-                survivors.try_emplace(before, node);
-            set_node(e, group.origin, node);
-        }
+        for (const ElementId e : group.fragments) set_node(e, group.origin, node);
     }
-    remove_unused_nodes(touched, survivors);
+    remove_unused_nodes(std::move(touched));
 }
 
-void FragmentUpdate::remove_unused_nodes(const std::vector<NodeId>& touched,
-                                         const std::map<NodeId, NodeId>& survivors) {
-    std::vector<NodeId> nodes(touched);
-    for (const auto& [before, node] : survivors) nodes.push_back(before);
-    make_sorted_set(nodes);
+/// Merges the nodes of fragments of one carrier that the edit joined, even if it parted them
+/// elsewhere.
+void FragmentUpdate::merge_nodes_of_fragments() {
+    std::unordered_map<ElementId, ElementId> first_of;  // of an added fragment, what it comes from
+    for (const auto& [cell, before, inherited] : fragment_before_) {
+        const ElementId now = fragments_.fragment_of_cell(cell);
+        if (!before.is_valid() || !now.is_valid() || before == now ||
+            fragments_.carrier(now) != fragments_.carrier(before))
+            continue;
+        const bool is_added = parent_of(now).is_valid();
+        const ElementId other = is_added ? first_of.try_emplace(now, before).first->second : now;
+        const auto from = corners_before(before), to = corners_before(other);
+        for (std::size_t k = 0; k < to.size(); ++k) merge(from[k], to[k]);
+    }
+}
+
+void FragmentUpdate::remove_unused_nodes(std::vector<NodeId> touched) {
+    for (const auto& [node, lower] : merged_) touched.push_back(node);
+    make_sorted_set(touched);
     std::vector<ElementId> star;
-    for (const NodeId n : nodes) {
+    for (const NodeId n : touched) {
         if (!fragments_.is_alive(n)) continue;
         fragments_.star(n, star);
         if (!star.empty()) continue;
         NodeRecord record{n, fragments_.rest_position(n), {}, 0};
-        if (const auto it = survivors.find(n); it != survivors.end()) {
-            record.sources[0] = {it->second, 1.0};
+        if (const NodeId survivor = survivor_of(n); survivor != n) {
+            record.sources[0] = {survivor, 1.0};
             record.num_sources = 1;
         }
         nodes_removed_.push_back(record);
@@ -357,12 +387,16 @@ FragmentChanges FragmentUpdate::differences() {
         if (fragments_.is_alive(e) && fragments_.share(e) != before && !parent_of(e).is_valid())
             result.shares.push_back({e, before, fragments_.share(e)});
     std::ranges::sort(result.shares, {}, &ShareChange::fragment);
-    std::sort(fragment_before_.begin(), fragment_before_.end());
-    for (const auto& [cell, before] : fragment_before_) {
+    std::ranges::sort(fragment_before_, {}, &CellBefore::cell);
+    for (const auto& [cell, before, inherited] : fragment_before_) {
         const ElementId now =
             material_.is_alive(cell) ? fragments_.fragment_of_cell(cell) : ElementId();
-        if (now != before)
-            result.cells.push_back({cell, fragments_.carrier_of_cell(cell), before, now});
+        if (now == before) continue;
+        const ElementId carrier = fragments_.carrier_of_cell(cell);
+        const auto is_away = [&](ElementId e) {
+            return e.is_valid() && fragments_.carrier(e) != carrier;
+        };
+        result.cells.push_back({cell, carrier, before, now, is_away(inherited), is_away(now)});
     }
     return result;
 }

@@ -31,7 +31,7 @@ class FragmentUpdate {
     /// Parts that are connected at a node before any cut, with the node that they get.
     struct Group {
         NodeId origin;
-        NodeId before;                     // the lowest node that they had there; invalid if none
+        NodeId before;                     // the node that they had there; invalid if none
         std::vector<ElementId> fragments;  // the elements among them, in ascending order
     };
     void follow_cells();
@@ -52,11 +52,15 @@ class FragmentUpdate {
                    : parents_[fragment.index() - element_capacity_before_];
     }
     NodeId node_before(ElementId fragment, NodeId origin) const;
+    std::span<const NodeId> corners_before(ElementId fragment) const;
     void note_corners(ElementId fragment);
+    /// Returns the node into which a node is merged by the edit: itself, if it is not.
+    NodeId survivor_of(NodeId n) const;
+    void merge(NodeId a, NodeId b);
+    void merge_nodes_of_fragments();
     NodeId add_node(const Group& group);
     void set_node(ElementId fragment, NodeId origin, NodeId node);
-    void remove_unused_nodes(const std::vector<NodeId>& touched,
-                             const std::map<NodeId, NodeId>& survivors);
+    void remove_unused_nodes(std::vector<NodeId> touched);
 
     FragmentChanges differences();
 
@@ -68,11 +72,18 @@ class FragmentUpdate {
     std::vector<ElementId> open_carriers_;     // these, and those whose parts are joined anew
     FragmentParts parts_{fragments_, material_};
 
-    std::vector<std::pair<ElementId, ElementId>> fragment_before_;  // cell, and what carried it
+    /// A cell that another fragment carries now, or none.
+    struct CellBefore {
+        ElementId cell;
+        ElementId before;     // that carried it; invalid if the edit added the cell
+        ElementId inherited;  // that carried it, or its parent
+    };
+    std::vector<CellBefore> fragment_before_;
     std::unordered_map<ElementId, std::vector<NodeId>> corners_before_;  // of fragments that change
     std::unordered_map<ElementId, double> shares_before_;
     std::vector<ElementId> parents_;  // of the added fragments, in ascending order
     std::vector<ElementId> died_;
+    std::map<NodeId, NodeId> merged_;  // nodes of parts that were joined again, with lower ones
     std::vector<NodeRecord> nodes_added_, nodes_removed_;
     std::size_t node_capacity_before_ = 0, element_capacity_before_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <cassert>
 
 #include "incise/base/disjoint_set.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::topology {
 
@@ -180,6 +181,13 @@ double rest_area(const Mesh& mesh, FaceId f) {
 }
 
 // The loop runs in ascending order of ids, in which neighbours are near each other in memory.
+double rest_volume(const Mesh& mesh, ElementId e) {
+    std::array<Vec3, max_corners> x;
+    const auto corners = mesh.corners(e);
+    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
+    return signed_volume(mesh.kind(e), {x.data(), corners.size()});
+}
+
 Components components(const Mesh& mesh) {
     DisjointSet groups(mesh.element_capacity());
     for (const ElementId e : mesh.elements()) {

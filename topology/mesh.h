@@ -196,6 +196,9 @@ int matching_shift(const Mesh& mesh, FaceId a, FaceId b);
 /// onto the mean plane of the bilinear patch.
 double rest_area(const Mesh& mesh, FaceId f);
 
+/// Returns the volume of an element at rest, m3.
+double rest_volume(const Mesh& mesh, ElementId e);
+
 /// The connected components of a mesh: sets of elements that are joined through faces. They are
 /// numbered from 0 in the order of their lowest element.
 struct Components {

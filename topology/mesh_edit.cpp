@@ -424,8 +424,8 @@ ChangeSet MeshEdit::commit() {
     ChangeSet changes = differences();
     is_open_ = false;
     changes.nodes_removed = std::move(nodes_removed);
-    changes.epoch_before = mesh_.epoch();
-    changes.epoch_after = changes.epoch_before + (changes.is_empty() ? 0 : 1);
+    changes.epoch_before = changes.epoch_after = mesh_.epoch();
+    if (!changes.is_empty()) ++changes.epoch_after;
     mesh_.epoch_ = changes.epoch_after;
     return changes;
 }

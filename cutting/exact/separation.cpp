@@ -24,14 +24,6 @@ namespace {
 /// comparison, a regular tetrahedron has 0.118.
 constexpr double largest_sliver = 0.1;
 
-double rest_volume(const Mesh& mesh, ElementId e) {
-    const auto corners = mesh.corners(e);
-    const auto edge = [&](std::size_t k) -> Vec3 {
-        return mesh.rest_position(corners[k]) - mesh.rest_position(corners[0]);
-    };
-    return std::abs(edge(1).dot(edge(2).cross(edge(3)))) / 6.0;
-}
-
 /// True if the face is between frozen nodes: an earlier cut along the same surface has left it
 /// joined.
 bool is_frozen(const Mesh& mesh, const CutFront& front, FaceId f) {

@@ -9,44 +9,32 @@
 
 namespace incise::physics {
 
-Vec3 Constraint::target(const topology::Mesh& mesh, NodeId n, double time) const {
+namespace {
+
+/// The position of a node depends on a corner if its weight there is above this. A smaller one may
+/// be that of a node on a face of the carrier, by rounding of its rest position.
+constexpr double least_weight = 1e-9;
+
+}  // namespace
+
+Vec3 Constraint::target(const topology::FragmentMesh& fragments, NodeId n, double time) const {
     if (!grip.is_empty()) return grip.at(time).to_world(gripped.at(n));
-    const Vec3& X = mesh.rest_position(n);
+    const Vec3& X = fragments.rest_position(n);
     Vec3 x = X;
     if (!angle.is_empty()) x = point + Eigen::AngleAxisd(angle.at(time), axis) * (X - point);
     if (!displacement.is_empty()) x += displacement.at(time);
     return x;
 }
 
-void Constraint::apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-    nodes.apply(mesh, changes);
-    if (grip.is_empty()) return;
-    gripped.erase(gripped.lower_bound(NodeId(changes.node_capacity_after)), gripped.end());
-    for (const topology::NodeRecord& record : changes.nodes_added) {
-        if (gripped.contains(record.id) || !nodes.contains(record.id)) continue;
-        Vec3 local = Vec3::Zero();
-        for (int s = 0; s < record.num_sources; ++s) {
-            const auto& source = record.sources[static_cast<std::size_t>(s)];
-            local += source.weight * gripped.at(source.node);
-        }
-        gripped[record.id] = local;
-    }
-}
-
 void Constraint::require_fit(const topology::Mesh& mesh) const {
     nodes.require_fit(mesh);
-    if (grip.is_empty()) return;
     for (const auto& [time, pose] : grip.keys())
         if (!pose.is_sound()) throw InputError("the pose of a grip is none");
-    for (const NodeSet::Member& member : nodes.members())
-        if (!gripped.contains(member.node)) throw InputError("a grip misses one of its nodes");
 }
 
-Constraint make_grip(std::string name, std::vector<NodeId> nodes, std::span<const Vec3> positions,
-                     const Pose& pose) {
+Constraint make_grip(std::string name, std::vector<NodeId> nodes, const Pose& pose) {
     Constraint constraint;
     constraint.name = std::move(name);
-    for (const NodeId n : nodes) constraint.gripped[n] = pose.to_tool(positions[n.index()]);
     constraint.nodes = NodeSet(std::move(nodes));
     constraint.grip = TimeCurve<Pose>({{0.0, pose}});
     return constraint;
@@ -81,45 +69,101 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
            constraints[conflict.second].name + "'; make their selections disjoint";
 }
 
-Constraints::Constraints(const topology::Mesh& mesh, std::vector<Constraint> constraints)
+Constraints::Constraints(const Body& body, std::vector<Constraint> constraints,
+                         std::span<const Vec3> positions)
     : constraints_(std::move(constraints)) {
-    index_all(mesh);
+    index_all(body, positions);
 }
 
-void Constraints::index_all(const topology::Mesh& mesh) {
+template <class Visit>
+void Constraints::for_each_corner(const Body& body, NodeId member, Visit visit) {
+    const auto& [mesh, fragments] = body;
+    if (!mesh.is_alive(member)) return;
+    std::vector<ElementId> cells;
+    mesh.star(member, cells);
+    for (const ElementId cell : cells) {
+        const ElementId carrier = fragments.carrier_of_cell(cell);
+        const auto origins = fragments.origins_of(carrier);
+        const auto weights = fragments.weights_in_carrier(carrier, mesh.rest_position(member));
+        for (const NodeId n : fragments.corners(fragments.fragment_of_cell(cell))) {
+            const auto k = std::ranges::find(origins, fragments.origin(n)) - origins.begin();
+            if (k < std::ssize(origins) && weights[static_cast<std::size_t>(k)] > least_weight)
+                visit(n);
+        }
+    }
+}
+
+bool Constraints::does_prescribe(std::size_t constraint, const Body& body, NodeId n) const {
+    const auto& [mesh, fragments] = body;
+    const NodeId origin = fragments.origin(n);
+    if (!std::ranges::binary_search(origins_[constraint], origin)) return false;
+    const NodeSet& nodes = constraints_[constraint].nodes;
+    std::vector<ElementId> star;
+    fragments.star(n, star);
+    for (const ElementId e : star)
+        for (const ElementId cell : fragments.cells_of(e)) {
+            const ElementId carrier = fragments.carrier_of_cell(cell);
+            const auto origins = fragments.origins_of(carrier);
+            const auto k = std::ranges::find(origins, origin) - origins.begin();
+            if (k == std::ssize(origins)) continue;
+            for (const NodeId corner : mesh.corners(cell))
+                if (nodes.contains(corner) &&
+                    fragments.weights_in_carrier(
+                        carrier, mesh.rest_position(corner))[static_cast<std::size_t>(k)] >
+                        least_weight)
+                    return true;
+        }
+    return false;
+}
+
+void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
     rows_.clear();
-    row_of_node_.assign(mesh.node_capacity(), -1);
-    for (const Constraint& constraint : constraints_)
-        for (const NodeSet::Member& member : constraint.nodes.members()) index(mesh, member.node);
+    row_of_node_.assign(body.fragments.node_capacity(), -1);
+    origins_.assign(constraints_.size(), {});
+    std::vector<NodeId> prescribed;
+    for (std::size_t s = 0; s < constraints_.size(); ++s) {
+        for (const NodeSet::Member& member : constraints_[s].nodes.members())
+            for_each_corner(body, member.node, [&](NodeId n) {
+                prescribed.push_back(n);
+                origins_[s].push_back(body.fragments.origin(n));
+            });
+        std::ranges::sort(origins_[s]);
+        origins_[s].erase(std::unique(origins_[s].begin(), origins_[s].end()), origins_[s].end());
+    }
+    std::ranges::sort(prescribed);
+    prescribed.erase(std::unique(prescribed.begin(), prescribed.end()), prescribed.end());
+    for (const NodeId n : prescribed) index(body, n);
+    for (const NodeId n : prescribed) begin_grasps(n, positions);
 }
 
-void Constraints::add(const topology::Mesh& mesh, Constraint constraint) {
+void Constraints::add(const Body& body, Constraint constraint, std::span<const Vec3> positions) {
     constraints_.push_back(std::move(constraint));
     try {
-        index_all(mesh);
+        index_all(body, positions);
     } catch (const InputError&) {
         constraints_.pop_back();
-        index_all(mesh);
+        index_all(body, positions);
         throw;
     }
 }
 
-void Constraints::remove(const topology::Mesh& mesh, std::size_t i) {
+void Constraints::remove(const Body& body, std::size_t i, std::span<const Vec3> positions) {
     constraints_.erase(constraints_.begin() + static_cast<std::ptrdiff_t>(i));
-    index_all(mesh);
+    index_all(body, positions);
 }
 
-void Constraints::index(const topology::Mesh& mesh, NodeId n) {
+void Constraints::index(const Body& body, NodeId n) {
     constexpr std::array<int, 3> free{-1, -1, -1};
     std::array<int, 3> row = free;
-    const auto refuse = [&](const ConstraintConflict& conflict) {
-        throw ConflictingConstraints(describe(conflict, mesh, constraints_), conflict);
+    const auto refuse = [&](std::size_t first, std::size_t second, std::size_t component) {
+        const ConstraintConflict conflict{body.fragments.origin(n), component, first, second};
+        throw ConflictingConstraints(describe(conflict, body.mesh, constraints_), conflict);
     };
-    for (std::size_t s = 0; s < constraints_.size() && mesh.is_alive(n); ++s) {
-        if (!constraints_[s].nodes.contains(n)) continue;
+    for (std::size_t s = 0; s < constraints_.size() && body.fragments.is_alive(n); ++s) {
+        if (!does_prescribe(s, body, n)) continue;
         for (std::size_t c = 0; c < 3; ++c) {
             if (!constraints_[s].components[c]) continue;
-            if (row[c] >= 0) refuse({n, c, static_cast<std::size_t>(row[c]), s});
+            if (row[c] >= 0) refuse(static_cast<std::size_t>(row[c]), s, c);
             row[c] = static_cast<int>(s);
         }
     }
@@ -130,25 +174,54 @@ void Constraints::index(const topology::Mesh& mesh, NodeId n) {
     if (it == rows_.end()) rows_.push_back(row);
 }
 
-void Constraints::prescribe(const std::array<int, 3>& constraint_of, const topology::Mesh& mesh,
-                            NodeId n, double time, Vec3& x) const {
+/// Notes where the grasps among the constraints of a node have it, unless this is known.
+void Constraints::begin_grasps(NodeId n, std::span<const Vec3> positions) {
+    const auto* constraint_of = of_node(n.index());
+    if (!constraint_of) return;
+    for (const int s : *constraint_of) {
+        if (s < 0) continue;
+        Constraint& constraint = constraints_[static_cast<std::size_t>(s)];
+        if (!constraint.grip.is_empty())
+            constraint.gripped.try_emplace(
+                n, constraint.grip.keys().back().second.to_tool(positions[n.index()]));
+    }
+}
+
+void Constraints::prescribe(const std::array<int, 3>& constraint_of,
+                            const topology::FragmentMesh& fragments, NodeId n, double time,
+                            Vec3& x) const {
     int last = -1;
     Vec3 target = Vec3::Zero();
     for (int c = 0; c < 3; ++c) {
         const int s = constraint_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
-        if (s != last) target = constraints_[static_cast<std::size_t>(s)].target(mesh, n, time);
+        if (s != last)
+            target = constraints_[static_cast<std::size_t>(s)].target(fragments, n, time);
         last = s;
         x[c] = target[c];
     }
 }
 
-void Constraints::apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-    for (Constraint& constraint : constraints_) constraint.apply(mesh, changes);
-    row_of_node_.resize(changes.node_capacity_after, -1);
-    for (const auto* records : {&changes.nodes_added, &changes.nodes_removed})
-        for (const topology::NodeRecord& record : *records)
-            if (record.id.index() < changes.node_capacity_after) index(mesh, record.id);
+void Constraints::apply(const Body& body, const topology::ChangeSet& of_mesh,
+                        const topology::ChangeSet& of_fragments, std::span<const NodeId> touched,
+                        std::span<const Vec3> positions) {
+    for (Constraint& constraint : constraints_) {
+        constraint.nodes.apply(body.mesh, of_mesh);
+        auto& gripped = constraint.gripped;
+        gripped.erase(gripped.lower_bound(NodeId(of_fragments.node_capacity_after)), gripped.end());
+        for (const topology::NodeRecord& record : of_fragments.nodes_added) {
+            const auto source = gripped.find(record.sources[0].node);
+            if (record.num_sources == 1 && source != gripped.end())
+                gripped.try_emplace(record.id, source->second);
+        }
+    }
+    if (of_mesh.epoch_after < of_mesh.epoch_before) return index_all(body, positions);
+    row_of_node_.resize(of_fragments.node_capacity_after, -1);
+    if (constraints_.empty()) return;
+    for (const NodeId n : touched) {
+        index(body, n);
+        begin_grasps(n, positions);
+    }
 }
 
 }  // namespace incise::physics

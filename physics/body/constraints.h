@@ -13,6 +13,7 @@
 #include "incise/base/types.h"
 #include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/pose.h"
 
@@ -20,8 +21,11 @@ namespace incise::physics {
 
 /// A constraint that prescribes some components of the positions of some nodes:
 /// x(t) = p + R(t) (X - p) + u(t), with the rest position X.
-/// A grasp prescribes x(t) = grip(t) applied to `gripped` instead. The nodes then start from their
-/// positions in the deformed body and move rigidly with the pose.
+/// A grasp prescribes x(t) = grip(t) applied to the position that the node had in the frame of the
+/// grasp at first. The nodes move rigidly with the pose.
+///
+/// `nodes` are nodes of the mesh, and follow its edits. A cut makes nodes of the fragments that are
+/// none of the mesh: see Constraints.
 struct Constraint {
     std::string name = {};
     NodeSet nodes = {};
@@ -30,20 +34,16 @@ struct Constraint {
     TimeCurve<double> angle = {};                      ///< of R, rad, about the axis; empty: none
     Vec3 point = Vec3::Zero();                         ///< p, on the axis, m
     Vec3 axis = Vec3::UnitZ();                         ///< of unit length
-    TimeCurve<Pose> grip = {};            ///< motion of the frame of a grasp; empty: no grasp
-    std::map<NodeId, Vec3> gripped = {};  ///< positions of the nodes in the frame of the grasp, m
+    TimeCurve<Pose> grip = {};  ///< motion of the frame of a grasp; empty: no grasp
+    /// By node of the fragments, its position in the frame of the grasp, m; kept by Constraints.
+    std::map<NodeId, Vec3> gripped = {};
 
-    /// Returns the prescribed position of a node at `time`, s. Only the components that the
-    /// constraint prescribes are meaningful.
-    /// @pre  the node is a member
-    Vec3 target(const topology::Mesh& mesh, NodeId n, double time) const;
+    /// Returns the prescribed position of a node of the fragments at `time`, s. Only the components
+    /// that the constraint prescribes are meaningful.
+    /// @pre  the constraint prescribes the node
+    Vec3 target(const topology::FragmentMesh& fragments, NodeId n, double time) const;
 
-    /// Follows an edit; see NodeSet. A new node of a grasp gets the weighted mean of the positions
-    /// of its sources. `mesh` is the mesh after the edit.
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
-
-    /// Throws InputError if a member is no node of the mesh, if a pose of the grasp is unsound, or
-    /// if `gripped` lacks a member.
+    /// Throws InputError if a member is no node of the mesh, or if a pose of the grasp is unsound.
     void require_fit(const topology::Mesh& mesh) const;
     static void archive(auto& ar, auto& self) {
         ar(self.name, self.nodes, self.components, self.displacement, self.angle, self.point,
@@ -51,13 +51,11 @@ struct Constraint {
     }
 };
 
-/// Returns a grasp of nodes at their current positions.
-/// @param name       the name of the constraint
-/// @param nodes      the nodes to grasp
-/// @param positions  current, m, by node id
-/// @param pose       the current pose of the frame of the grasp
-Constraint make_grip(std::string name, std::vector<NodeId> nodes, std::span<const Vec3> positions,
-                     const Pose& pose);
+/// Returns a grasp of nodes at the positions that they have when it is added to a body.
+/// @param name   the name of the constraint
+/// @param nodes  the nodes to grasp
+/// @param pose   the pose of the frame of the grasp when it is added
+Constraint make_grip(std::string name, std::vector<NodeId> nodes, const Pose& pose);
 
 /// Two constraints that prescribe the same component of a node.
 struct ConstraintConflict {
@@ -84,12 +82,26 @@ std::vector<ConstraintConflict> find_conflicts(const topology::Mesh& mesh,
 std::string describe(const ConstraintConflict& conflict, const topology::Mesh& mesh,
                      std::span<const Constraint> constraints);
 
-/// All constraints of a body, looked up by node.
+/// All constraints of a body, looked up by node of its fragments.
+///
+/// In a body without cuts, a constraint prescribes its nodes. After cuts, it prescribes the corners
+/// of fragments that its material is between. A corner is prescribed if a fragment at it has a node
+/// of the constraint, and if the position of this node depends on the corner. So the copies of a
+/// node of a clamped face are prescribed as long as their fragments touch the face; a copy with no
+/// material at the face is free.
 class Constraints {
   public:
+    /// The mesh and its fragments, both after the edit that is followed.
+    struct Body {
+        const topology::Mesh& mesh;
+        const topology::FragmentMesh& fragments;
+    };
+
     /// Throws InputError, naming node and constraints, if two constraints prescribe the same
     /// component of a node.
-    Constraints(const topology::Mesh& mesh, std::vector<Constraint> constraints);
+    /// @param positions  current, m, by node of the fragments: those at which grasps begin
+    Constraints(const Body& body, std::vector<Constraint> constraints,
+                std::span<const Vec3> positions);
 
     std::span<const Constraint> all() const { return constraints_; }
     std::size_t size() const { return constraints_.size(); }
@@ -97,8 +109,8 @@ class Constraints {
     /// Returns the point p of constraint `i`, m, about which its nodes turn.
     const Vec3& point(std::size_t i) const { return constraints_[i].point; }
 
-    /// Returns the index of the constraint of each component of node `n`, or -1 for a free
-    /// component. Returns null if the node has no constraint.
+    /// Returns the index of the constraint of each component of node `n` of the fragments, or -1
+    /// for a free component. Returns null if the node has no constraint.
     const std::array<int, 3>* of_node(std::size_t n) const {
         return n < row_of_node_.size() && row_of_node_[n] >= 0
                    ? &rows_[static_cast<std::size_t>(row_of_node_[n])]
@@ -106,29 +118,44 @@ class Constraints {
     }
     /// Sets the prescribed components of `x` to their targets at `time`.
     /// @param constraint_of  as of_node() returns it for the node
-    /// @param mesh           the mesh of the body
-    /// @param n              the node
+    /// @param fragments      those of the body
+    /// @param n              the node of the fragments
     /// @param time           s
     /// @param x              position, m; free components stay as they are
-    void prescribe(const std::array<int, 3>& constraint_of, const topology::Mesh& mesh, NodeId n,
-                   double time, Vec3& x) const;
+    void prescribe(const std::array<int, 3>& constraint_of, const topology::FragmentMesh& fragments,
+                   NodeId n, double time, Vec3& x) const;
 
     /// Appends a constraint; see Model::add_constraint.
-    void add(const topology::Mesh& mesh, Constraint constraint);
+    void add(const Body& body, Constraint constraint, std::span<const Vec3> positions);
     /// Removes a constraint; see Model::remove_constraint.
-    void remove(const topology::Mesh& mesh, std::size_t i);
+    void remove(const Body& body, std::size_t i, std::span<const Vec3> positions);
     void set_grip(std::size_t i, TimeCurve<Pose> grip) { constraints_[i].grip = std::move(grip); }
 
-    /// Follows an edit; `mesh` is the mesh after the edit. Cost: proportional to the nodes that the
-    /// edit added and removed.
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Follows an edit. A copy of a grasped node is grasped where that node is.
+    /// @param body          after the edit
+    /// @param of_mesh       the changes of the mesh
+    /// @param of_fragments  the changes of the fragments
+    /// @param touched       nodes of the fragments that may be prescribed anew or become free
+    /// @param positions     current, m, by node of the fragments
+    /// Cost: proportional to the touched nodes; for the undo of an edit as for a new object.
+    void apply(const Body& body, const topology::ChangeSet& of_mesh,
+               const topology::ChangeSet& of_fragments, std::span<const NodeId> touched,
+               std::span<const Vec3> positions);
 
   private:
-    void index(const topology::Mesh& mesh, NodeId n);
-    void index_all(const topology::Mesh& mesh);
+    /// Calls visit(n) for each node of the fragments on which a node of the mesh depends; some of
+    /// them more than once.
+    template <class Visit>
+    static void for_each_corner(const Body& body, NodeId member, Visit visit);
+    bool does_prescribe(std::size_t constraint, const Body& body, NodeId n) const;
+    void index(const Body& body, NodeId n);
+    void index_all(const Body& body, std::span<const Vec3> positions);
+    void begin_grasps(NodeId n, std::span<const Vec3> positions);
 
     std::vector<Constraint> constraints_;
-    std::vector<std::int32_t> row_of_node_;  // by node id, an index into rows_; -1: free
+    // By constraint, in ascending order: nodes before any cut whose copies it may prescribe.
+    std::vector<std::vector<NodeId>> origins_;
+    std::vector<std::int32_t> row_of_node_;  // by node of the fragments, an index into rows_; or -1
     std::vector<std::array<int, 3>> rows_;   // each that occurs, once: few, as nodes share them
 };
 

@@ -2,7 +2,6 @@
 #include "incise/physics/body/element_snapshot.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace incise::physics {
 
@@ -12,16 +11,18 @@ ElementSnapshot::ElementSnapshot(const Model& model)
       history_(model.history()) {}
 
 std::vector<ElementResult> ElementSnapshot::results(std::span<const ElementId> elements) const {
-    assert(std::is_sorted(elements.begin(), elements.end()));
-    std::vector<std::size_t> row_of(elements.empty() ? 0 : elements.back().index() + 1);
-    for (std::size_t i = 0; i < elements.size(); ++i) row_of[elements[i].index()] = i;
-    std::vector<ElementResult> results(elements.size()), of_block;
+    std::vector<ElementResult> by_id, of_block;
     for (const auto& block : blocks_) {
-        of_block.resize(block->elements().size());
+        const auto ids = block->elements();
+        if (ids.empty()) continue;
+        of_block.resize(ids.size());
         block->results(positions_, history_, of_block);
-        for (std::size_t s = 0; s < of_block.size(); ++s)
-            results[row_of[block->elements()[s].index()]] = of_block[s];
+        by_id.resize(std::max(by_id.size(), ids.back().index() + 1));
+        for (std::size_t s = 0; s < of_block.size(); ++s) by_id[ids[s].index()] = of_block[s];
     }
+    std::vector<ElementResult> results;
+    results.reserve(elements.size());
+    for (const ElementId e : elements) results.push_back(by_id[e.index()]);
     return results;
 }
 

@@ -19,8 +19,7 @@ class ElementSnapshot {
     /// Cost: copies of the positions and of the history.
     explicit ElementSnapshot(const Model& model);
 
-    /// Returns the results of all elements, in the order of `elements`: all living elements of the
-    /// model at the time of the snapshot, in ascending order.
+    /// Returns the results of the given fragments, which were alive at the time of the snapshot.
     std::vector<ElementResult> results(std::span<const ElementId> elements) const;
 
   private:

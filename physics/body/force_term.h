@@ -8,15 +8,40 @@
 #include "incise/physics/elements/state.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
 
 /// The parts of a body that a force term may read.
+///
+/// Forces act on the nodes of the fragments: these have masses and positions of their own. The
+/// nodes of the mesh follow them; FragmentMesh::embedding gives their weights. Before the first
+/// cut, both have the same ids.
 struct BodyView {
     const topology::Mesh& mesh;
+    const topology::FragmentMesh& fragments;
     const ElementStore& elements;
-    std::span<const double> masses;  ///< lumped, kg, by node id
+    std::span<const double> masses;  ///< lumped, kg, by node of the fragments
+
+    /// Returns the mass of an element of the mesh at each of its corners, kg.
+    double mass_at_corners(ElementId cell) const {
+        const ElementId e = fragments.fragment_of_cell(cell);
+        if (fragments.cells_of(e).size() == 1 && fragments.share(e) == 1.0)
+            return elements.block_of(fragments, e).contributions(e).mass;
+        return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
+               static_cast<double>(mesh.corners(cell).size());
+    }
+};
+
+/// An edit of a body: that of its mesh, and what it changed in the fragments.
+struct BodyEdit {
+    const topology::ChangeSet& of_mesh;
+    const topology::ChangeSet& of_fragments;
+    /// In ascending order, the nodes of the mesh at elements that have changed.
+    std::span<const NodeId> touched_of_mesh;
+    /// In ascending order, the nodes of the fragments whose mass may have changed.
+    std::span<const NodeId> touched;
 };
 
 /// One term of the outer forces, such as the loads.
@@ -34,10 +59,10 @@ class ForceTerm {
 
     /// Adds the forces at `time`, s, on the nodes of a range.
     /// @param body       the body
-    /// @param range      the nodes
-    /// @param positions  current, m, by node id
+    /// @param range      nodes of the fragments
+    /// @param positions  current, m, by node of the fragments
     /// @param time       s
-    /// @param forces     N, by node id; added to
+    /// @param forces     N, by node of the fragments; added to
     /// @thread Several threads may call it at the same time, for different ranges.
     virtual void add_forces(const BodyView& body, NodeRange range, std::span<const Vec3> positions,
                             double time, std::span<Vec3> forces) const = 0;
@@ -54,11 +79,9 @@ class ForceTerm {
     virtual double stiffness_bound(NodeId) const { return 0.0; }
 
     /// Follows an edit that the body has followed.
-    /// @param body     the body after the edit
-    /// @param changes  the record of the edit
-    /// @param touched  nodes whose mass may have changed, in ascending order
-    virtual void apply(const BodyView& body, const topology::ChangeSet& changes,
-                       std::span<const NodeId> touched) = 0;
+    /// @param body  the body after the edit
+    /// @param edit  the record of the edit
+    virtual void apply(const BodyView& body, const BodyEdit& edit) = 0;
 };
 
 }  // namespace incise::physics

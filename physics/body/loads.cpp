@@ -17,20 +17,15 @@ bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
            !mesh.neighbor(f).is_valid();
 }
 
-/// Returns the outward area vector of a face; for a quadrilateral that of its bilinear patch.
-Vec3 area_vector(const PressedCorner& face, std::span<const Vec3> x) {
-    const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p]]; };
-    if (face.num_corners == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
-    return 0.5 * (at(2) - at(0)).cross(at(3) - at(1));
-}
-
-PressedCorner first_corner(const topology::Mesh& mesh, FaceId f) {
-    PressedCorner corner{0, static_cast<std::uint32_t>(mesh.face_size(f)), {}};
-    for (std::uint32_t p = 0; p < corner.num_corners; ++p)
-        corner.corners[p] =
-            static_cast<std::uint32_t>(mesh.face_corner(f, static_cast<int>(p)).index());
-    corner.node = corner.corners[0];
-    return corner;
+/// Returns a face of a cell, in the fragment that carries the cell.
+PressedFace face_in_fragment(const BodyView& body, FaceId f) {
+    const ElementId fragment = body.fragments.fragment_of_cell(f.element);
+    PressedFace face;
+    face.num_corners = static_cast<std::size_t>(body.mesh.face_size(f));
+    for (std::size_t p = 0; p < face.num_corners; ++p)
+        face.corners[p] = body.fragments.embedding_in(
+            fragment, body.mesh.rest_position(body.mesh.face_corner(f, static_cast<int>(p))));
+    return face;
 }
 
 /// Calls visit(face) for the members that carry a load: whole faces that are on the boundary.
@@ -45,6 +40,11 @@ class ShareSums {
   public:
     void add(NodeId n, double share) {
         shares_.push_back({static_cast<std::uint32_t>(n.index()), share});
+    }
+    /// Adds a share of a point of a fragment to the corners of this fragment.
+    void add(const topology::Embedding& at, double share) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
+            add(at.nodes[k], at.weights[k] * share);
     }
     /// Returns one sum for each node, in ascending order of nodes.
     std::vector<NodalContribution> sums() && {
@@ -74,25 +74,38 @@ struct ShareFinder {
         ShareSums shares;
         const auto& members = load.nodes.members();
         for (std::size_t i = 0; i < members.size(); ++i)
-            if (load.shares[i] > 0.0) shares.add(members[i].node, load.shares[i]);
+            if (load.shares[i] > 0.0)
+                shares.add(body.fragments.embedding(body.mesh, members[i].node), load.shares[i]);
         return std::move(shares).sums();
     }
     std::vector<NodalContribution> operator()(const TractionLoad& load) const {
         ShareSums shares;
         for_loaded(load.faces, body.mesh, [&](FaceId f) {
-            const PressedCorner face = first_corner(body.mesh, f);
-            const double area = area_vector(face, body.mesh.rest_positions()).norm();
-            for (std::uint32_t p = 0; p < face.num_corners; ++p)
-                shares.add(NodeId(face.corners[p]), area / face.num_corners);
+            const PressedFace face = face_in_fragment(body, f);
+            const double area = face.area_vector(body.fragments.rest_positions()).norm();
+            for (std::size_t p = 0; p < face.num_corners; ++p)
+                shares.add(face.corners[p], area / static_cast<double>(face.num_corners));
         });
         return std::move(shares).sums();
     }
     std::vector<NodalContribution> operator()(const BodyLoad& load) const {
+        struct Loaded {
+            std::size_t num_cells = 0;
+            double volume = 0.0;  // m3
+        };
+        std::map<ElementId, Loaded> loaded;  // by fragment
+        for (const ElementId cell : load.elements.members()) {
+            if (cell.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(cell)) continue;
+            Loaded& fragment = loaded[body.fragments.fragment_of_cell(cell)];
+            ++fragment.num_cells;
+            fragment.volume += topology::rest_volume(body.mesh, cell);
+        }
         ShareSums shares;
-        for (const ElementId e : load.elements.members()) {
-            if (e.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(e)) continue;
-            const auto corners = body.mesh.corners(e);
-            const double volume = body.elements.block_of(body.mesh, e).rest_volume(e);
+        for (const auto& [e, part] : loaded) {
+            const auto corners = body.fragments.corners(e);
+            const bool is_whole = part.num_cells == body.fragments.cells_of(e).size();
+            const double volume =
+                is_whole ? body.elements.block_of(body.fragments, e).rest_volume(e) : part.volume;
             for (const NodeId n : corners)
                 shares.add(n, volume / static_cast<double>(corners.size()));
         }
@@ -109,18 +122,24 @@ struct ForcePerShare {
     Vec3 operator()(const PressureLoad&) const { return Vec3::Zero(); }
 };
 
-std::vector<PressedCorner> pressed_corners(const FaceSet& faces, const topology::Mesh& mesh) {
-    std::vector<PressedCorner> pressed;
-    for_loaded(faces, mesh, [&](FaceId f) {
-        PressedCorner corner = first_corner(mesh, f);
-        for (std::uint32_t p = 0; p < corner.num_corners; ++p) {
-            corner.node = corner.corners[p];
-            pressed.push_back(corner);
+std::vector<PressedFace> pressed_faces(const FaceSet& faces, const BodyView& body) {
+    std::vector<PressedFace> pressed;
+    for_loaded(faces, body.mesh, [&](FaceId f) { pressed.push_back(face_in_fragment(body, f)); });
+    return pressed;
+}
+
+/// Returns the nodes of faces in ascending order.
+std::vector<PressedNode> pressed_nodes(std::span<const PressedFace> faces) {
+    std::vector<PressedNode> pressed;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (std::size_t p = 0; p < faces[f].num_corners; ++p) {
+            const topology::Embedding& corner = faces[f].corners[p];
+            for (std::size_t k = 0; k < static_cast<std::size_t>(corner.count); ++k)
+                pressed.push_back({static_cast<std::uint32_t>(corner.nodes[k].index()),
+                                   static_cast<std::uint32_t>(f), corner.weights[k]});
         }
-    });
-    std::stable_sort(
-        pressed.begin(), pressed.end(),
-        [](const PressedCorner& a, const PressedCorner& b) { return a.node < b.node; });
+    std::stable_sort(pressed.begin(), pressed.end(),
+                     [](const PressedNode& a, const PressedNode& b) { return a.node < b.node; });
     return pressed;
 }
 
@@ -132,16 +151,18 @@ std::span<const Entry> entries_of(const std::vector<Entry>& entries, NodeRange r
     return {begin, std::lower_bound(begin, entries.end(), range.end, is_before)};
 }
 
-/// Passes the tangent of a pressure on one face, which is given by its first corner.
-void visit_tangent(const PressedCorner& face, double pressure, std::span<const Vec3> x,
-                   TangentSink& sink) {
+/// A tangent of up to four nodes, N/m.
+constexpr int most_rows = 12;
+using FaceTangent =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_rows>;
+
+/// Returns the tangent of a pressure on a face by the positions of its corners.
+FaceTangent tangent_of(const PressedFace& face, double pressure, std::span<const Vec3> x) {
     const std::size_t size = face.num_corners, num_rows = 3 * size;
-    const auto at = [&](std::size_t p) -> const Vec3& { return x[face.corners[p % size]]; };
+    const auto at = [&](std::size_t p) { return face.corner(p % size, x); };
     // The derivative of the area vector by corner p is v -> edge x v / 2. All corners of the face
     // have the same force, so that all rows are equal.
-    constexpr int most = 12;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most> K(num_rows,
-                                                                                         num_rows);
+    FaceTangent K(num_rows, num_rows);
     for (std::size_t p = 0; p < size; ++p) {
         const Vec3 edge = size == 3 ? Vec3(at(p + 2) - at(p + 1)) : Vec3(at(p + 3) - at(p + 1));
         Eigen::Matrix3d by_corner;
@@ -152,12 +173,43 @@ void visit_tangent(const PressedCorner& face, double pressure, std::span<const V
             K.block<3, 3>(static_cast<Eigen::Index>(3 * row), static_cast<Eigen::Index>(3 * p)) =
                 by_corner;
     }
-    K = (0.5 * (K + K.transpose())).eval();
-    sink.add(std::span(face.corners).first(size), {K.data(), static_cast<std::size_t>(K.size())});
+    return 0.5 * (K + K.transpose());
+}
+
+/// Passes the tangent of a pressure on one face by the positions of the nodes of its fragment.
+void visit_tangent(const PressedFace& face, double pressure, std::span<const Vec3> x,
+                   TangentSink& sink) {
+    std::array<std::uint32_t, 4> nodes;  // of the face, or of the tetrahedron
+    std::size_t num_nodes = 0;
+    FaceTangent weights = FaceTangent::Zero(most_rows, most_rows);  // of corner p, in column 3 p
+    for (std::size_t p = 0; p < face.num_corners; ++p)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(face.corners[p].count); ++k) {
+            const auto node = static_cast<std::uint32_t>(face.corners[p].nodes[k].index());
+            const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(num_nodes);
+            const auto it = std::find(nodes.begin(), end, node);
+            if (it == end) nodes[num_nodes++] = node;
+            for (int c = 0; c < 3; ++c)
+                weights(3 * (it - nodes.begin()) + c, static_cast<Eigen::Index>(3 * p) + c) =
+                    face.corners[p].weights[k];
+        }
+    const FaceTangent W = weights.topLeftCorner(static_cast<Eigen::Index>(3 * num_nodes),
+                                                static_cast<Eigen::Index>(3 * face.num_corners));
+    const FaceTangent K =
+        W.lazyProduct(tangent_of(face, pressure, x)).eval().lazyProduct(W.transpose());
+    sink.add(std::span(nodes).first(num_nodes), {K.data(), static_cast<std::size_t>(K.size())});
 }
 
 double factor_of(const Load& load, double time) {
     return load.factor.is_empty() ? 1.0 : load.factor.at(time);
+}
+
+/// Returns the mass of the material at a node of the mesh, lumped, kg.
+double mass_at(const BodyView& body, NodeId n) {
+    double mass = 0.0;
+    std::vector<ElementId> star;
+    body.mesh.star(n, star);
+    for (const ElementId cell : star) mass += body.mass_at_corners(cell);
+    return mass;
 }
 
 // Computes the shares again for every family of copies with a member among `touched`. A family has
@@ -170,17 +222,14 @@ void share(NodalLoad& load, const BodyView& body, std::span<const NodeId> touche
         if (const auto* member = load.nodes.find(n); member && member->origin.is_valid())
             family_mass[member->origin] = 0.0;
     if (family_mass.empty()) return;
-    const auto mass_of = [&](const NodeSet::Member& m) {
-        return body.mesh.is_alive(m.node) ? body.masses[m.node.index()] : 0.0;
-    };
-    for (const auto& m : members)
-        if (const auto family = family_mass.find(m.origin); family != family_mass.end())
-            family->second += mass_of(m);
+    std::vector<std::pair<std::size_t, double>> masses;  // of the members of these families
     for (std::size_t i = 0; i < members.size(); ++i)
         if (const auto family = family_mass.find(members[i].origin); family != family_mass.end()) {
-            const double mass = mass_of(members[i]);
-            load.shares[i] = mass > 0.0 ? mass / family->second : 0.0;
+            masses.emplace_back(i, mass_at(body, members[i].node));
+            family->second += masses.back().second;
         }
+    for (const auto& [i, mass] : masses)
+        load.shares[i] = mass > 0.0 ? mass / family_mass.at(members[i].origin) : 0.0;
 }
 
 }  // namespace
@@ -198,6 +247,21 @@ void Load::require_fit(const topology::Mesh& mesh) const {
         void operator()(const BodyLoad& load) const { load.elements.require_fit(); }
     };
     std::visit(Requirement{mesh}, kind);
+}
+
+Vec3 PressedFace::corner(std::size_t p, std::span<const Vec3> positions) const {
+    const topology::Embedding& at = corners[p];
+    if (at.count == 1) return positions[at.nodes[0].index()];
+    Vec3 x = Vec3::Zero();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
+        x += at.weights[k] * positions[at.nodes[k].index()];
+    return x;
+}
+
+Vec3 PressedFace::area_vector(std::span<const Vec3> positions) const {
+    const auto at = [&](std::size_t p) { return corner(p, positions); };
+    if (num_corners == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
+    return 0.5 * (at(2) - at(0)).cross(at(3) - at(1));
 }
 
 Loads::Loads(const Vec3& gravity, std::vector<Load> loads, const BodyView& body)
@@ -233,9 +297,11 @@ void Loads::update(const BodyView& body) {
 }
 
 Loads::AssembledLoad Loads::assemble(const Load& load, const BodyView& body) {
-    AssembledLoad assembled{std::visit(ShareFinder{body}, load.kind), {}};
-    if (const auto* pressure = std::get_if<PressureLoad>(&load.kind))
-        assembled.pressed = pressed_corners(pressure->faces, body.mesh);
+    AssembledLoad assembled{std::visit(ShareFinder{body}, load.kind), {}, {}};
+    if (const auto* pressure = std::get_if<PressureLoad>(&load.kind)) {
+        assembled.faces = pressed_faces(pressure->faces, body);
+        assembled.pressed = pressed_nodes(assembled.faces);
+    }
     return assembled;
 }
 
@@ -252,8 +318,12 @@ void Loads::add_forces(const BodyView& body, NodeRange range, std::span<const Ve
         const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
         if (!load) continue;
         const double pressure = factor * load->pressure;
-        for (const PressedCorner& corner : entries_of(assembled_[i].pressed, range))
-            forces[corner.node] -= pressure / corner.num_corners * area_vector(corner, positions);
+        for (const PressedNode& entry : entries_of(assembled_[i].pressed, range)) {
+            const PressedFace& face = assembled_[i].faces[entry.face];
+            forces[entry.node] -= entry.weight *
+                                  (pressure / static_cast<double>(face.num_corners)) *
+                                  face.area_vector(positions);
+        }
     }
 }
 
@@ -263,28 +333,25 @@ void Loads::visit_tangents(std::span<const Vec3> positions, double time, Tangent
         const auto* load = std::get_if<PressureLoad>(&loads_[i].kind);
         const double factor = factor_of(loads_[i], time);
         if (!load || factor == 0.0) continue;
-        for (const PressedCorner& corner : assembled_[i].pressed)
-            if (corner.node == corner.corners[0])
-                visit_tangent(corner, factor * load->pressure, positions, sink);
+        for (const PressedFace& face : assembled_[i].faces)
+            visit_tangent(face, factor * load->pressure, positions, sink);
     }
 }
 
-void Loads::apply(const BodyView& body, const topology::ChangeSet& changes,
-                  std::span<const NodeId> touched) {
+void Loads::apply(const BodyView& body, const BodyEdit& edit) {
     struct Follower {
-        const topology::ChangeSet& changes;
         const BodyView& body;
-        std::span<const NodeId> touched;
+        const BodyEdit& edit;
 
         void operator()(NodalLoad& load) const {
-            load.nodes.apply(body.mesh, changes);
-            share(load, body, touched);
+            load.nodes.apply(body.mesh, edit.of_mesh);
+            share(load, body, edit.touched_of_mesh);
         }
-        void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, changes); }
-        void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, changes); }
-        void operator()(BodyLoad& load) const { load.elements.apply(body.mesh, changes); }
+        void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, edit.of_mesh); }
+        void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, edit.of_mesh); }
+        void operator()(BodyLoad& load) const { load.elements.apply(body.mesh, edit.of_mesh); }
     };
-    for (Load& load : loads_) std::visit(Follower{changes, body, touched}, load.kind);
+    for (Load& load : loads_) std::visit(Follower{body, edit}, load.kind);
     is_up_to_date_ = false;
 }
 

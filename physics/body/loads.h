@@ -17,9 +17,10 @@
 
 namespace incise::physics {
 
-/// The same force on each selected node. Copies of a node share its force in proportion to their
-/// masses, so that opening a face neither adds force nor pulls the copies apart. A new node between
-/// selected nodes has no share, so that the total force and its distribution stay the same.
+/// The same force on each selected node of the mesh. Copies of a node share its force in proportion
+/// to the masses of the material at them, so that opening a face neither adds force nor pulls the
+/// copies apart. A new node between selected nodes has no share, so that the total force and its
+/// distribution stay the same.
 struct NodalLoad {
     NodeSet nodes = {};
     Vec3 force = Vec3::Zero();        ///< N, on each node of the first selection
@@ -60,21 +61,33 @@ struct Load {
     static void archive(auto& ar, auto& self) { ar(self.name, self.kind, self.factor); }
 };
 
-/// The share of one node in a load: a number (nodal loads), m2 (tractions) or m3 (body forces).
-/// The nodal load is the share times the force of the load.
+/// The share of one node of the fragments in a load: a number (nodal loads), m2 (tractions) or m3
+/// (body forces). The nodal load is the share times the force of the load.
 struct NodalContribution {
     std::uint32_t node;
     double share;
 };
 
-/// One corner of a face under pressure, with all corners of the face.
-struct PressedCorner {
-    std::uint32_t node;                    ///< of this corner
-    std::uint32_t num_corners;             ///< 3 or 4
-    std::array<std::uint32_t, 4> corners;  ///< nodes of the face; its normal points outwards
+/// A face of the mesh under pressure. Its normal points outwards. Its corners are combinations of
+/// the corners of one fragment.
+struct PressedFace {
+    std::size_t num_corners = 0;  ///< 3 or 4
+    std::array<topology::Embedding, 4> corners = {};
+
+    Vec3 corner(std::size_t p, std::span<const Vec3> positions) const;
+    /// Returns the outward area vector, m2; for a quadrilateral that of its bilinear patch.
+    Vec3 area_vector(std::span<const Vec3> positions) const;
 };
 
-/// Gravity and all loads on a body.
+/// A node of the fragments that takes a part of the force on one corner of a face under pressure.
+struct PressedNode {
+    std::uint32_t node;
+    std::uint32_t face;  ///< its number in the load
+    double weight;
+};
+
+/// Gravity and all loads on a body. Selections are of the mesh: a load acts on the material that is
+/// there. The forces go to the nodes of the fragments, with the weights of the positions.
 class Loads final : public ForceTerm {
   public:
     /// Takes gravity, m/s2, and the loads of a body. Nodal loads without shares get their shares
@@ -107,15 +120,15 @@ class Loads final : public ForceTerm {
                         TangentSink& sink) const override;
 
     /// Follows an edit: parts of loaded faces and elements carry the same load as the whole did.
-    void apply(const BodyView& body, const topology::ChangeSet& changes,
-               std::span<const NodeId> touched) override;
+    void apply(const BodyView& body, const BodyEdit& edit) override;
 
   private:
     static void share_out(Load& load, const BodyView& body);
     /// A load by nodes, in ascending order, so that a step does not need to read the mesh.
     struct AssembledLoad {
         std::vector<NodalContribution> shares;
-        std::vector<PressedCorner> pressed;
+        std::vector<PressedFace> faces;
+        std::vector<PressedNode> pressed;
     };
     static AssembledLoad assemble(const Load& load, const BodyView& body);
 

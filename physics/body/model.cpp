@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "incise/base/error.h"
 #include "incise/physics/body/motion_failure.h"
+#include "incise/topology/fragment_archive.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::physics {
 
 using topology::ChangeSet;
+using topology::FragmentChanges;
+using topology::FragmentMesh;
 using topology::NodeRecord;
-
-static_assert(topology::Follower<Model>);
 
 namespace {
 
@@ -22,12 +25,9 @@ double diagonal(const topology::Mesh& mesh) {
     return box.diagonal().norm();
 }
 
-/// Reads the fibres into the table. Throws InputError if their number does not suit the mesh.
-MaterialTable read_fibres(MaterialTable table, const topology::Mesh& mesh, ArchiveReader& ar) {
-    const bool has_fibres = std::ranges::any_of(table.materials, &Material::has_fibres);
+/// Reads the fibres into the table.
+MaterialTable read_fibres(MaterialTable table, ArchiveReader& ar) {
     ar(table.fibres);
-    if (table.fibres.size() != (has_fibres ? mesh.element_capacity() : 0))
-        throw InputError("the fibres are those of another body");
     return table;
 }
 
@@ -41,22 +41,79 @@ BoundaryConditions read_boundary_conditions(const topology::Mesh& mesh, ArchiveR
     return boundary_conditions;
 }
 
+void make_sorted_set(std::vector<NodeId>& nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
+/// Returns the nodes at elements that an edit has changed, in ascending order. `mesh` is a Mesh or
+/// a FragmentMesh after the edit.
+template <class Mesh>
+std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
+    std::vector<NodeId> touched;
+    const auto touch = [&](std::span<const NodeId> nodes) {
+        touched.insert(touched.end(), nodes.begin(), nodes.end());
+    };
+    const auto touch_all_of = [&](const topology::ElementRecord& record) {
+        touch(record.corners);
+        // A division, or the undo of one, also changes the shape and mass of the parent.
+        const ElementId parent = record.parent;
+        if (parent.is_valid() && parent.index() < changes.element_capacity_after)
+            touch(mesh.corners(parent));
+    };
+    for (const auto& record : changes.elements_removed) touch_all_of(record);
+    for (const auto& record : changes.elements_added) touch_all_of(record);
+    for (const auto& rewiring : changes.rewired) {
+        touched.push_back(rewiring.from);
+        touched.push_back(rewiring.to);
+    }
+    for (const NodeRecord& record : changes.nodes_removed) {
+        touched.push_back(record.id);
+        // State::apply has added the mass of a merged node to that of its survivor. The mass of the
+        // survivor must be summed again, even if its elements have been separated from it since.
+        if (record.num_sources == 1) touched.push_back(record.sources[0].node);
+    }
+    make_sorted_set(touched);
+    touched.erase(
+        std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
+        touched.end());
+    return touched;
+}
+
+/// Returns the nodes of the fragments whose mass or stiffness an edit may have changed, in
+/// ascending order.
+std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes,
+                                  const ChangeSet& of_fragments) {
+    std::vector<NodeId> touched = touched_nodes(fragments, of_fragments);
+    for (const topology::ShareChange& change : changes.shares) {
+        const auto corners = fragments.corners(change.fragment);
+        touched.insert(touched.end(), corners.begin(), corners.end());
+    }
+    make_sorted_set(touched);
+    return touched;
+}
+
 }  // namespace
 
 Model::Model(const topology::Mesh& mesh, const MaterialTable& table,
              BoundaryConditions boundary_conditions)
+    : Model(mesh, FragmentMesh(mesh), table, std::move(boundary_conditions)) {}
+
+Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialTable& table,
+             BoundaryConditions boundary_conditions)
     : mesh_(mesh),
-      epoch_(mesh),
-      elements_(mesh, table),
-      state_(mesh, elements_.history_size()),
+      fragments_(std::move(fragments)),
+      elements_(fragments_, mesh, table),
+      state_(fragments_, elements_.history_size()),
+      embedded_(mesh, fragments_),
       damping_(boundary_conditions.damping),
       body_size_(diagonal(mesh)),
-      masses_(mesh.node_capacity(), 0.0),
-      constraints_(mesh, std::move(boundary_conditions.constraints)),
+      masses_(fragments_.node_capacity(), 0.0),
+      constraints_(bodies(), std::move(boundary_conditions.constraints), state_.positions()),
       loads_(boundary_conditions.gravity, {}, view()),
       reactions_(constraints_.size()) {
-    resize(mesh.node_capacity());
-    for (std::size_t n = 0; n < mesh.node_capacity(); ++n) gather(NodeId(n));
+    resize(fragments_.node_capacity());
+    for (std::size_t n = 0; n < fragments_.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
     compute_forces(0.0);
 }
@@ -73,11 +130,11 @@ void Model::resize(std::size_t num_nodes) {
 // order of a new model, so that the result is the same bit for bit.
 void Model::gather(NodeId n) {
     double mass = 0.0, stiffness = 0.0;
-    mesh_.star(n, star_);
+    fragments_.star(n, star_);
     for (const ElementId e : star_) {
-        const NodalContributions& shares = elements_.block_of(mesh_, e).contributions(e);
-        mass += shares.mass;
-        stiffness += shares.stiffness[static_cast<std::size_t>(mesh_.corner_of(e, n))];
+        const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
+        mass += of_element.mass;
+        stiffness += of_element.stiffness[static_cast<std::size_t>(fragments_.corner_of(e, n))];
     }
     for (const auto& term : added_terms_) stiffness += term->stiffness_bound(n);
     masses_[n.index()] = mass;
@@ -130,73 +187,140 @@ void Model::visit_outer_tangents(std::span<const Vec3> positions, double time,
     for (const auto& term : added_terms_) term->visit_tangents(positions, time, sink);
 }
 
-void Model::edit_elements(const ChangeSet& changes) {
-    elements_.apply(mesh_, changes);
-    for (const auto& record : changes.elements_removed) elements_.erase(record.id, record.region);
-    for (const auto& record : changes.elements_added) elements_.insert(mesh_, record.id);
-    for (std::size_t i = 0; i < changes.rewired.size(); ++i) {
-        const ElementId element = changes.rewired[i].element;
-        if (i == 0 || changes.rewired[i - 1].element != element) elements_.replace(mesh_, element);
-    }
+void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) {
+    const ChangeSet& of_fragments = edit.of_fragments;
+    elements_.apply(fragments_, of_fragments);
+    for (const auto& record : of_fragments.elements_removed)
+        elements_.erase(record.id, record.region);
+    for (const auto& record : of_fragments.elements_added) elements_.insert(fragments_, record.id);
+    std::vector<ElementId> changed;
+    for (const topology::Rewiring& rewiring : of_fragments.rewired)
+        changed.push_back(rewiring.element);
+    for (const topology::ShareChange& change : changes.shares) changed.push_back(change.fragment);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const ElementId e : changed) elements_.replace(fragments_, e);
 }
 
-/// Returns the nodes whose mass or stiffness may have changed, in ascending order.
-std::vector<NodeId> Model::touched_nodes(const ChangeSet& changes) const {
-    std::vector<NodeId> touched;
-    const auto touch = [&](std::span<const NodeId> nodes) {
-        touched.insert(touched.end(), nodes.begin(), nodes.end());
-    };
-    const auto touch_all_of = [&](const topology::ElementRecord& record) {
-        touch(record.corners);
-        // A division, or the undo of one, also changes the shape and mass of the parent.
-        const ElementId parent = record.parent;
-        if (parent.is_valid() && parent.index() < changes.element_capacity_after)
-            touch(mesh_.corners(parent));
-    };
-    for (const auto& record : changes.elements_removed) touch_all_of(record);
-    for (const auto& record : changes.elements_added) touch_all_of(record);
-    for (const auto& rewiring : changes.rewired) {
-        touched.push_back(rewiring.from);
-        touched.push_back(rewiring.to);
-    }
-    for (const NodeRecord& record : changes.nodes_removed) {
-        touched.push_back(record.id);
-        // State::apply has added the mass of a merged node to that of its survivor. The mass of the
-        // survivor must be summed again, even if its elements have been separated from it since.
-        if (record.num_sources == 1) touched.push_back(record.sources[0].node);
-    }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    touched.erase(
-        std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
-        touched.end());
-    return touched;
+ModelChanges Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
+    if (changes.is_empty()) return {};
+    if (changes.epoch_after < changes.epoch_before)
+        throw InputError("model: this edit takes back another one; call undo() for it");
+    topology::FollowedEpoch(fragments_.epoch()).advance(mesh, changes, "model");
+    const Momenta removed = momenta_of_removed(changes);
+    ModelChanges done{fragments_.apply(mesh, changes), {}};
+    const auto touched_of_mesh = touched_nodes(mesh, changes);
+    const auto touched = touched_nodes(fragments_, done.fragments, done.fragments.mesh);
+    const bool keeps_momenta = done.fragments.has_joins();
+    const Momenta before = keeps_momenta ? momenta_of(touched) - removed : Momenta();
+    follow({changes, done.fragments.mesh, touched_of_mesh, touched}, done.fragments);
+    if (keeps_momenta) done.velocities = change_momenta(touched, before - momenta_of(touched));
+    return done;
 }
 
-void Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
+void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const ModelChanges& done) {
     if (changes.is_empty()) return;
-    epoch_.advance(mesh, changes, "model");
+    fragments_.undo(mesh, done.fragments);
+    const auto velocities = state_.velocities();
+    const bool has_moved = std::ranges::any_of(done.velocities, [&](const auto& change) {
+        return velocities[change.node.index()] != change.after;
+    });
+    if (!has_moved)
+        for (const ModelChanges::Velocity& change : done.velocities)
+            state_.set_velocity(change.node, change.before);
+    const ChangeSet of_mesh = inverse(changes), of_fragments = inverse(done.fragments.mesh);
+    const auto touched_of_mesh = touched_nodes(mesh, of_mesh);
+    const auto touched = touched_nodes(fragments_, done.fragments, of_fragments);
+    follow({of_mesh, of_fragments, touched_of_mesh, touched}, done.fragments);
+}
+
+void Model::follow(const BodyEdit& edit, const FragmentChanges& changes) {
     ++structure_version_;
-    resize(std::max(changes.node_capacity_before, changes.node_capacity_after));
-    state_.apply(mesh, changes, masses_);
-    edit_elements(changes);
-    resize(changes.node_capacity_after);
+    const ChangeSet& of_fragments = edit.of_fragments;
+    resize(std::max(of_fragments.node_capacity_before, of_fragments.node_capacity_after));
+    state_.apply(fragments_, of_fragments, masses_);
+    edit_elements(edit, changes);
+    resize(of_fragments.node_capacity_after);
     elements_.number_nodes(masses_.size());
-    const std::vector<NodeId> touched = touched_nodes(changes);
-    for (const NodeId n : touched) gather(n);
-    constraints_.apply(mesh_, changes);
-    loads_.apply(view(), changes, touched);
-    for (const auto& term : added_terms_) term->apply(view(), changes, touched);
+    for (const NodeId n : edit.touched) gather(n);
+    embedded_.apply(mesh_, fragments_, edit, changes);
+    constraints_.apply(bodies(), edit.of_mesh, of_fragments, edit.touched, positions());
+    loads_.apply(view(), edit);
+    for (const auto& term : added_terms_) term->apply(view(), edit);
+}
+
+/// Returns the momenta of nodes, about the origin.
+Momenta Model::momenta_of(std::span<const NodeId> nodes) const {
+    Momenta sum;
+    for (const NodeId n : nodes)
+        if (n.index() < masses_.size() && masses_[n.index()] > 0.0)
+            sum.add(masses_[n.index()], positions()[n.index()], velocities()[n.index()]);
+    return sum;
+}
+
+/// Returns the momenta of the elements of the mesh that an edit is about to remove from the model,
+/// about the origin.
+Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
+    std::map<ElementId, double> volumes;  // removed, m3, by element before the edit
+    std::vector<Vec3> x;
+    const auto volume_of = [&](const topology::ElementRecord& record) {
+        x.clear();
+        for (const NodeId n : record.corners) x.push_back(mesh_.rest_position(n));
+        return topology::signed_volume(record.kind, x);
+    };
+    for (const auto& record : changes.elements_removed) volumes[record.id] = volume_of(record);
+    // Parts of an element that was divided before it was removed are still there.
+    if (!volumes.empty()) {
+        std::map<ElementId, ElementId> ancestors;
+        topology::for_each_part(changes, [&](ElementId parent, ElementId part) {
+            const auto known = ancestors.find(parent);
+            ancestors[part] = known == ancestors.end() ? parent : known->second;
+        });
+        for (const auto& record : changes.elements_added)
+            if (const auto ancestor = ancestors.find(record.id); ancestor != ancestors.end())
+                if (const auto it = volumes.find(ancestor->second); it != volumes.end())
+                    it->second -= volume_of(record);
+    }
+    Momenta sum;
+    for (const auto& [cell, volume] : volumes) {
+        const ElementId e = fragments_.fragment_of_cell(cell);
+        const auto corners = fragments_.corners(e);
+        const double mass =
+            density(fragments_.region(e)) * volume / static_cast<double>(corners.size());
+        for (const NodeId n : corners)
+            sum.add(mass, positions()[n.index()], velocities()[n.index()]);
+    }
+    return sum;
+}
+
+/// Changes the momenta of nodes by a rigid change of the velocities of those without constraint.
+std::vector<ModelChanges::Velocity> Model::change_momenta(std::span<const NodeId> nodes,
+                                                          const Momenta& by) {
+    std::vector<ModelChanges::Velocity> changes;
+    if (by.linear.isZero(0.0) && by.angular.isZero(0.0)) return changes;
+    std::vector<MassPoint> points;
+    for (const NodeId n : nodes) {
+        if (masses_[n.index()] == 0.0 || constraints_.of_node(n.index())) continue;
+        points.push_back({masses_[n.index()], positions()[n.index()]});
+        changes.push_back({n, velocities()[n.index()], Vec3::Zero()});
+    }
+    const RigidVelocity change = rigid_change(points, by);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        changes[i].after = changes[i].before + change.at(points[i].x);
+        state_.set_velocity(changes[i].node, changes[i].after);
+        node_sums_.forget(changes[i].node.index());
+    }
+    return changes;
 }
 
 void Model::add_constraint(Constraint constraint) {
-    constraints_.add(mesh_, std::move(constraint));
+    constraints_.add(bodies(), std::move(constraint), positions());
     reactions_.emplace_back();
     ++structure_version_;
 }
 
 void Model::remove_constraint(std::size_t i) {
-    constraints_.remove(mesh_, i);
+    constraints_.remove(bodies(), i, positions());
     reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
     ++structure_version_;
 }
@@ -213,20 +337,20 @@ void Model::remove_load(std::size_t i) {
 
 void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
     term->update(view());
-    for (const NodeId n : mesh_.nodes())
+    for (const NodeId n : fragments_.nodes())
         if (const double bound = term->stiffness_bound(n); !(bound >= 0.0 && std::isfinite(bound)))
             throw InputError("a force term bounds its stiffness at node " +
-                             std::to_string(mesh_.label(n)) + " by " + std::to_string(bound) +
-                             " N/m: it must be finite, and 0 or more");
+                             std::to_string(mesh_.label(fragments_.origin(n))) + " by " +
+                             std::to_string(bound) + " N/m: it must be finite, and 0 or more");
     added_terms_.push_back(std::move(term));
-    for (const NodeId n : mesh_.nodes()) gather(n);
+    for (const NodeId n : fragments_.nodes()) gather(n);
     ++structure_version_;
 }
 
 bool Model::remove_force_term(const ForceTerm* term) {
     if (std::erase_if(added_terms_, [&](const auto& t) { return t.get() == term; }) == 0)
         return false;
-    for (const NodeId n : mesh_.nodes()) gather(n);
+    for (const NodeId n : fragments_.nodes()) gather(n);
     ++structure_version_;
     return true;
 }
@@ -236,7 +360,7 @@ void Model::take_force_terms(Model& former, double time) {
     added_terms_.swap(former.added_terms_);
     try {
         update_outer_terms();
-        for (const NodeId n : mesh_.nodes()) gather(n);
+        for (const NodeId n : fragments_.nodes()) gather(n);
         compute_forces(time);
     } catch (...) {  // what a term throws
         added_terms_.swap(former.added_terms_);
@@ -246,6 +370,7 @@ void Model::take_force_terms(Model& former, double time) {
 
 void Model::save(ArchiveWriter& ar) const {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
+    topology::save(fragments_, ar);
     ar(copy(fibres()), loads_.gravity(), damping_, copy(constraints_.all()), copy(loads_.all()));
     state_.save(ar);
     ar(reactions_, external_work_, dissipated_energy_, largest_move_, body_size_,
@@ -254,7 +379,11 @@ void Model::save(ArchiveWriter& ar) const {
 
 Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time)
     // Braces guarantee that the arguments read the archive from left to right.
-    : Model{mesh, read_fibres(std::move(table), mesh, ar), read_boundary_conditions(mesh, ar)} {
+    : Model{mesh, topology::load_fragments(mesh, ar), read_fibres(std::move(table), ar),
+            read_boundary_conditions(mesh, ar)} {
+    const bool has_fibres =
+        std::ranges::any_of(elements_.materials().materials, &Material::has_fibres);
+    if (has_fibres == fibres().empty()) throw InputError("the fibres are those of another body");
     restore_state(ar, time);
 }
 
@@ -270,9 +399,33 @@ void Model::restore_state(ArchiveReader& ar, double time) {
 }
 
 double Model::element_stable_step(ElementId e) const {
-    const NodalContributions& shares = elements_.block_of(mesh_, e).contributions(e);
-    const double stiffness = *std::max_element(shares.stiffness.begin(), shares.stiffness.end());
-    return 2.0 / std::sqrt(stiffness / shares.mass);
+    const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
+    const double stiffness =
+        *std::max_element(of_element.stiffness.begin(), of_element.stiffness.end());
+    return 2.0 / std::sqrt(stiffness / of_element.mass);
+}
+
+std::vector<double> Model::mesh_masses() const {
+    std::vector<double> masses(mesh_.node_capacity(), 0.0);
+    for (const ElementId e : mesh_.elements()) {
+        const double mass = view().mass_at_corners(e);
+        for (const NodeId n : mesh_.corners(e)) masses[n.index()] += mass;
+    }
+    return masses;
+}
+
+std::vector<Vec3> Model::mesh_elastic_forces() const {
+    const std::vector<double> masses = mesh_masses();
+    std::vector<Vec3> forces(masses.size(), Vec3::Zero());
+    for (const NodeId n : mesh_.nodes()) {
+        const topology::Embedding& at = embedded_[n];
+        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
+            const std::size_t node = at.nodes[k].index();
+            forces[n.index()] +=
+                masses[n.index()] * at.weights[k] / masses_[node] * elastic_forces_[node];
+        }
+    }
+    return forces;
 }
 
 }  // namespace incise::physics

@@ -12,8 +12,10 @@
 
 #include "incise/base/archive.h"
 #include "incise/physics/body/constraints.h"
+#include "incise/physics/body/embedded_nodes.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/loads.h"
+#include "incise/physics/body/momentum.h"
 #include "incise/physics/body/node_lanes.h"
 #include "incise/physics/body/node_sums.h"
 #include "incise/physics/elements/element_store.h"
@@ -21,6 +23,7 @@
 #include "incise/physics/elements/state.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -61,10 +64,27 @@ struct Reaction {
     static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
 };
 
-/// A body with lumped masses at the nodes of a mesh and elastic elements between them.
+/// The record of what an edit did to a model, with which undo() takes it back.
+struct ModelChanges {
+    topology::FragmentChanges fragments;
+    /// The velocity of a node that keeps the momenta after light fragments joined others.
+    struct Velocity {
+        NodeId node;
+        Vec3 before = Vec3::Zero(), after = Vec3::Zero();  ///< m/s
+        bool operator==(const Velocity&) const = default;
+    };
+    std::vector<Velocity> velocities;
+};
+
+/// A body with lumped masses at nodes, and elastic elements between them.
 ///
-/// All arrays are indexed by node id. Dead nodes have no mass. They keep their last positions and
-/// velocities, so that an edit can be undone.
+/// The mesh is the material. The elements are its fragments (topology::FragmentMesh): a cut divides
+/// the material exactly, and the fragments of an element move as the whole would. Without cuts,
+/// elements and nodes are those of the mesh, with the same ids.
+///
+/// All arrays are indexed by node of the fragments, unless they are said to be by node of the mesh.
+/// Dead nodes have no mass. They keep their last positions and velocities, so that an edit can be
+/// undone.
 class Model {
   public:
     /// Builds a body at rest in the rest positions, and computes the forces of this state.
@@ -72,6 +92,10 @@ class Model {
     /// Throws InputError as ElementStore and Constraints do.
     /// @lifetime The mesh must outlive the model.
     Model(const topology::Mesh& mesh, const MaterialTable& table,
+          BoundaryConditions boundary_conditions = {});
+    /// Builds the same of a body that was cut.
+    /// @param fragments  of the mesh; the fibres of the table are by id of fragments
+    Model(const topology::Mesh& mesh, topology::FragmentMesh fragments, const MaterialTable& table,
           BoundaryConditions boundary_conditions = {});
 
     /// Restores a model from the bytes that save() has written. The result equals the saved model
@@ -93,9 +117,21 @@ class Model {
     std::span<const Vec3> elastic_forces() const { return elastic_forces_; }  ///< N
     std::span<const double> masses() const { return masses_; }                ///< kg
 
+    /// Returns the positions, m, and velocities, m/s, of the nodes of the mesh, by id.
+    /// @thread One thread at a time.
+    /// @lifetime Until the model is stepped or edited.
+    std::span<const Vec3> mesh_positions() const { return embedded_.positions(state_); }
+    std::span<const Vec3> mesh_velocities() const { return embedded_.velocities(state_); }
+    /// Returns the mass of the material at each node of the mesh, kg: a quarter of that of each
+    /// tetrahedron, and an eighth of that of each hexahedron. Cost: O(n).
+    std::vector<double> mesh_masses() const;
+    /// Returns the elastic force on the material at each node of the mesh, N: its mass times the
+    /// acceleration there by elastic forces. Cost: O(n).
+    std::vector<Vec3> mesh_elastic_forces() const;
+
     /// Replaces the state and computes its forces. Viscous elements treat the change as an
     /// instantaneous strain, so that they respond with their instantaneous moduli.
-    /// @param positions   by node id, Mesh::node_capacity() of them, m
+    /// @param positions   by node of the fragments, FragmentMesh::node_capacity() of them, m
     /// @param velocities  likewise, m/s
     /// @param time        the time for the loads, s
     void set_state(std::span<const Vec3> positions, std::span<const Vec3> velocities, double time);
@@ -154,23 +190,29 @@ class Model {
     void record_work(double external_work, double dissipated_energy);
 
     /// Follows an edit of the mesh. The update is incremental. The result equals bit for bit a
-    /// model that is built on the edited mesh with the same state and history.
+    /// model that is built on the edited mesh and fragments with the same state and history.
     ///
-    /// A copy of a node gets the state of that node. A node between others gets the weighted mean
-    /// of their states, with the weights of its record. Merged nodes keep their momentum. Parts of
-    /// a divided element inherit its fibres and its viscous history.
+    /// A copy of a node gets the state of that node. Fragments of an element inherit its fibres and
+    /// its viscous history. So an edit that only divides elements changes no mass, momentum or
+    /// energy. Where a light fragment joins another one, its mass moves with the corners of the
+    /// other one from now on: mass stays; linear and angular momentum are kept by a rigid change of
+    /// the velocities of the nodes near the edit that have no constraint; energies and the centre
+    /// of mass change a little: docs/theory.md, Fragments. Merged nodes keep their momentum.
     ///
-    /// Division of an edge from a to b at (1 - t) a + t b keeps mass, momentum, centre of mass and,
-    /// except for springs, the elastic energy. The lumped masses lose the angular momentum
-    /// m t (1 - t) (x_b - x_a) x (v_b - v_a). They lose the kinetic energy
-    /// m t (1 - t) |v_b - v_a|^2 / 2. Here m is a quarter of the mass of the elements at the edge.
-    ///
-    /// The inverse of an edit, applied before any motion, restores the former state bit for bit.
     /// The forces stay as they are until compute_forces() is called.
     /// Throws InputError for an edit out of turn. Cost: proportional to the touched stars.
     /// @param mesh     the mesh of the model, after the edit
     /// @param changes  the record of the edit
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    ModelChanges apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Takes back an edit that apply() has followed. Before any motion, it restores the former
+    /// state bit for bit.
+    /// Throws InputError, and changes nothing, unless the edit is the last one.
+    /// @param mesh     the mesh of the model, on which the inverse of the edit was replayed
+    /// @param changes  the record of the edit
+    /// @param done     what apply() returned
+    /// Cost: that of the edit, and O(n) in the nodes of constraints.
+    void undo(const topology::Mesh& mesh, const topology::ChangeSet& changes,
+              const ModelChanges& done);
 
     /// Appends a constraint to the list. Throws InputError, and changes nothing, if another
     /// constraint prescribes the same component of a node. Cost: O(n) in the nodes of the mesh and
@@ -236,6 +278,8 @@ class Model {
     /// Returns the largest distance that a node moved in the last step, m. If the step had several
     /// parts, it is the sum over the parts.
     double largest_move() const { return largest_move_; }
+    /// Returns a bound on the distance that a node of the mesh moved in the last step, m.
+    double largest_mesh_move() const { return embedded_.largest_gain() * largest_move_; }
 
     /// Returns the bound on explicit steps at rest, s; see StableStep. The bound ignores damping,
     /// which only increases the stable step.
@@ -247,12 +291,14 @@ class Model {
         return stable_step_.quotient(node) * masses_[node];
     }
 
-    /// Returns the stable step of one element if its nodes had no other element, s.
+    /// Returns the stable step of one fragment if its nodes had no other one, s.
     double element_stable_step(ElementId e) const;
 
-    /// Returns the element with the lowest id at the node that sets the stable step.
+    /// Returns an element of the mesh at the node that sets the stable step.
     ElementId limiting_element() const {
-        return mesh_.incident_element(NodeId(stable_step_.limiting_node()));
+        const NodeId n(stable_step_.limiting_node());
+        const ElementId e = fragments_.incident_element(n);
+        return fragments_.cells_of(e).front();
     }
     /// Returns the sum of modulus times rest volume over the elements, J. This is the order of the
     /// elastic energy at a strain of one. Rounding errors of the elastic energy are small against
@@ -269,12 +315,14 @@ class Model {
     double volume_change() const;
     /// Returns the largest distance of a node from its rest position, m.
     double max_displacement() const;
+    /// Returns the result of a fragment. It is that of each element of the mesh that the fragment
+    /// carries: FragmentMesh::fragment_of_cell.
     ElementResult element_result(ElementId e) const {
-        return elements_.block_of(mesh_, e).result(e, positions(), history());
+        return elements_.block_of(fragments_, e).result(e, positions(), history());
     }
 
-    /// Returns the direction of the fibres at rest, by element id. It is zero where there are none.
-    /// Parts of a divided element have the direction of the whole. Empty if no material has fibres.
+    /// Returns the direction of the fibres at rest, by fragment. It is zero where there are none.
+    /// Empty if no material has fibres.
     std::span<const Vec3> fibres() const { return elements_.fibres(); }
 
     /// Returns the density of the material of a region, kg/m3.
@@ -293,6 +341,8 @@ class Model {
     std::span<const Reaction> reactions() const { return reactions_; }
 
     const topology::Mesh& mesh() const { return mesh_; }
+    const topology::FragmentMesh& fragments() const { return fragments_; }
+    const EmbeddedNodes& embedded_nodes() const { return embedded_; }
 
   private:
     /// The motion of one node in a step.
@@ -336,19 +386,25 @@ class Model {
 
     void restore_state(ArchiveReader& ar, double time);
     NodeSums sums_of(NodeRange range) const;
-    BodyView view() const { return {mesh_, elements_, masses_}; }
+    BodyView view() const { return {mesh_, fragments_, elements_, masses_}; }
+    Constraints::Body bodies() const { return {mesh_, fragments_}; }
     void update_outer_terms();
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
-    std::vector<NodeId> touched_nodes(const topology::ChangeSet& changes) const;
-    void edit_elements(const topology::ChangeSet& changes);
+    void follow(const BodyEdit& edit, const topology::FragmentChanges& changes);
+    void edit_elements(const BodyEdit& edit, const topology::FragmentChanges& changes);
+    Momenta momenta_of(std::span<const NodeId> nodes) const;
+    Momenta momenta_of_removed(const topology::ChangeSet& changes) const;
+    std::vector<ModelChanges::Velocity> change_momenta(std::span<const NodeId> nodes,
+                                                       const Momenta& by);
 
     const topology::Mesh& mesh_;
-    topology::FollowedEpoch epoch_;
+    topology::FragmentMesh fragments_;
     std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;
     State state_;
+    EmbeddedNodes embedded_;
     double damping_;
     double body_size_;
 

@@ -93,7 +93,7 @@ Model::NodeStep Model::constrain_node(std::size_t n, const Vec3& v, double time,
     const auto& constraint_of = *constraints_.of_node(n);
     const double mass = masses_[n];
     const Vec3& x = positions()[n];
-    constraints_.prescribe(constraint_of, mesh_, NodeId(n), time + dt, step.x);
+    constraints_.prescribe(constraint_of, fragments_, NodeId(n), time + dt, step.x);
     for (int c = 0; c < 3; ++c) {
         const int s = constraint_of[static_cast<std::size_t>(c)];
         if (s < 0) continue;
@@ -130,7 +130,7 @@ void Model::kick(double time, double dt) {
             if (!constraint_of) continue;
             const Vec3& x = values.positions[n];
             Vec3 target = x + dt * v;
-            constraints_.prescribe(*constraint_of, mesh_, NodeId(n), time + dt, target);
+            constraints_.prescribe(*constraint_of, fragments_, NodeId(n), time + dt, target);
             for (int c = 0; c < 3; ++c)
                 if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0)
                     v[c] = (target[c] - x[c]) / dt;

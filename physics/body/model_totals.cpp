@@ -80,9 +80,9 @@ double Model::volume_change() const {
 
 double Model::max_displacement() const {
     double largest = 0.0;
-    for (std::size_t n = 0; n < masses_.size(); ++n)
-        if (masses_[n] > 0.0)  // alive
-            largest = std::max(largest, (positions()[n] - mesh_.rest_positions()[n]).norm());
+    const auto x = mesh_positions();
+    for (const NodeId n : mesh_.nodes())
+        largest = std::max(largest, (x[n.index()] - mesh_.rest_position(n)).norm());
     return largest;
 }
 

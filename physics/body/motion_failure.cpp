@@ -13,18 +13,19 @@ namespace incise::physics {
 
 namespace {
 
-/// Returns the element at the node with the lowest volume ratio before the step, and that ratio.
+/// Returns the fragment at the node with the lowest volume ratio before the step, and that ratio.
 std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, double dt) {
     std::vector<Vec3> before(model.positions().begin(), model.positions().end());
     for (std::size_t i = 0; i < before.size(); ++i) before[i] -= dt * model.velocities()[i];
     std::vector<ElementId> star;
-    const topology::Mesh& mesh = model.mesh();
-    mesh.star(n, star);
-    std::pair<ElementId, double> lowest{mesh.incident_element(n),
-                                        std::numeric_limits<double>::infinity()};
+    const topology::FragmentMesh& fragments = model.fragments();
+    fragments.star(n, star);
+    std::pair<ElementId, double> lowest{star.front(), std::numeric_limits<double>::infinity()};
     for (const ElementId e : star)
-        if (const double J =
-                model.elements().block_of(mesh, e).result(e, before, model.history()).volume_ratio;
+        if (const double J = model.elements()
+                                 .block_of(fragments, e)
+                                 .result(e, before, model.history())
+                                 .volume_ratio;
             J < lowest.second)
             lowest = {e, J};
     return lowest;
@@ -38,7 +39,7 @@ struct Lost {
 /// Returns the first node whose velocity is not finite, or else the fastest node.
 Lost lost_node(const Model& model) {
     Lost lost{NodeId(0), -1.0};
-    for (const NodeId n : model.mesh().nodes()) {
+    for (const NodeId n : model.fragments().nodes()) {
         if (!std::isfinite(lost.speed)) break;
         const double speed = model.velocities()[n.index()].norm();
         if (!(speed <= lost.speed)) lost = {n, speed};
@@ -67,7 +68,7 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
     constexpr double crushed = 0.2;
     const auto [element, J] = most_crushed_before(model, n, dt);
     if (J < crushed)
-        text << "element " << model.mesh().label(element)
+        text << "element " << model.mesh().label(model.fragments().cells_of(element).front())
              << (J < 0.0 ? " there was turned inside out" : " there was crushed")
              << " (its volume ratio was " << J << "), where tissue is stiffer than at rest";
     else
@@ -81,10 +82,13 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
 MotionFailure failure_of_step(const Model& model, double time, double dt) {
     const auto [n, speed] = lost_node(model);
     const topology::Mesh& mesh = model.mesh();
-    const ElementId e = mesh.incident_element(n);
+    const topology::FragmentMesh& fragments = model.fragments();
+    const ElementId fragment = fragments.incident_element(n),
+                    e = fragments.cells_of(fragment).front();
+    const NodeId origin = fragments.origin(n);
     std::ostringstream text;
-    text << "element " << mesh.label(e) << ", node " << mesh.label(n) << " (at rest at "
-         << mesh.rest_position(n).transpose() << ") ";
+    text << "element " << mesh.label(e) << ", node " << mesh.label(origin) << " (at rest at "
+         << fragments.rest_position(n).transpose() << ") ";
     if (std::isfinite(speed))
         text << "moved by " << speed * dt << " m in the step from t = " << time
              << " s, farther than the body is wide";
@@ -94,7 +98,7 @@ MotionFailure failure_of_step(const Model& model, double time, double dt) {
     const FailureCause cause = find_cause(model, n, dt, text);
     MotionFailure failure(cause, text.str());
     failure.element = e;
-    failure.node = n;
+    failure.node = origin;
     return failure;
 }
 

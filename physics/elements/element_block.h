@@ -21,11 +21,20 @@
 
 namespace incise::physics {
 
-/// The constant contributions of one element to its corners. They depend only on the rest shape and
-/// the material.
+/// The constant contributions of one element to its corners. They depend only on the rest shape,
+/// the share and the material.
 struct NodalContributions {
     double mass = 0.0;                  ///< kg, the same to each corner
     std::array<double, 8> stiffness{};  ///< N/m, by corner, to the bound of stable_step.h
+};
+
+/// What a block needs to know of an element.
+struct ElementInput {
+    std::span<const NodeId> corners;
+    std::span<const Vec3> rest_positions;  ///< m, by node id
+    Vec3 fibre = Vec3::Zero();  ///< direction of the fibres at rest, of unit length; ignored by a
+                                ///< law without fibres
+    double share = 1.0;  ///< scales mass, stiffness and energy; see topology::FragmentMesh::share
 };
 
 /// A trial state at the end of a step of an implicit solver or of statics.
@@ -128,20 +137,13 @@ class ElementBlock {
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
                          std::span<ElementResult> results) const = 0;
     virtual const NodalContributions& contributions(ElementId e) const = 0;
-    /// Returns the rest volume of one element, m3.
+    /// Returns the rest volume of one element, m3: its share of the volume between its corners.
     virtual double rest_volume(ElementId e) const = 0;
 
     /// Inserts an element and precomputes its values.
-    /// @param e               the element
-    /// @param corners         its nodes
-    /// @param rest_positions  by node id, m
-    /// @param fibre           direction of the fibres at rest, of unit length; ignored by a law
-    ///                        without fibres
-    virtual void insert(ElementId e, std::span<const NodeId> corners,
-                        std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
-    /// Precomputes an element of the block again, with other corners; arguments as for insert().
-    virtual void replace(ElementId e, std::span<const NodeId> corners,
-                         std::span<const Vec3> rest_positions, const Vec3& fibre) = 0;
+    virtual void insert(ElementId e, const ElementInput& input) = 0;
+    /// Precomputes an element of the block again, with other corners or another share.
+    virtual void replace(ElementId e, const ElementInput& input) = 0;
     virtual void erase(ElementId e) = 0;
 
   protected:

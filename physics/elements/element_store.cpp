@@ -14,6 +14,7 @@
 namespace incise::physics {
 
 using topology::CellKind;
+using topology::FragmentMesh;
 
 namespace {
 
@@ -59,7 +60,9 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
 
 }  // namespace
 
-ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& table) : table_(table) {
+ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& mesh,
+                           const MaterialTable& table)
+    : table_(table) {
     if (table.precision == Precision::single_precision)
         for (const Material& material : table.materials)
             if (std::holds_alternative<MassSprings>(material.method))
@@ -67,21 +70,23 @@ ElementStore::ElementStore(const topology::Mesh& mesh, const MaterialTable& tabl
                     "mass springs have no forces in single precision; use double precision, or "
                     "another method");
     if (!table_.fibres.empty()) {
-        table_.fibres.resize(mesh.element_capacity(), Vec3::Zero());
-        fibres_.emplace(mesh, std::exchange(table_.fibres, {}));
+        table_.fibres.resize(fragments.element_capacity(), Vec3::Zero());
+        fibres_.emplace(fragments, std::exchange(table_.fibres, {}));
     }
-    for (const ElementId e : mesh.elements()) {
-        require_law(mesh, e);
-        insert(mesh, e);
+    for (const ElementId e : fragments.elements()) {
+        require_law(fragments, mesh, e);
+        insert(fragments, e);
     }
-    number_nodes(mesh.node_capacity());
+    number_nodes(fragments.node_capacity());
 }
 
-void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
-    const int region = mesh.region(e);
-    const std::string name = "element " + std::to_string(mesh.label(e));
+void ElementStore::require_law(const FragmentMesh& fragments, const topology::Mesh& mesh,
+                               ElementId e) const {
+    const int region = fragments.region(e);
+    const ElementId cell = fragments.cells_of(e).front();
+    const std::string name = "element " + std::to_string(mesh.label(cell));
     const auto refuse = [&](MaterialMisfit why, const std::string& text) {
-        throw UnsuitableMaterial(e, region, why, name + text);
+        throw UnsuitableMaterial(cell, region, why, name + text);
     };
     const std::string of_region = ", of region " + std::to_string(region) + ", ";
     if (!table_.of_region.contains(region))
@@ -90,7 +95,7 @@ void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
                    ", for which there is no material; add one, or one without regions");
     const Material& material = table_.materials[table_.of_region.at(region)];
     const auto* hybrid = std::get_if<HybridSprings>(&material.method);
-    const CellKind kind = mesh.kind(e);
+    const CellKind kind = fragments.kind(e);
     const std::string is_a = of_region + "is a " + traits(kind).name;
     if (kind != CellKind::tetrahedron && kind != CellKind::hexahedron)
         refuse(MaterialMisfit::other,
@@ -101,13 +106,13 @@ void ElementStore::require_law(const topology::Mesh& mesh, ElementId e) const {
         refuse(MaterialMisfit::needs_tetrahedra,
                is_a + "; the methods heml and mass-spring need tetrahedra");
     constexpr double rounding = 1e-12;
-    if (material.has_fibres() && !(std::abs(fibre_of(e).norm() - 1.0) <= rounding))
+    if (material.has_fibres() && !(std::abs(input_of(fragments, e).fibre.norm() - 1.0) <= rounding))
         refuse(MaterialMisfit::other,
                of_region + "has no direction of fibres of unit length, which its material needs");
     if (!hybrid) return;
     std::array<Vec3, 8> corners;
     for (std::size_t k = 0; k < corners.size(); ++k)
-        corners[k] = mesh.rest_position(mesh.corners(e)[k]);
+        corners[k] = fragments.rest_position(fragments.corners(e)[k]);
     if (const auto reason = why_no_cell(*hybrid, corners))
         refuse(MaterialMisfit::needs_cubes, " " + *reason);
 }
@@ -117,23 +122,24 @@ std::size_t ElementStore::block_index(ElementId e, int region) const {
            table_.of_region.at(region);
 }
 
-Vec3 ElementStore::fibre_of(ElementId e) const {
-    return fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero());
+ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
+    return {fragments.corners(e), fragments.rest_positions(),
+            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.share(e)};
 }
 
-void ElementStore::insert(const topology::Mesh& mesh, ElementId e) {
-    const std::size_t index = block_index(e, mesh.region(e));
+void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {
+    const std::size_t index = block_index(e, fragments.region(e));
     if (index >= blocks_.size()) blocks_.resize(index + 1);
     if (!blocks_[index])
-        blocks_[index] =
-            make_block(table_.materials[table_.of_region.at(mesh.region(e))], table_.precision);
-    editable(index).insert(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+        blocks_[index] = make_block(table_.materials[table_.of_region.at(fragments.region(e))],
+                                    table_.precision);
+    editable(index).insert(e, input_of(fragments, e));
     note_change(index);
 }
 
-void ElementStore::replace(const topology::Mesh& mesh, ElementId e) {
-    const std::size_t index = block_index(e, mesh.region(e));
-    editable(index).replace(e, mesh.corners(e), mesh.rest_positions(), fibre_of(e));
+void ElementStore::replace(const FragmentMesh& fragments, ElementId e) {
+    const std::size_t index = block_index(e, fragments.region(e));
+    editable(index).replace(e, input_of(fragments, e));
     note_change(index);
 }
 

@@ -20,7 +20,7 @@
 #include "incise/physics/laws/material.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
-#include "incise/topology/mesh.h"
+#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -54,7 +54,7 @@ struct UnsuitableMaterial : InputError {
     MaterialMisfit cause;
 };
 
-/// The elements of a body in blocks.
+/// The elements of a body in blocks: its fragments.
 ///
 /// A block has the elements of one material whose ids agree in all but their lowest bits, that is
 /// in a range of ElementBlock::max_elements ids. The division depends only on ids and materials. An
@@ -65,28 +65,32 @@ class ElementStore {
     /// an element that its material does not suit. The kind or the shape of the element may be
     /// wrong, or it may lack the fibres that the material needs.
     /// Throws InputError for mass springs in single precision.
-    ElementStore(const topology::Mesh& mesh, const MaterialTable& table);
+    /// @param fragments  the elements
+    /// @param mesh       the mesh that they are fragments of, for labels in messages
+    /// @param table      the materials; its fibres are by id of fragments
+    ElementStore(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+                 const MaterialTable& table);
 
     /// Follows an edit with the values by element id: parts of a divided element inherit its
     /// fibres. It must be called before insert(), replace() and erase() for this edit.
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-        if (fibres_) fibres_->apply(mesh, changes);
+    void apply(const topology::FragmentMesh& fragments, const topology::ChangeSet& changes) {
+        if (fibres_) fibres_->apply(fragments, changes);
     }
 
-    void insert(const topology::Mesh& mesh, ElementId e);
-    /// Precomputes an element again whose corners have changed.
-    void replace(const topology::Mesh& mesh, ElementId e);
-    /// Erases an element. The mesh may no longer know its region, which is therefore an argument.
+    void insert(const topology::FragmentMesh& fragments, ElementId e);
+    /// Precomputes an element again whose corners or whose share have changed.
+    void replace(const topology::FragmentMesh& fragments, ElementId e);
+    /// Erases an element. Its region is an argument.
     void erase(ElementId e, int region);
 
     /// Numbers the nodes of the changed blocks, at the end of an edit. Before this call, only
     /// contributions and rest volumes of elements may be read. `num_nodes` is the node capacity of
-    /// the mesh.
+    /// the fragments.
     void number_nodes(std::size_t num_nodes);
 
     /// Returns the block of an element.
-    const ElementBlock& block_of(const topology::Mesh& mesh, ElementId e) const {
-        return *blocks_[block_index(e, mesh.region(e))];
+    const ElementBlock& block_of(const topology::FragmentMesh& fragments, ElementId e) const {
+        return *blocks_[block_index(e, fragments.region(e))];
     }
 
     /// Returns the density of the material of a region, kg/m3.
@@ -186,8 +190,9 @@ class ElementStore {
     ElementBlock& editable(std::size_t block);
 
     std::size_t block_index(ElementId e, int region) const;
-    void require_law(const topology::Mesh& mesh, ElementId e) const;
-    Vec3 fibre_of(ElementId e) const;
+    void require_law(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+                     ElementId e) const;
+    ElementInput input_of(const topology::FragmentMesh& fragments, ElementId e) const;
 
     MaterialTable table_;  // without the fibres
     std::optional<topology::ElementField<Vec3>> fibres_;

@@ -84,7 +84,7 @@ class KernelBlock final : public ElementBlock {
                 else
                     f = kernel_.forces(row(s).rest, x);
                 for (std::size_t k = 0; k < num_corners; ++k)
-                    forces[local_corners(s)[k]].vector() += f[k];
+                    forces[local_corners(s)[k]].vector() += row(s).share * f[k];
             }
     }
 
@@ -100,19 +100,20 @@ class KernelBlock final : public ElementBlock {
             const Corners f = at_end_of_step(s, end, [&](const auto&... state) {
                 return kernel_.forces(row(s).rest, state...);
             });
-            for (std::size_t k = 0; k < num_corners; ++k) forces[row(s).nodes[k]] += f[k];
+            for (std::size_t k = 0; k < num_corners; ++k)
+                forces[row(s).nodes[k]] += row(s).share * f[k];
         }
     }
 
     double potential(const EndOfStep& end) const override {
         Sum sum;
         for (std::size_t s = 0; s < elements_.size(); ++s)
-            sum += at_end_of_step(s, end, [&](const auto&... state) {
-                if constexpr (HasHistory<Kernel>)
-                    return kernel_.potential(row(s).rest, state...);
-                else
-                    return kernel_.energy(row(s).rest, state...);
-            });
+            sum += row(s).share * at_end_of_step(s, end, [&](const auto&... state) {
+                       if constexpr (HasHistory<Kernel>)
+                           return kernel_.potential(row(s).rest, state...);
+                       else
+                           return kernel_.energy(row(s).rest, state...);
+                   });
         return sum.value();
     }
 
@@ -122,6 +123,7 @@ class KernelBlock final : public ElementBlock {
                 return element_tangent(kernel_, row(s).rest, state...);
             });
             if (kind == TangentKind::positive) K = positive_part(K);
+            K *= row(s).share;
             sink.add(row(s).nodes, {K.data(), static_cast<std::size_t>(K.size())});
         }
     }
@@ -137,8 +139,9 @@ class KernelBlock final : public ElementBlock {
             // begin_step() sets, which only this function uses.
             kernel_.begin_step(dt);
             const auto advance_one = [&](std::size_t s) {
-                return kernel_.advance(row(s).rest, gather(s, before), gather(s, positions),
-                                       history.of(elements_[s]));
+                return row(s).share * kernel_.advance(row(s).rest, gather(s, before),
+                                                      gather(s, positions),
+                                                      history.of(elements_[s]));
             };
             if constexpr (HasMemoryLanes<Kernel>)
                 energy = memory_lanes_.advance(kernel_, before.data(), positions.data(), history,
@@ -162,7 +165,7 @@ class KernelBlock final : public ElementBlock {
         BlockState state;
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             const Corners x = gather(s, positions);
-            state.elastic_energy += kernel_.energy(row(s).rest, x);
+            state.elastic_energy += row(s).share * kernel_.energy(row(s).rest, x);
             state.min_volume_ratio =
                 std::min(state.min_volume_ratio, kernel_.volume_ratio(row(s).rest, x));
         }
@@ -177,7 +180,7 @@ class KernelBlock final : public ElementBlock {
     double stiffness_energy() const override {
         double sum = 0.0;
         for (std::size_t s = 0; s < elements_.size(); ++s)
-            sum += kernel_.stiffness_energy(row(s).rest);
+            sum += row(s).share * kernel_.stiffness_energy(row(s).rest);
         return sum;
     }
 
@@ -193,31 +196,34 @@ class KernelBlock final : public ElementBlock {
             for (std::size_t s = 0; s < elements_.size(); ++s)
                 results[s].volume = row(s).rest.volume;
             const LocalVector* x = local_positions(positions).data();
-            return lanes_in_doubles(
-                [&](const auto& lanes) { lanes.set_results(kernel_, x, results); });
+            lanes_in_doubles([&](const auto& lanes) { lanes.set_results(kernel_, x, results); });
+            for (std::size_t s = 0; s < elements_.size(); ++s) {
+                results[s].volume *= row(s).share;
+                results[s].energy *= row(s).share;
+            }
+            return;
         }
         for (std::size_t s = 0; s < elements_.size(); ++s)
             results[s] = result_of(s, positions, history);
     }
 
     const NodalContributions& contributions(ElementId e) const override {
-        return row(slot_of(e)).shares;
+        return row(slot_of(e)).contributions;
     }
-    double rest_volume(ElementId e) const override { return row(slot_of(e)).rest.volume; }
+    double rest_volume(ElementId e) const override { return volume_of(slot_of(e)); }
 
-    void insert(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
-                const Vec3& fibre) override {
-        const auto s = static_cast<std::ptrdiff_t>(add_slot(e));
-        row_of_.insert(row_of_.begin() + s, static_cast<std::uint32_t>(rows_.size()));
-        rows_.push_back(make_row(corners, rest_positions, fibre));
-        rest_volumes_.insert(rest_volumes_.begin() + s, rows_.back().rest.volume);
+    void insert(ElementId e, const ElementInput& input) override {
+        const std::size_t s = add_slot(e);
+        const auto offset = static_cast<std::ptrdiff_t>(s);
+        row_of_.insert(row_of_.begin() + offset, static_cast<std::uint32_t>(rows_.size()));
+        rows_.push_back(make_row(input));
+        rest_volumes_.insert(rest_volumes_.begin() + offset, volume_of(s));
     }
 
-    void replace(ElementId e, std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
-                 const Vec3& fibre) override {
+    void replace(ElementId e, const ElementInput& input) override {
         const std::size_t s = slot_of(e);
-        rows_[row_of_[s]] = make_row(corners, rest_positions, fibre);
-        rest_volumes_[s] = row(s).rest.volume;
+        rows_[row_of_[s]] = make_row(input);
+        rest_volumes_[s] = volume_of(s);
         change_slot(s);
     }
 
@@ -240,17 +246,20 @@ class KernelBlock final : public ElementBlock {
         rest_volume_ = {};
         for (const double volume : rest_volumes_) rest_volume_ += volume;
         if constexpr (HasLanes<Kernel>)
-            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, row(s).rest); });
+            update(lanes_, changed,
+                   [&](std::size_t s) { lanes_.set(s, row(s).rest, row(s).share); });
         if constexpr (HasMemoryLanes<Kernel>)
-            update(memory_lanes_, changed,
-                   [&](std::size_t s) { memory_lanes_.set(s, elements_[s], row(s).rest); });
+            update(memory_lanes_, changed, [&](std::size_t s) {
+                memory_lanes_.set(s, elements_[s], row(s).rest, row(s).share);
+            });
     }
 
   private:
     struct Row {
         std::array<std::uint32_t, num_corners> nodes;
         typename Kernel::Element rest;
-        NodalContributions shares;
+        double share;
+        NodalContributions contributions;
     };
 
     struct NoLanes {};
@@ -296,26 +305,30 @@ class KernelBlock final : public ElementBlock {
         Kernel in_doubles = kernel_;
         in_doubles.precision = Precision::double_precision;
         typename LanesOf<Kernel>::Type lanes;
-        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest); });
+        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest, row(s).share); });
         return use(lanes);
     }
 
-    Row make_row(std::span<const NodeId> corners, std::span<const Vec3> rest_positions,
-                 [[maybe_unused]] const Vec3& fibre) const {
-        assert(corners.size() == num_corners);
+    double volume_of(std::size_t s) const { return row(s).share * row(s).rest.volume; }
+
+    Row make_row(const ElementInput& input) const {
+        assert(input.corners.size() == num_corners);
         Row row;
+        row.share = input.share;
         Corners X;
         for (std::size_t k = 0; k < num_corners; ++k) {
-            row.nodes[k] = static_cast<std::uint32_t>(corners[k].index());
-            X[k] = rest_positions[corners[k].index()];
+            row.nodes[k] = static_cast<std::uint32_t>(input.corners[k].index());
+            X[k] = input.rest_positions[input.corners[k].index()];
         }
         if constexpr (TakesFibre<Kernel>)
-            row.rest = kernel_.precompute(X, fibre);
+            row.rest = kernel_.precompute(X, input.fibre);
         else
             row.rest = kernel_.precompute(X);
-        row.shares.mass = density_ * row.rest.volume / static_cast<double>(num_corners);
+        row.contributions.mass =
+            row.share * (density_ * row.rest.volume / static_cast<double>(num_corners));
         const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
-        std::copy(stiffness.begin(), stiffness.end(), row.shares.stiffness.begin());
+        for (std::size_t k = 0; k < num_corners; ++k)
+            row.contributions.stiffness[k] = row.share * stiffness[k];
         return row;
     }
 
@@ -341,6 +354,8 @@ class KernelBlock final : public ElementBlock {
         Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
         for (std::size_t k = 1; k < num_corners; ++k) virial += f[k] * (x[k] - x[0]).transpose();
         result.set_stress(virial);
+        result.volume *= row(s).share;
+        result.energy *= row(s).share;
         return result;
     }
 

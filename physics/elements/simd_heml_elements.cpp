@@ -52,11 +52,14 @@ void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, bool ha
     std::fill(unused.per_six_volumes, unused.per_six_volumes + size, Number{1});
     groups.links.assign((num_elements + size - 1) / size, unused);
     groups.fibres.assign(has_fibres ? groups.links.size() : 0, FibreGroup<Number>{});
+    groups.shares.clear();
 }
 
 template <class Number>
-void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element) {
+void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element,
+                 double share) {
     const std::size_t g = i % groups.links.size(), lane = i / groups.links.size();
+    set_share(groups.shares, groups.links.size(), g, lane, share);
     LinkGroup<Number>& group = groups.links[g];
     for (int k = 0; k < 6; ++k)
         group.rest_links[k][lane] = static_cast<Number>(element.rest_links[k]);
@@ -89,8 +92,8 @@ void SimdHemlElements::assign(std::size_t num_elements, const HemlKernel& kernel
                groups_);
 }
 
-void SimdHemlElements::set(std::size_t i, const LinkElement& element) {
-    std::visit([&](auto& groups) { set_element(groups, i, element); }, groups_);
+void SimdHemlElements::set(std::size_t i, const LinkElement& element, double share) {
+    std::visit([&](auto& groups) { set_element(groups, i, element, share); }, groups_);
 }
 
 void SimdHemlElements::set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {

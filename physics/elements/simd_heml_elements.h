@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,11 +41,32 @@ struct alignas(64) FibreGroup {
     Number u[3][LinkGroup<Number>::size];
 };
 
+/// The shares of a group of elements; see topology::FragmentMesh::share.
+template <class Number>
+struct alignas(64) ShareGroup {
+    Number share[LinkGroup<Number>::size];
+};
+
+/// Sets the share of the element in one lane of a group. Shares are stored only once one of them is
+/// not 1.
+template <class Number>
+void set_share(std::vector<ShareGroup<Number>>& shares, std::size_t num_groups, std::size_t group,
+               std::size_t lane, double share) {
+    if (shares.empty()) {
+        if (share == 1.0) return;
+        ShareGroup<Number> whole;
+        std::ranges::fill(whole.share, Number{1});
+        shares.assign(num_groups, whole);
+    }
+    shares[group].share[lane] = static_cast<Number>(share);
+}
+
 /// The groups of a block.
 template <class Number>
 struct LinkGroups {
     std::vector<LinkGroup<Number>> links;
     std::vector<FibreGroup<Number>> fibres;  ///< empty for a law without fibres
+    std::vector<ShareGroup<Number>> shares;  ///< empty if all elements are whole
 };
 
 /// The elements of a block in the layout for SIMD. Elements are numbered from 0 in the order of the
@@ -55,7 +77,7 @@ class SimdHemlElements {
     /// kernel.
     void assign(std::size_t num_elements, const HemlKernel& kernel);
     /// Sets the values of element `i`, except for its nodes.
-    void set(std::size_t i, const LinkElement& element);
+    void set(std::size_t i, const LinkElement& element, double share = 1.0);
     /// Sets the nodes of all elements; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 
@@ -76,8 +98,8 @@ class SimdHemlElements {
     /// @param positions  m, by local number
     /// @pre  double precision, since floats would have strains at rest
     BlockState state(const HemlKernel& kernel, const LocalVector* positions) const;
-    /// Sets the results of all elements, in their order. They equal those of the reference within
-    /// rounding.
+    /// Sets the results of all elements, in their order, as if they were whole. They equal those of
+    /// the reference within rounding.
     /// @param kernel     the kernel of assign()
     /// @param positions  m, by local number
     /// @param results    their rest volumes are inputs

@@ -2,6 +2,7 @@
 #include "incise/physics/elements/simd_hybmss_elements.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "incise/physics/elements/hybmss_kernel.h"
 
@@ -62,7 +63,9 @@ void SimdHybmssElements::assign(std::size_t num_elements, const HybmssKernel& ke
         groups_);
 }
 
-void SimdHybmssElements::set(std::size_t i, const HybmssElement& element) {
+void SimdHybmssElements::set(std::size_t i, const HybmssElement& element,
+                             [[maybe_unused]] double share) {
+    assert(share == 1.0);  // hexahedra are not divided
     std::visit(
         [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
             CellGroup<Number>& group = groups[i % groups.size()];

@@ -37,7 +37,7 @@ class SimdHybmssElements {
     /// kernel.
     void assign(std::size_t num_elements, const HybmssKernel& kernel);
     /// Sets the values of cell `i`, except for its nodes.
-    void set(std::size_t i, const HybmssElement& element);
+    void set(std::size_t i, const HybmssElement& element, double share = 1.0);
     /// Sets the nodes of all cells; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 

@@ -49,10 +49,13 @@ void SimdViscousElements::assign(std::size_t num_elements, const ViscousKernel& 
     std::fill(unused.volume, unused.volume + size, 1.0);
     groups_.elements.assign((num_elements + size - 1) / size, unused);
     groups_.fibres.assign(has_fibres(kernel.law) ? groups_.elements.size() : 0, FibreDirections{});
+    groups_.shares.clear();
 }
 
-void SimdViscousElements::set(std::size_t i, ElementId id, const LinkElement& element) {
+void SimdViscousElements::set(std::size_t i, ElementId id, const LinkElement& element,
+                              double share) {
     const std::size_t g = i % groups_.elements.size(), lane = i / groups_.elements.size();
+    set_share(groups_.shares, groups_.elements.size(), g, lane, share);
     ViscousGroup& group = groups_.elements[g];
     for (int k = 0; k < 6; ++k) group.rest_links[k][lane] = element.rest_links[k];
     for (int k = 0; k < 9; ++k) group.inverse_edges[k][lane] = element.inverse_edges(k / 3, k % 3);

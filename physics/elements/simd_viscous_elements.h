@@ -44,7 +44,8 @@ struct alignas(64) FibreDirections {
 /// The groups of a block.
 struct ViscousGroups {
     std::vector<ViscousGroup> elements;
-    std::vector<FibreDirections> fibres;  ///< empty for a law without fibres
+    std::vector<FibreDirections> fibres;     ///< empty for a law without fibres
+    std::vector<ShareGroup<double>> shares;  ///< empty if all elements are whole
 };
 
 /// The common values of all elements of a block.
@@ -70,7 +71,7 @@ class SimdViscousElements {
     void assign(std::size_t num_elements, const ViscousKernel& kernel);
     /// Sets the values of element `i`, except for its nodes.
     /// @pre  after assign(), the elements are first set in ascending order
-    void set(std::size_t i, ElementId id, const LinkElement& element);
+    void set(std::size_t i, ElementId id, const LinkElement& element, double share = 1.0);
     /// Sets the nodes of all elements; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 

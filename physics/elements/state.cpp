@@ -11,10 +11,10 @@ namespace incise::physics {
 using topology::ChangeSet;
 using topology::NodeRecord;
 
-State::State(const topology::Mesh& mesh, std::size_t history_size)
-    : positions_(mesh.rest_positions().begin(), mesh.rest_positions().end()),
+State::State(const topology::FragmentMesh& fragments, std::size_t history_size)
+    : positions_(fragments.rest_positions().begin(), fragments.rest_positions().end()),
       velocities_(positions_.size(), Vec3::Zero()),
-      history_(history_size, mesh.element_capacity()) {}
+      history_(history_size, fragments.element_capacity()) {}
 
 // A merge keeps momentum and centre of mass. If both states are equal, they stay so bit for bit.
 void State::merge(NodeId absorbed, NodeId survivor, std::span<double> masses) {
@@ -60,7 +60,8 @@ void State::take_from_sources(const NodeRecord& record) {
     velocities_[record.id.index()] = v;
 }
 
-void State::apply(const topology::Mesh& mesh, const ChangeSet& changes, std::span<double> masses) {
+void State::apply(const topology::FragmentMesh& fragments, const ChangeSet& changes,
+                  std::span<double> masses) {
     const std::size_t most_nodes =
         std::max(changes.node_capacity_before, changes.node_capacity_after);
     positions_.resize(most_nodes, Vec3::Zero());
@@ -80,7 +81,7 @@ void State::apply(const topology::Mesh& mesh, const ChangeSet& changes, std::spa
     merges_.erase(merges_.lower_bound(NodeId(changes.node_capacity_after)), merges_.end());
     positions_.resize(changes.node_capacity_after);
     velocities_.resize(changes.node_capacity_after);
-    history_.apply(mesh, changes);
+    history_.apply(fragments, changes);
 }
 
 void State::save(ArchiveWriter& ar) const {

@@ -11,7 +11,7 @@
 #include "incise/base/types.h"
 #include "incise/physics/elements/viscous_history.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/mesh.h"
+#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -23,7 +23,7 @@ class State {
   public:
     /// Sets all nodes to their rest positions, without velocity. For `history_size` see
     /// ViscousHistory.
-    State(const topology::Mesh& mesh, std::size_t history_size);
+    State(const topology::FragmentMesh& fragments, std::size_t history_size);
 
     std::span<const Vec3> positions() const { return positions_; }    ///< m, current, by node id
     std::span<const Vec3> velocities() const { return velocities_; }  ///< m/s, by node id
@@ -44,12 +44,17 @@ class State {
     }
 
     /// Follows an edit; for the values of new and merged nodes see Model::apply.
-    /// @param mesh     the mesh after the edit
-    /// @param changes  the record of the edit
-    /// @param masses   lumped, kg, by node id, before the edit; the mass of a merged node is added
-    ///                 to that of its survivor
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes,
+    /// @param fragments  after the edit
+    /// @param changes    the record of the edit
+    /// @param masses     lumped, kg, by node id, before the edit; the mass of a merged node is
+    /// added
+    ///                   to that of its survivor
+    void apply(const topology::FragmentMesh& fragments, const topology::ChangeSet& changes,
                std::span<double> masses);
+
+    /// Sets the velocity of a node, m/s, as a part of an edit. The version stays: results that
+    /// depend on velocities must follow the edit themselves.
+    void set_velocity(NodeId n, const Vec3& velocity) { velocities_[n.index()] = velocity; }
 
     void save(ArchiveWriter& ar) const;
     /// Reads a saved state. Throws InputError, and changes nothing, for the state of another body

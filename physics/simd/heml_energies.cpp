@@ -78,7 +78,9 @@ template <class L>
     for_each_part(groups.links, [&](std::size_t g, std::size_t first) {
         const auto links = gather_links(positions, groups.links[g], first);
         const auto strain = strain_of<L>(groups, g, first, links);
-        const DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
+        DoubleLanes volume = DoubleLanes::load(groups.links[g].volume + first);
+        if (!groups.shares.empty())
+            volume = DoubleLanes::load(groups.shares[g].share + first) * volume;
         put(volume * energy_density(law, strain, J0), energies[g].energy + first);
         put(strain.J, energies[g].volume_ratio + first);
     });

@@ -28,7 +28,11 @@ template <class Law, class Number>
         const std::size_t g = part / num_parts, first = part % num_parts * num_lanes<Number>;
         fetch_ahead(g);
         const auto* const fibres = groups.fibres.empty() ? nullptr : &groups.fibres[g];
-        const LinkVectors<Number> f = link_forces(law, J0, links[g], fibres, first, edges);
+        LinkVectors<Number> f = link_forces(law, J0, links[g], fibres, first, edges);
+        if (!groups.shares.empty()) {
+            const auto share = Lanes<Number>::load(groups.shares[g].share + first);
+            for (Lanes3<Number>& v : f) v = share * v;
+        }
         edges = edges_of(std::min(part + 1, n - 1));
         scatter_add<Number>(f, forces, links[g].offsets, first);
     }

@@ -287,7 +287,9 @@ double advance(const Law& law, const ViscousRule& rule, const ViscousGroups& gro
             const Tensor S =
                 stress(law, J0, D, J, groups.fibres.empty() ? nullptr : &groups.fibres[g], first);
             const Tensor twice_mean = follow(S, rule.steps, rows_of(memory, group, first), lanes);
-            sums.add(0.25 * volume * contracted(twice_mean, change), first, lanes);
+            Scalar work = 0.25 * volume * contracted(twice_mean, change);
+            if (!groups.shares.empty()) work = Scalar::load(groups.shares[g].share + first) * work;
+            sums.add(work, first, lanes);
             if (low != 0) [[unlikely]]
                 for (std::size_t l = 0; l < num_together; ++l)
                     if ((low >> l & 1) != 0) others += advance_one((first + l) * num_groups + g);
@@ -324,7 +326,9 @@ void add_forces_of_memory(const ViscousRule& rule, const ViscousGroups& groups,
                 relaxed.change([](Scalar& sum, Scalar x) { sum += x; }, load(rows, i));
             // Forces as in forces_of_stress().
             Tensor t = congruent(inverse_edges(group, first), relaxed.tensor());
-            const Scalar volume = Scalar::load(group.volume + first);
+            Scalar volume = Scalar::load(group.volume + first);
+            if (!groups.shares.empty())
+                volume = Scalar::load(groups.shares[g].share + first) * volume;
             for (Scalar& x : t) x = -volume * x;
             const auto [v1, v2, v3] = gather_edges<double>(positions, group.offsets, first);
             const Edges f{t[0] * v1 + t[3] * v2 + t[5] * v3, t[3] * v1 + t[1] * v2 + t[4] * v3,

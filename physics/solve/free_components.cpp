@@ -13,21 +13,21 @@
 
 namespace incise::physics {
 
-using topology::Mesh;
+using topology::FragmentMesh;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 namespace {
 
 /// Returns a number for each node, the same for all nodes of a connected component.
-std::vector<std::size_t> pieces_of_nodes(const Mesh& mesh) {
-    std::vector<std::size_t> parent(mesh.node_capacity());
+std::vector<std::size_t> pieces_of_nodes(const FragmentMesh& fragments) {
+    std::vector<std::size_t> parent(fragments.node_capacity());
     std::iota(parent.begin(), parent.end(), std::size_t{0});
     const auto root = [&](std::size_t n) {
         while (parent[n] != n) n = parent[n] = parent[parent[n]];
         return n;
     };
-    for (const ElementId e : mesh.elements()) {
-        const auto corners = mesh.corners(e);
+    for (const ElementId e : fragments.elements()) {
+        const auto corners = fragments.corners(e);
         for (const NodeId n : corners) {
             const std::size_t a = root(n.index()), b = root(corners[0].index());
             parent[std::max(a, b)] = std::min(a, b);
@@ -67,16 +67,18 @@ void find_frame(FreeComponent& piece, std::span<const Vec3> positions) {
 
 }  // namespace
 
-std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<const Vec3> positions,
+std::vector<FreeComponent> find_free_components(const FragmentMesh& fragments,
+                                                std::span<const Vec3> positions,
                                                 const Constraints& constraints) {
     // A motion is free if constraints hold less than this share of it. The share is the square of
     // what the rounding of positions in single precision can leave.
     constexpr double hold = 1e-13;
-    const std::vector<std::size_t> piece_of = pieces_of_nodes(mesh);
-    std::vector<std::size_t> num_elements(mesh.node_capacity(), 0);
-    for (const ElementId e : mesh.elements()) ++num_elements[piece_of[mesh.corners(e)[0].index()]];
-    std::vector<FreeComponent> pieces(mesh.node_capacity());
-    for (const NodeId n : mesh.nodes()) pieces[piece_of[n.index()]].nodes.push_back(n);
+    const std::vector<std::size_t> piece_of = pieces_of_nodes(fragments);
+    std::vector<std::size_t> num_elements(fragments.node_capacity(), 0);
+    for (const ElementId e : fragments.elements())
+        ++num_elements[piece_of[fragments.corners(e)[0].index()]];
+    std::vector<FreeComponent> pieces(fragments.node_capacity());
+    for (const NodeId n : fragments.nodes()) pieces[piece_of[n.index()]].nodes.push_back(n);
 
     std::vector<FreeComponent> free;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
@@ -124,8 +126,9 @@ std::vector<FreeComponent> find_free_components(const Mesh& mesh, std::span<cons
     return free;
 }
 
-void require_equilibrium(const Mesh& mesh, const FreeComponent& piece,
-                         std::span<const Vec3> positions, std::span<const Vec3> forces) {
+void require_equilibrium(const FragmentMesh& fragments, const topology::Mesh& mesh,
+                         const FreeComponent& piece, std::span<const Vec3> positions,
+                         std::span<const Vec3> forces) {
     constexpr double tolerance = 1e-7;  // of the sum of the norms of all forces
     Vector6 total = Vector6::Zero();
     double all = 0.0;
@@ -137,7 +140,8 @@ void require_equilibrium(const Mesh& mesh, const FreeComponent& piece,
     }
     const Vector6 moving = piece.modes * (piece.modes.transpose() * total);
     if (!(moving.norm() > tolerance * all)) return;
-    const ElementId e = mesh.incident_element(piece.nodes.front());
+    const ElementId fragment = fragments.incident_element(piece.nodes.front()),
+                    e = fragments.cells_of(fragment).front();
     const bool is_turned = moving.tail<3>().norm() > moving.head<3>().norm();
     std::ostringstream text;
     text << "no equilibrium: a piece of " << piece.num_elements

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "incise/physics/body/constraints.h"
-#include "incise/topology/mesh.h"
+#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -36,13 +36,14 @@ struct FreeComponent {
 
 /// Returns the free components at the given positions (m, by node id).
 /// Cost: O(#nodes + #elements).
-std::vector<FreeComponent> find_free_components(const topology::Mesh& mesh,
+std::vector<FreeComponent> find_free_components(const topology::FragmentMesh& fragments,
                                                 std::span<const Vec3> positions,
                                                 const Constraints& constraints);
 
 /// Throws MotionFailure if the forces (N, by node id) would move the free component. The failure
-/// names one of its elements.
-void require_equilibrium(const topology::Mesh& mesh, const FreeComponent& piece,
-                         std::span<const Vec3> positions, std::span<const Vec3> forces);
+/// names one of its elements, by its label in the mesh.
+void require_equilibrium(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+                         const FreeComponent& piece, std::span<const Vec3> positions,
+                         std::span<const Vec3> forces);
 
 }  // namespace incise::physics

@@ -50,22 +50,22 @@ void NewtonSolver::follow(const Model& model) {
     if (structure_version_ == model.structure_version()) return;
     if (pins_free_components_)
         free_components_ =
-            find_free_components(model.mesh(), model.positions(), model.constraints());
+            find_free_components(model.fragments(), model.positions(), model.constraints());
     prepare(model);
 }
 
 void NewtonSolver::prepare(const Model& model) {
-    const topology::Mesh& mesh = model.mesh();
-    is_free_.assign(mesh.node_capacity(), {true, true, true});
+    const topology::FragmentMesh& fragments = model.fragments();
+    is_free_.assign(fragments.node_capacity(), {true, true, true});
     for (std::size_t n = 0; n < is_free_.size(); ++n)
         if (const auto* constraint_of = model.constraints().of_node(n))
             for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*constraint_of)[c] < 0;
     for (const FreeComponent& piece : free_components_)
         for (const auto& [node, component] : piece.pins)
             is_free_[node.index()][static_cast<std::size_t>(component)] = false;
-    tangent_.set_pattern(mesh, is_free_);
+    tangent_.set_pattern(fragments, is_free_);
     for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_, &increments_})
-        scratch->assign(mesh.node_capacity(), Vec3::Zero());
+        scratch->assign(fragments.node_capacity(), Vec3::Zero());
     structure_version_ = model.structure_version();
 }
 
@@ -77,7 +77,7 @@ void NewtonSolver::restore(ArchiveReader& ar, const Model& model) {
     const auto structure_version = ar.read<std::uint64_t>();
     ar(free_components_);
     const auto is_there = [&](NodeId n) {
-        return n.is_valid() && n.index() < model.mesh().node_capacity();
+        return n.is_valid() && n.index() < model.fragments().node_capacity();
     };
     for (const FreeComponent& piece : free_components_) {
         const bool fits = std::all_of(piece.nodes.begin(), piece.nodes.end(), is_there) &&
@@ -186,7 +186,8 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
         if (const auto* constraint_of = model.constraints().of_node(n);
             constraint_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.constraints().prescribe(*constraint_of, model.mesh(), NodeId(n), time, target);
+            model.constraints().prescribe(*constraint_of, model.fragments(), NodeId(n), time,
+                                          target);
             increments_[n] = target - x[n];
             constraints_move = constraints_move || !increments_[n].isZero(0.0);
         }

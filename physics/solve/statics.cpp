@@ -27,8 +27,9 @@ void Statics::require_equilibrium_of_free_components(const Model& model, double 
     next_outer_.resize(x_.size());
     model.outer_forces_at(x_, time, next_outer_);
     // Found anew, since constraints may have moved components that they hold in part.
-    for (const FreeComponent& piece : find_free_components(model.mesh(), x_, model.constraints()))
-        require_equilibrium(model.mesh(), piece, x_, next_outer_);
+    for (const FreeComponent& piece :
+         find_free_components(model.fragments(), x_, model.constraints()))
+        require_equilibrium(model.fragments(), model.mesh(), piece, x_, next_outer_);
 }
 
 Vec3 Statics::free_part(std::size_t node, const Vec3& force) const {

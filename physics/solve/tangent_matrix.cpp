@@ -6,7 +6,7 @@
 
 namespace incise::physics {
 
-using topology::Mesh;
+using topology::FragmentMesh;
 
 namespace {
 
@@ -14,13 +14,13 @@ using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Returns the pairs (a, b), a <= b, of nodes of one element that both have a free component. Each
 /// pair is there once, in ascending order.
-std::vector<NodePair> coupled_nodes(const Mesh& mesh,
+std::vector<NodePair> coupled_nodes(const FragmentMesh& fragments,
                                     std::span<const std::array<bool, 3>> is_free) {
     const auto moves = [&](NodeId n) { return is_free[n.index()] != std::array<bool, 3>{}; };
     std::vector<NodePair> pairs;
-    for (const ElementId e : mesh.elements()) {
-        for (const NodeId a : mesh.corners(e))
-            for (const NodeId b : mesh.corners(e))
+    for (const ElementId e : fragments.elements()) {
+        for (const NodeId a : fragments.corners(e))
+            for (const NodeId b : fragments.corners(e))
                 if (a <= b && moves(a) && moves(b))
                     pairs.emplace_back(static_cast<std::uint32_t>(a.index()),
                                        static_cast<std::uint32_t>(b.index()));
@@ -47,14 +47,15 @@ std::vector<std::int32_t> elimination_order(std::span<const NodePair> pairs,
 
 }  // namespace
 
-void TangentMatrix::set_pattern(const Mesh& mesh, std::span<const std::array<bool, 3>> is_free) {
-    const auto pairs = coupled_nodes(mesh, is_free);
-    rows_.assign(mesh.node_capacity(), {-1, -1, -1});
+void TangentMatrix::set_pattern(const FragmentMesh& fragments,
+                                std::span<const std::array<bool, 3>> is_free) {
+    const auto pairs = coupled_nodes(fragments, is_free);
+    rows_.assign(fragments.node_capacity(), {-1, -1, -1});
     std::int32_t num_rows = 0;
     for (const std::int32_t node : elimination_order(pairs, rows_.size())) {
         const auto n = static_cast<std::size_t>(node);
         for (std::size_t c = 0; c < 3; ++c)
-            if (mesh.is_alive(NodeId(n)) && is_free[n][c]) rows_[n][c] = num_rows++;
+            if (fragments.is_alive(NodeId(n)) && is_free[n][c]) rows_[n][c] = num_rows++;
     }
 
     std::vector<Eigen::Triplet<double, std::int32_t>> entries;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "incise/physics/elements/element_block.h"
-#include "incise/topology/mesh.h"
+#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -25,7 +25,8 @@ class TangentMatrix final : public TangentSink {
     /// the order of elimination, which is that of nodes by approximate minimum degree. The
     /// components of a node are next to each other, since they have the same neighbours.
     /// `is_free` is by node id, and is read for living nodes.
-    void set_pattern(const topology::Mesh& mesh, std::span<const std::array<bool, 3>> is_free);
+    void set_pattern(const topology::FragmentMesh& fragments,
+                     std::span<const std::array<bool, 3>> is_free);
 
     std::size_t num_unknowns() const { return static_cast<std::size_t>(upper_.rows()); }
     /// Returns the row of a component, or -1 if it is not free.

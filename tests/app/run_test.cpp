@@ -200,48 +200,6 @@ move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
     EXPECT_EQ(summary().at("frames"), 4);
 }
 
-TEST_F(Run, WarnsOfACutThatShortensSteps) {
-    const auto cut = [&](const std::string& snap) {
-        write("scene.toml", R"([mesh]
-box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
-[[material]]
-density = 1000
-young = 1000
-poisson = 0.4
-[dynamics]
-end_time = 0.03
-[[tool]]
-name = "saw"
-kind = "cut"
-time = 0.02
-plane = { point = [0, 0, 0.0501], normal = [0, 0, 1] }
-snap = )" + snap + "\n");
-        return run({"scene.toml"});
-    };
-    const auto exact = cut("0");
-    EXPECT_EQ(exact.status, 0);
-    EXPECT_NE(exact.err.find(
-                  "incise: warning: tool 'saw', at t = 0.02 s: its cut has left elements so thin"),
-              std::string::npos)
-        << exact.err;
-    EXPECT_NE(exact.err.find("use a larger tool.snap\n"), std::string::npos) << exact.err;
-    ASSERT_EQ(summary().at("warnings").size(), 1u);
-    EXPECT_EQ("incise: warning: " + summary().at("warnings")[0].get<std::string>() + "\n",
-              exact.err.substr(exact.err.find("incise: warning: tool 'saw'"),
-                               summary().at("warnings")[0].get<std::string>().size() + 18));
-    EXPECT_EQ(cut("0.1").err.find("tool.snap"), std::string::npos);
-    // A later cut that makes them much shorter once more is told of as well.
-    const auto again = cut(R"(0
-[[tool]]
-name = "razor"
-kind = "cut"
-time = 0.025
-plane = { point = [0.0500001, 0, 0], normal = [1, 0, 0] }
-snap = 0)");
-    EXPECT_NE(again.err.find("tool 'saw', at t = 0.02 s"), std::string::npos) << again.err;
-    EXPECT_NE(again.err.find("tool 'razor', at t = 0.025 s"), std::string::npos) << again.err;
-}
-
 // A brick is led to where a blade passes that divides, which no look at the body at rest tells.
 TEST_F(Run, StopsWithASummaryOnAFailedCut) {
     write("both.vtk", R"(# vtk DataFile Version 3.0

@@ -16,21 +16,21 @@ topology::MeshData with_all_materials(topology::MeshData data);
 
 /// Sums over the body, and the sums of absolute values that tell their rounding.
 struct Balance {
-    Balance(const physics::Model& model, const physics::MaterialTable& table);
+    explicit Balance(const physics::Model& model);
 
     physics::Totals totals;
     Vec3 moment = Vec3::Zero();  ///< of mass
-    double elastic_energy = 0.0;
-    double momentum_scale = 0.0, moment_scale = 0.0, elastic_scale = 0.0;
+    double momentum_scale = 0.0, angular_scale = 0.0, moment_scale = 0.0, elastic_scale = 0.0;
 };
 
-/// Expects that a cut that took nothing away kept mass, volume, momentum and energy.
+/// Expects that a cut that took nothing away kept mass, volume and momenta; without light
+/// fragments that join others also energies and the centre of mass.
 /// @param before  of the model, which has followed the cut since
-/// @param has_no_slivers  so that the energies of the kernels are exact enough to compare
+/// @param done    what it did to the model
 void expect_kept(const Balance& before, const physics::Model& model,
-                 const physics::MaterialTable& table, bool has_no_slivers);
+                 const physics::ModelChanges& done);
 
-/// Expects that the model is, to the bit, one built afresh on its mesh.
+/// Expects that the model is, to the bit, one built afresh on its mesh and fragments.
 void expect_equal_to_a_fresh_one(physics::Model& model, const physics::MaterialTable& table);
 
 }  // namespace incise::cutting

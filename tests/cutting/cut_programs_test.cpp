@@ -62,19 +62,23 @@ class Patient {
             carry_out(cut);
             if (cut.kind == CutKind::plane)
                 expect_parted(
-                    mesh_, model_.positions(), {cut.point, cut.normal},
-                    how_far_off() * longest_edge(mesh_, model_.positions()) + 1e-6 * size_,
+                    mesh_, model_.mesh_positions(), {cut.point, cut.normal},
+                    how_far_off() * longest_edge(mesh_, model_.mesh_positions()) + 1e-6 * size_ +
+                        (has_joins_ && !is_at_rest_ ? 0.05 * mean_edge_length(mesh_) : 0.0),
                     snap_history_);
             if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
                 expect_halves(cut);
-            if (cut.kind != CutKind::blade) repeat(cut);
+            // Light fragments move with others, so that in a deformed body their faces are a little
+            // off the surface that made them.
+            if (cut.kind != CutKind::blade && (is_at_rest_ || !has_joins_)) repeat(cut);
         }
     }
 
   private:
     std::vector<Vec3> living_positions() const {
         std::vector<Vec3> positions;
-        for (const NodeId n : mesh_.nodes()) positions.push_back(model_.positions()[n.index()]);
+        for (const NodeId n : mesh_.nodes())
+            positions.push_back(model_.mesh_positions()[n.index()]);
         return positions;
     }
 
@@ -82,8 +86,8 @@ class Patient {
     void deform(double strain) {
         const SmoothField displacement(strain, size_, random_), motion(1.0, size_, random_);
         std::vector<Vec3> x, v;
-        for (std::size_t n = 0; n < mesh_.node_capacity(); ++n) {
-            const Vec3& X = mesh_.rest_position(NodeId(n));
+        for (std::size_t n = 0; n < model_.positions().size(); ++n) {
+            const Vec3& X = model_.fragments().rest_position(NodeId(n));
             x.push_back(model_.positions()[n] + displacement.at(X));
             v.push_back(motion.at(X) + random_.vector(0.1 * size_));
         }
@@ -93,13 +97,14 @@ class Patient {
     void carry_out(const RandomCut& cut) {
         CutFront front;
         for (const auto& surface : cut.stroke) {
-            const std::vector<Vec3> before(model_.positions().begin(), model_.positions().end());
+            const auto now = model_.mesh_positions();
+            const std::vector<Vec3> before(now.begin(), now.end());
             if (!is_at_rest_) deform(0.02);
             cut_and_follow(*surface, front, before);
         }
         if (!cut.end) return;
         follow([&] {
-            const auto here = model_.positions();
+            const auto here = model_.mesh_positions();
             return finish(mesh_, {mesh_, here, here}, *cut.end, front, options_, snap_history_);
         });
         EXPECT_TRUE(front.is_empty());
@@ -108,7 +113,7 @@ class Patient {
     Split cut_and_follow(const CutSurface& surface, CutFront& front,
                          const std::vector<Vec3>& positions_before) {
         return follow([&] {
-            return split(mesh_, {mesh_, positions_before, model_.positions()}, surface, front,
+            return split(mesh_, {mesh_, positions_before, model_.mesh_positions()}, surface, front,
                          options_, snap_history_);
         });
     }
@@ -116,17 +121,19 @@ class Patient {
     /// Carries out an edit, which returns what it did.
     template <class Edit>
     Split follow(Edit edit) {
-        const Balance before(model_, table_);
+        const Balance before(model_);
         const Split done = edit();
-        model_.apply(model_.mesh(), done.changes);
-        if (!done.changes.is_empty()) check(before);
+        const physics::ModelChanges of_model = model_.apply(mesh_, done.changes);
+        if (!done.changes.is_empty()) check(before, of_model);
+        has_joins_ |= of_model.fragments.has_joins();
         return done;
     }
 
-    void check(const Balance& before) {
+    void check(const Balance& before, const physics::ModelChanges& done) {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
-        expect_kept(before, model_, table_, options_.snap > 0.0);
+        ASSERT_EQ(topology::validate(model_.fragments(), mesh_), std::vector<std::string>{});
+        expect_kept(before, model_, done);
         expect_equal_to_a_fresh_one(model_, table_);
     }
 
@@ -157,7 +164,8 @@ class Patient {
     /// The same cut at the same place has nothing more to do.
     void repeat(const RandomCut& cut) {
         CutFront front;
-        const std::vector<Vec3> still(model_.positions().begin(), model_.positions().end());
+        const auto now = model_.mesh_positions();
+        const std::vector<Vec3> still(now.begin(), now.end());
         const Split again = cut_and_follow(*cut.stroke.front(), front, still);
         EXPECT_TRUE(again.changes.is_empty());
     }
@@ -170,6 +178,7 @@ class Patient {
     SplitOptions options_;
     SnapHistory snap_history_;
     bool is_at_rest_ = true;
+    bool has_joins_ = false;  // so far
 };
 
 struct Programs {

@@ -116,7 +116,7 @@ TEST(Constraints, TakeInNodesBornBetweenTheirs) {
     Model model(mesh, table_of_one_law(soft_law), s);
     const auto changes = open_across(mesh, 0.1, false);
     ASSERT_EQ(changes.nodes_added.size(), 9u);
-    model.apply(model.mesh(), changes);
+    const FollowedEdit done = follow(model, changes);
     double time = 0.0;
     const double dt = 0.5 * model.stable_step();
     while (time < 1.0) step(model, time, dt);
@@ -125,8 +125,7 @@ TEST(Constraints, TakeInNodesBornBetweenTheirs) {
         EXPECT_LE((u - Vec3(0.0, 0.01, 0.0)).norm(), 1e-15);
     }
     // Undone and done again, it is as it was.
-    replay(mesh, inverse(changes));
-    model.apply(model.mesh(), inverse(changes));
+    take_back(mesh, model, done);
     replay(mesh, changes);
     model.apply(model.mesh(), changes);
     for (int i = 0; i < 100; ++i) step(model, time, dt);
@@ -151,9 +150,7 @@ TEST(Constraints, DoNotSpreadToRestoredNodes) {
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
     const auto closed = edit.commit();
-    model.apply(model.mesh(), closed);
-    replay(mesh, inverse(closed));
-    model.apply(model.mesh(), inverse(closed));
+    take_back(mesh, model, follow(model, closed));
     double time = 0.0;
     step(model, time, 1e-3);
     for (const auto& record : opened.nodes_added) {

@@ -68,13 +68,12 @@ class EditedBody {
     /// where these want them. Later nodes lie by their sources, shaken but little: so the strain of
     /// parts is that of the first elements, however small they are.
     void shake() {
-        BodyState state = random_state(mesh_, random_, 0.02, 1.0);
-        for (const Constraint& constraint : boundary_conditions(selections_).constraints)
-            for (const auto& member : constraint.nodes.members())
-                for (int c = 0; c < 3; ++c)
-                    if (constraint.components[static_cast<std::size_t>(c)])
-                        state.positions[member.node.index()][c] =
-                            constraint.target(mesh_, member.node, time)[c];
+        const topology::FragmentMesh& fragments = model_.fragments();
+        BodyState state = random_state(fragments, random_, 0.02, 1.0);
+        for (const NodeId n : fragments.nodes())
+            if (const auto* constraint_of = model_.constraints().of_node(n.index()))
+                model_.constraints().prescribe(*constraint_of, fragments, n, time,
+                                               state.positions[n.index()]);
         const double room = shortest_edge();
         for (const auto& record : nodes_born_) {
             Vec3 x = random_.vector(0.01 * room);
@@ -91,8 +90,7 @@ class EditedBody {
     void edit_and_check() {
         const Balance before(model_);
         std::vector<Carried> carried(mesh_.element_capacity());
-        for (const ElementId e : living_elements(mesh_))
-            carried[e.index()] = carried_by(model_, table_, e);
+        for (const ElementId e : living_elements(mesh_)) carried[e.index()] = carried_by(model_, e);
         const MeshSnapshot mesh_before(mesh_);
         const ModelSnapshot model_before(model_, time);
 
@@ -101,14 +99,13 @@ class EditedBody {
         while (changes.is_empty()) changes = test::random_edit(mesh_, random_);
         ASSERT_EQ(topology::validate(mesh_), no_violations);
         compute_ahead();
-        model_.apply(model_.mesh(), changes);
-        expect_balance(before, model_, changes, carried, model_before.masses);
+        const FollowedEdit done = follow(model_, changes);
+        ASSERT_EQ(topology::validate(model_.fragments(), mesh_), no_violations);
+        expect_balance(before, model_, done, carried);
         const MeshSnapshot mesh_after(mesh_);
         const ModelSnapshot model_after(model_, time);
 
-        const ChangeSet back = inverse(changes);
-        replay(mesh_, back);
-        model_.apply(model_.mesh(), back);
+        take_back(mesh_, model_, done);
         EXPECT_EQ(MeshSnapshot(mesh_), mesh_before);
         expect_equal(ModelSnapshot(model_, time), model_before);
         replay(mesh_, changes);
@@ -117,8 +114,8 @@ class EditedBody {
         expect_equal(ModelSnapshot(model_, time), model_after);
 
         descent_.follow(changes);
-        nodes_born_.insert(nodes_born_.end(), changes.nodes_added.begin(),
-                           changes.nodes_added.end());
+        const auto& born = done.of_model.fragments.mesh.nodes_added;
+        nodes_born_.insert(nodes_born_.end(), born.begin(), born.end());
         expect_equal_to_a_fresh_model(model_after);
     }
 
@@ -131,18 +128,16 @@ class EditedBody {
 
     // So that the ids of the next edit have been others' before.
     void edit_and_take_back() {
-        const ChangeSet changes = test::random_edit(mesh_, random_);
-        model_.apply(model_.mesh(), changes);
+        const FollowedEdit done = follow(model_, test::random_edit(mesh_, random_));
         compute_ahead();
-        replay(mesh_, inverse(changes));
-        model_.apply(model_.mesh(), inverse(changes));
+        take_back(mesh_, model_, done);
     }
 
     // Also after a step, in which constraints and loads show, and which lets copies part.
     void expect_equal_to_a_fresh_model(const ModelSnapshot& expected) {
         MaterialTable table = table_;
         table.fibres = expected.fibres;
-        Model fresh(mesh_, table, boundary_conditions(descent_.now(mesh_)));
+        Model fresh(mesh_, model_.fragments(), table, boundary_conditions(descent_.now(mesh_)));
         set_state(fresh, expected.state, time);
         fresh.set_history(expected.history);
         expect_equal(ModelSnapshot(fresh, time), expected);
@@ -158,7 +153,7 @@ class EditedBody {
     /// So short that no node leaves the body, however stiff the strain has made its law.
     double short_step() const {
         double fastest = 0.0;  // m/s2
-        for (const NodeId n : mesh_.nodes())
+        for (const NodeId n : model_.fragments().nodes())
             fastest = std::max(
                 fastest, model_.elastic_forces()[n.index()].norm() / model_.masses()[n.index()]);
         return std::min(0.05 * std::min(model_.stable_step(), 1.0), std::sqrt(1e-4 / fastest));
@@ -265,15 +260,10 @@ TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
         test::Random random(5);
         const BodyState state = random_state(mesh, random, 0.0, 0.1);
 
-        std::vector<ChangeSet> history;
-        for (int i = 0; i < 40 && mesh.num_elements() > 0; ++i) {
-            history.push_back(test::random_edit(mesh, random));
-            model.apply(model.mesh(), history.back());
-        }
-        for (; !history.empty(); history.pop_back()) {
-            replay(mesh, inverse(history.back()));
-            model.apply(model.mesh(), inverse(history.back()));
-        }
+        std::vector<FollowedEdit> history;
+        for (int i = 0; i < 40 && mesh.num_elements() > 0; ++i)
+            history.push_back(follow(model, test::random_edit(mesh, random)));
+        for (; !history.empty(); history.pop_back()) take_back(mesh, model, history.back());
         set_state(model, state);
         set_state(reference, state);
         const double dt = 0.2 * reference.stable_step();
@@ -326,12 +316,12 @@ TEST(ModelApply, RefusesAnEditOutOfTurn) {
     EXPECT_THROW(model.apply(model.mesh(), second), InputError);  // the first is missing
     EXPECT_THROW(model.apply(model.mesh(), first), InputError);   // the mesh is further on
     replay(mesh, inverse(second));
-    model.apply(model.mesh(), first);
-    EXPECT_THROW(model.apply(model.mesh(), first), InputError);  // a second time
-    EXPECT_THROW(model.apply(model.mesh(), inverse(first)),
-                 InputError);  // the mesh has not gone back
+    const FollowedEdit done = follow(model, first);
+    EXPECT_THROW(model.apply(model.mesh(), first), InputError);        // a second time
+    EXPECT_THROW(model.undo(mesh, first, done.of_model), InputError);  // the mesh has not gone back
     replay(mesh, inverse(first));
-    model.apply(model.mesh(), inverse(first));
+    EXPECT_THROW(model.apply(mesh, inverse(first)), InputError);  // undo() is for that
+    model.undo(mesh, first, done.of_model);
     expect_equal(ModelSnapshot(model, 0.0), before);
 }
 

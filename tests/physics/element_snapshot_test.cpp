@@ -68,7 +68,7 @@ TEST(ElementSnapshot, IsUnchangedByMotionAndEdits) {
         go_on();
 
         for (int i = 0; i < 5; ++i) {
-            const auto elements = living_elements(mesh);
+            const auto elements = living_elements(model.fragments());
             const auto expected = numbers_of(ElementSnapshot(model).results(elements));
             expect_near(expected, results_of(model, elements));
             const ElementSnapshot snapshot(model);

@@ -244,13 +244,12 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
     set_state(model, random_state(mesh, random, 0.02, 0.0));
     const std::vector<Vec3> first(model.fibres().begin(), model.fibres().end());
     ASSERT_EQ(first.size(), mesh.element_capacity());
-    std::vector<topology::ChangeSet> edits;
+    std::vector<FollowedEdit> edits;
     std::size_t num_parts = 0;
     for (int i = 0; i < 60; ++i) {
-        edits.push_back(test::random_edit(mesh, random));
-        model.apply(model.mesh(), edits.back());
-        ASSERT_EQ(model.fibres().size(), mesh.element_capacity());
-        for (const auto& record : edits.back().elements_added)
+        edits.push_back(follow(model, test::random_edit(mesh, random)));
+        ASSERT_EQ(model.fibres().size(), model.fragments().element_capacity());
+        for (const auto& record : edits.back().of_model.fragments.mesh.elements_added)
             if (record.parent.is_valid()) {
                 ++num_parts;
                 EXPECT_EQ(model.fibres()[record.id.index()], model.fibres()[record.parent.index()]);
@@ -258,10 +257,7 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
         if (mesh.num_elements() == 0) break;
     }
     EXPECT_GT(num_parts, 20u);
-    for (; !edits.empty(); edits.pop_back()) {
-        replay(mesh, inverse(edits.back()));
-        model.apply(model.mesh(), inverse(edits.back()));
-    }
+    for (; !edits.empty(); edits.pop_back()) take_back(mesh, model, edits.back());
     EXPECT_EQ(std::vector<Vec3>(model.fibres().begin(), model.fibres().end()), first);
 }
 

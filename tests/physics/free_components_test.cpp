@@ -25,7 +25,10 @@ Constraint hold(std::vector<std::size_t> nodes,
 }
 
 std::vector<FreeComponent> free_components_of(const Mesh& mesh, const Constraint& constraint) {
-    return find_free_components(mesh, mesh.rest_positions(), Constraints(mesh, {constraint}));
+    const topology::FragmentMesh fragments(mesh);
+    return find_free_components(
+        fragments, mesh.rest_positions(),
+        Constraints({mesh, fragments}, {constraint}, mesh.rest_positions()));
 }
 
 TEST(FreeComponents, AreNoneWhereAllNodesAreHeld) {
@@ -49,8 +52,10 @@ TEST(FreeComponents, TurnAboutAnEdgeThatIsHeld) {
 TEST(FreeComponents, MoveInAllWaysWhereNothingHoldsThem) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
+        const topology::FragmentMesh fragments(mesh);
         const auto pieces =
-            find_free_components(mesh, mesh.rest_positions(), Constraints(mesh, {}));
+            find_free_components(fragments, mesh.rest_positions(),
+                                 Constraints({mesh, fragments}, {}, mesh.rest_positions()));
         ASSERT_EQ(pieces.size(), 1u);
         EXPECT_EQ(pieces[0].pins.size(), 6u);
     });

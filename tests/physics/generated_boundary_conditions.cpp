@@ -129,11 +129,11 @@ BoundaryConditions Acting::now(const Mesh& mesh, std::span<const double> masses)
             loaded.push_back(n);
             mass_at[offset_of(mesh, n)] += masses[n.index()];
         }
-    for (const NodeId n : loaded) {
-        const double share = masses[n.index()] / mass_at.at(offset_of(mesh, n));
-        acting.loads.insert(acting.loads.begin(),
-                            {"node", NodalLoad{NodeSet({n}), share * force_on_node, {}}, {}});
-    }
+    std::vector<double> shares;
+    for (const NodeId n : loaded)
+        shares.push_back(masses[n.index()] / mass_at.at(offset_of(mesh, n)));
+    acting.loads.insert(acting.loads.begin(),
+                        {"nodes", NodalLoad{NodeSet(loaded), force_on_node, shares}, {}});
     return acting;
 }
 

@@ -34,7 +34,7 @@ struct ModelSnapshot {
         forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
         outer_forces.assign(model.outer_forces().begin(), model.outer_forces().end());
         masses.assign(model.masses().begin(), model.masses().end());
-        for (const ElementId e : living_elements(model.mesh())) {
+        for (const ElementId e : living_elements(model.fragments())) {
             const ElementResult result = model.element_result(e);
             volumes.push_back(result.volume);
             energies.push_back(result.energy);

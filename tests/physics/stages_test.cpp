@@ -33,8 +33,8 @@ class Tethers final : public ForceTerm {
             sink.add(std::span(&n, 1), {tangent.data(), 9});
     }
     double stiffness_bound(NodeId) const override { return stiffness_; }
-    void apply(const BodyView&, const ChangeSet&, std::span<const NodeId> touched) override {
-        num_touched += touched.size();
+    void apply(const BodyView&, const BodyEdit& edit) override {
+        num_touched += edit.touched.size();
     }
 
     std::size_t num_touched = 0;

@@ -11,6 +11,7 @@
 #include "incise/physics/body/model.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_data.h"
+#include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_materials.h"
 
 namespace incise::physics {
@@ -107,15 +108,17 @@ inline BodyState state_of(const Model& model) {
             {model.velocities().begin(), model.velocities().end()}};
 }
 
-inline BodyState rest_state(const topology::Mesh& mesh) {
+/// At rest, by node of a mesh or of fragments.
+template <class Mesh>
+BodyState rest_state(const Mesh& mesh) {
     return {{mesh.rest_positions().begin(), mesh.rest_positions().end()},
             std::vector<Vec3>(mesh.node_capacity(), Vec3::Zero())};
 }
 
 /// A stretched and sheared body whose nodes are shaken besides, moving at random.
 /// @param shake in metres
-inline BodyState random_state(const topology::Mesh& mesh, test::Random& random, double shake,
-                              double speed) {
+template <class Mesh>
+BodyState random_state(const Mesh& mesh, test::Random& random, double shake, double speed) {
     BodyState state = rest_state(mesh);
     Mat3 F = Mat3::Identity();
     for (int c = 0; c < 3; ++c) F.col(c) += random.vector(0.1);
@@ -126,6 +129,20 @@ inline BodyState random_state(const topology::Mesh& mesh, test::Random& random, 
 
 inline void set_state(Model& model, const BodyState& state, double time = 0.0) {
     model.set_state(state.positions, state.velocities, time);
+}
+
+/// An edit that a model has followed.
+struct FollowedEdit {
+    topology::ChangeSet changes;
+    ModelChanges of_model;
+};
+inline FollowedEdit follow(Model& model, topology::ChangeSet changes) {
+    ModelChanges of_model = model.apply(model.mesh(), changes);
+    return {std::move(changes), std::move(of_model)};
+}
+inline void take_back(topology::Mesh& mesh, Model& model, const FollowedEdit& edit) {
+    replay(mesh, inverse(edit.changes));
+    model.undo(mesh, edit.changes, edit.of_model);
 }
 
 inline void step(Model& model, double& time, double dt) {
@@ -145,8 +162,8 @@ inline Constraint holding(std::string name, NodeSet nodes,
 }
 
 /// Living nodes whose rest position is where `is_inside` says.
-template <class Predicate>
-std::vector<NodeId> nodes_where(const topology::Mesh& mesh, Predicate is_inside) {
+template <class Mesh, class Predicate>
+std::vector<NodeId> nodes_where(const Mesh& mesh, Predicate is_inside) {
     std::vector<NodeId> nodes;
     for (const NodeId n : mesh.nodes())
         if (is_inside(mesh.rest_position(n))) nodes.push_back(n);
@@ -156,7 +173,8 @@ inline NodeSet left_end(const topology::Mesh& mesh) {
     return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
 }
 
-inline std::vector<ElementId> living_elements(const topology::Mesh& mesh) {
+template <class Mesh>
+std::vector<ElementId> living_elements(const Mesh& mesh) {
     std::vector<ElementId> elements;
     for (const ElementId e : mesh.elements()) elements.push_back(e);
     return elements;

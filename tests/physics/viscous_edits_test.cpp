@@ -63,47 +63,6 @@ double largest(const std::vector<Vec3>& forces) {
     return size;
 }
 
-// By the principle of virtual work: the forces on new nodes, given to their sources with the
-// weights of the record, make up what these lost.
-TEST(ViscousEdits, LeaveTheHistoryToTheParts) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        SCOPED_TRACE(seed);
-        BodyWithPast body(seed);
-        test::Random random(seed);
-        const std::vector<Vec3> before = body.forces();
-        const Memory history = body.history();
-        MeshEdit edit(body.mesh);
-        for (int i = 0; i < 4; ++i) {
-            const auto elements = living_elements(body.mesh);
-            const ElementId e = elements[random.below(elements.size())];
-            const std::size_t a = random.below(4), b = (a + 1 + random.below(3)) % 4;
-            edit.bisect(e, body.mesh.corners(e)[a], body.mesh.corners(e)[b],
-                        random.uniform(0.3, 0.7));
-        }
-        const ChangeSet changes = edit.commit();
-        body.model.apply(body.model.mesh(), changes);
-        for (const auto& record : changes.elements_added) {
-            const auto part = body.model.history().of(record.id);
-            const auto whole = body.model.history().of(record.parent);
-            EXPECT_TRUE(std::ranges::equal(part, whole));
-        }
-        std::vector<Vec3> after = body.forces();
-        for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend();
-             ++record)
-            for (int s = 0; s < record->num_sources; ++s) {
-                const auto& source = record->sources[static_cast<std::size_t>(s)];
-                after[source.node.index()] += source.weight * after[record->id.index()];
-            }
-        for (std::size_t n = 0; n < before.size(); ++n)
-            EXPECT_LE((after[n] - before[n]).norm(), 1e-12 * largest(before));
-
-        replay(body.mesh, inverse(changes));
-        body.model.apply(body.model.mesh(), inverse(changes));
-        EXPECT_EQ(body.forces(), before);
-        EXPECT_EQ(body.history(), history);
-    }
-}
-
 // A node's memory goes to its copies with the elements that made it: none is lost, none doubled.
 TEST(ViscousEdits, ShareTheMemoryAmongCopiesOfANode) {
     BodyWithPast body(3);
@@ -114,7 +73,7 @@ TEST(ViscousEdits, ShareTheMemoryAmongCopiesOfANode) {
             if (body.mesh.neighbor({e, f}).is_valid()) edit.open({e, f});
     const ChangeSet changes = edit.commit();
     ASSERT_GT(changes.nodes_added.size(), 50u);
-    body.model.apply(body.model.mesh(), changes);
+    follow(body.model, changes);
     std::vector<Vec3> after = body.forces();
     for (auto record = changes.nodes_added.rbegin(); record != changes.nodes_added.rend(); ++record)
         after[record->sources[0].node.index()] += after[record->id.index()];
@@ -131,11 +90,10 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
             const std::vector<Vec3> before = body.forces();
             const Memory history = body.history();
             const ChangeSet changes = test::random_edit(body.mesh, random);
-            body.model.apply(body.model.mesh(), changes);
+            const FollowedEdit done = follow(body.model, changes);
             const std::vector<Vec3> after = body.forces();
             const Memory history_after = body.history();
-            replay(body.mesh, inverse(changes));
-            body.model.apply(body.model.mesh(), inverse(changes));
+            take_back(body.mesh, body.model, done);
             EXPECT_EQ(body.forces(), before);
             EXPECT_EQ(body.history(), history);
             replay(body.mesh, changes);
@@ -143,7 +101,7 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
             EXPECT_EQ(body.forces(), after);
             EXPECT_EQ(body.history(), history_after);
 
-            Model fresh(body.mesh, body.table);
+            Model fresh(body.mesh, body.model.fragments(), body.table);
             set_state(fresh, state_of(body.model));
             fresh.set_history(body.model.history().values());
             fresh.compute_forces(body.time);
@@ -155,7 +113,7 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
             }
             EXPECT_EQ(state_of(body.model), state_of(fresh));
             EXPECT_TRUE(std::ranges::equal(body.model.elastic_forces(), fresh.elastic_forces()));
-            for (const ElementId e : living_elements(body.mesh))
+            for (const ElementId e : living_elements(body.model.fragments()))
                 EXPECT_TRUE(std::ranges::equal(body.model.history().of(e), fresh.history().of(e)));
         }
     }

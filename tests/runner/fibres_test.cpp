@@ -102,8 +102,10 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
             for (const double x : m.rest_position(n)) corners.push_back(x);
         return corners;
     };
+    const auto& fragments = simulation.model().fragments();
     for (const ElementId e : mesh.elements())
-        expected[location(mesh, e)] = simulation.model().fibres()[e.index()];
+        expected[location(mesh, e)] =
+            simulation.model().fibres()[fragments.fragment_of_cell(e).index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     for (std::size_t i = 0; i < again.mesh().element_capacity(); ++i)
         EXPECT_EQ(again.model().fibres()[i], expected.at(location(again.mesh(), ElementId(i))));

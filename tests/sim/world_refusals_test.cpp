@@ -61,15 +61,13 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
          },
          "is not on the surface"},
         {[&] {
-             physics::Constraint grip = physics::make_grip(
-                 "hand", {NodeId(124)}, world.model().positions(), at({0, 0, size}));
-             grip.gripped.begin()->second.x() = std::nan("");
+             physics::Constraint grip = physics::make_grip("hand", {NodeId(124)}, at({0, 0, size}));
+             grip.gripped[NodeId(124)] = Vec3::Zero();
              world.add_constraint(std::move(grip));
          },
-         "in its grip is not finite"},
+         "positions in a grip must be empty"},
         {[&] {
-             physics::Constraint grip = physics::make_grip(
-                 "hand", {NodeId(124)}, world.model().positions(), at({0, 0, size}));
+             physics::Constraint grip = physics::make_grip("hand", {NodeId(124)}, at({0, 0, size}));
              grip.grip = physics::TimeCurve<Pose>({{1.0, at({})}, {0.0, at({})}});
              world.add_constraint(std::move(grip));
          },

@@ -323,10 +323,7 @@ class Tethers : public physics::ForceTerm {
                 forces[n] += stiffness * (body.mesh.rest_position(NodeId(n)) - positions[n]);
     }
     double stiffness_bound(NodeId) const override { return stiffness; }
-    void apply(const physics::BodyView&, const topology::ChangeSet&,
-               std::span<const NodeId>) override {
-        ++num_edits;
-    }
+    void apply(const physics::BodyView&, const physics::BodyEdit&) override { ++num_edits; }
 
     static constexpr double stiffness = 2.0;  // N/m
     std::size_t num_edits = 0, num_nodes = 0;

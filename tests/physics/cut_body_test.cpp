@@ -1,0 +1,396 @@
+// A body whose elements are cut: its fragments have the mass, motion, energy and loads of the
+// whole. SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "incise/base/archive.h"
+#include "incise/physics/solve/integrator.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/validate.h"
+#include "support/exact_plane.h"
+#include "support/num_cases.h"
+#include "tests/physics/balance.h"
+#include "tests/physics/model_snapshot.h"
+
+namespace incise::physics {
+namespace {
+
+using topology::ChangeSet;
+using topology::FragmentMesh;
+using topology::Mesh;
+
+const std::vector<std::string> no_violations;
+
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
+    return box;
+}
+
+ChangeSet random_cut(Mesh& mesh, test::Random& random) {
+    const Box box = box_of(mesh);
+    const Vec3 point = box.center() + random.vector(0.1 * box.diagonal().norm());
+    return test::cut_along_plane(mesh, point, random.vector(1.0));
+}
+
+/// A body of all materials, in motion and with a viscous history.
+struct MovingBody {
+    MaterialTable table;
+    Mesh mesh;
+    Model model;
+    double time = 0.3;
+
+    MovingBody(const topology::MeshData& data, double light_share, std::uint64_t seed,
+               Precision precision = Precision::double_precision)
+        : table(table_for(data, precision)),
+          mesh(Mesh::build(with_regions(data, table.materials.size(), seed)).mesh),
+          model(mesh, FragmentMesh(mesh, light_share), table) {
+        test::Random random(seed);
+        set_state(model, random_state(mesh, random, 0.005 * model.size(), model.size()));
+        for (int i = 0; i < 3; ++i) step(model, time, 0.05 * model.stable_step());
+        model.compute_totals_and_forces();
+    }
+};
+
+TEST(CutBodies, KeepAllTotalsWithoutLightFragments) {
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            MovingBody body(family->data, 0.0, seed);
+            test::Random random(seed);
+            for (int i = 0; i < 3; ++i) {
+                const Balance before(body.model);
+                const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
+                EXPECT_FALSE(done.of_model.fragments.has_joins());
+                ASSERT_EQ(topology::validate(body.model.fragments(), body.mesh), no_violations);
+                expect_balance(before, body.model, done, {});
+            }
+        }
+}
+
+TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
+    int num_joins = 0;
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(5); ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            MovingBody body(family->data, topology::default_light_share, seed);
+            test::Random random(seed);
+            for (int i = 0; i < 3; ++i) {
+                const Balance before(body.model);
+                const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
+                ASSERT_EQ(topology::validate(body.model.fragments(), body.mesh), no_violations);
+                const Totals &a = before.totals, b = body.model.totals();
+                EXPECT_NEAR(a.mass, b.mass, round_off * a.mass);
+                EXPECT_NEAR(a.rest_volume, b.rest_volume, round_off * a.rest_volume);
+                EXPECT_LE((a.momentum - b.momentum).norm(), 1e-12 * before.momentum_scale);
+                EXPECT_LE((a.angular_momentum - b.angular_momentum).norm(),
+                          1e-12 * before.angular_scale);
+                num_joins += done.of_model.fragments.has_joins() ? 1 : 0;
+            }
+        }
+    EXPECT_GT(num_joins, 10);
+}
+
+TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            MovingBody body(family->data, topology::default_light_share, seed);
+            test::Random random(seed);
+            std::vector<FollowedEdit> edits;
+            std::vector<ModelSnapshot> before;
+            for (int i = 0; i < 3; ++i) {
+                before.emplace_back(body.model, body.time);
+                edits.push_back(follow(body.model, random_cut(body.mesh, random)));
+                const ModelSnapshot now(body.model, body.time);
+                MaterialTable table = body.table;
+                table.fibres = now.fibres;
+                Model fresh(body.mesh, body.model.fragments(), table);
+                set_state(fresh, now.state, body.time);
+                fresh.set_history(now.history);
+                expect_equal(ModelSnapshot(fresh, body.time), now);
+
+                ArchiveWriter writer;
+                body.model.save(writer);
+                ArchiveReader reader(writer.bytes());
+                MaterialTable without_fibres = body.table;
+                without_fibres.fibres.clear();
+                Model restored(body.mesh, without_fibres, reader, body.time);
+                EXPECT_TRUE(reader.is_at_end());
+                EXPECT_TRUE(restored.fragments() == body.model.fragments());
+                expect_equal(ModelSnapshot(restored, body.time), now);
+                EXPECT_TRUE(
+                    std::ranges::equal(restored.mesh_positions(), body.model.mesh_positions()));
+            }
+            for (; !edits.empty(); edits.pop_back(), before.pop_back()) {
+                take_back(body.mesh, body.model, edits.back());
+                expect_equal(ModelSnapshot(body.model, body.time), before.back());
+            }
+        }
+}
+
+// Lanes and the readable kernels agree, and forces are those of the energy.
+TEST(CutBodies, HaveTheForcesOfTheirEnergy) {
+    for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+        MovingBody body(test::jittered_cube(3, 0.2, 5), topology::default_light_share, 2,
+                        precision);
+        test::Random random(4);
+        follow(body.model, random_cut(body.mesh, random));
+        follow(body.model, random_cut(body.mesh, random));
+        Model& model = body.model;
+        std::size_t num_cut = 0;
+        for (const ElementId e : model.fragments().elements())
+            num_cut += model.fragments().share(e) != 1.0 ? 1 : 0;
+        ASSERT_GT(num_cut, 50u);
+        model.compute_forces(body.time);
+        std::vector<Vec3> readable(model.positions().size(), Vec3::Zero());
+        // Without time, the terms of the Prony series stay as they are.
+        model.elements().for_each_block([&](const ElementBlock& block) {
+            for (const ElementId e : block.elements()) {
+                const ElementResult result = block.result(e, model.positions(), model.history());
+                EXPECT_TRUE(std::isfinite(result.energy));
+            }
+        });
+        model.elements().add_forces({model.positions(), model.history(), 0.0}, readable);
+        double scale = 0.0;
+        for (const Vec3& f : readable) scale = std::max(scale, f.norm());
+        const double rounding = precision == Precision::double_precision ? 1e-11 : 1e-4;
+        for (std::size_t n = 0; n < readable.size(); ++n)
+            EXPECT_LE((readable[n] - model.elastic_forces()[n]).norm(), rounding * scale);
+        // The potential of an end of step falls along the forces.
+        std::vector<Vec3> x(model.positions().begin(), model.positions().end());
+        const double h = 1e-6;
+        for (int i = 0; i < 20; ++i) {
+            const std::size_t n = random.below(x.size());
+            if (!model.fragments().is_alive(NodeId(n))) continue;
+            for (int c = 0; c < 3; ++c) {
+                const auto potential = [&](double at) {
+                    std::vector<Vec3> moved = x;
+                    moved[n][c] += at;
+                    double sum = 0.0;
+                    model.elements().for_each_block([&](const ElementBlock& block) {
+                        sum += block.potential({moved, model.history(), 0.01});
+                    });
+                    return sum;
+                };
+                std::vector<Vec3> forces(x.size(), Vec3::Zero());
+                model.elements().add_forces({x, model.history(), 0.01}, forces);
+                EXPECT_NEAR(-(potential(h) - potential(-h)) / (2.0 * h), forces[n][c],
+                            1e-5 * scale);
+            }
+        }
+    }
+}
+
+/// What the cuts of bodies in smooth motion change, as root mean square over several cuts.
+struct CutError {
+    double elastic = 0.0, kinetic = 0.0, centre = 0.0;
+};
+
+/// Cuts cubes of n^3 bricks with a side of 1 m, which are stretched by 30 %, bent, and tumble.
+CutError error_of_cuts(int n, int num_cuts) {
+    CutError error;
+    for (int seed = 0; seed < num_cuts; ++seed) {
+        Mesh mesh = Mesh::build(test::jittered_cube(n, 0.0, 1)).mesh;
+        Model model(mesh, table_of_one_law(soft_law));
+        BodyState state = rest_state(mesh);
+        for (std::size_t i = 0; i < state.positions.size(); ++i) {
+            const Vec3 X = state.positions[i];
+            state.positions[i] = {1.3 * X.x(), 0.9 * X.y(), 0.9 * X.z() + 0.2 * X.x() * X.x()};
+            state.velocities[i] =
+                Vec3(1.0, 2.0, -3.0).cross(state.positions[i]) + Vec3(0.5, 0.0, X.x() * X.y());
+        }
+        set_state(model, state);
+        test::Random random(static_cast<std::uint64_t>(seed));
+        const Vec3 point = Vec3(0.51, 0.48, 0.52) + random.vector(0.05);
+        const Balance before(model);
+        follow(model, test::cut_along_plane(mesh, point, random.vector(1.0)));
+        const Balance after(model);
+        const Totals &a = before.totals, &b = after.totals;
+        EXPECT_NEAR(a.mass, b.mass, 1e-13 * a.mass);
+        EXPECT_LE((a.momentum - b.momentum).norm(), 1e-12 * before.momentum_scale);
+        EXPECT_LE((a.angular_momentum - b.angular_momentum).norm(), 1e-12 * before.angular_scale);
+        const auto add = [&](double& sum, double x) { sum += x * x / num_cuts; };
+        add(error.elastic, b.elastic_energy / a.elastic_energy - 1.0);
+        add(error.kinetic, b.kinetic_energy / a.kinetic_energy - 1.0);
+        add(error.centre, (a.centre_of_mass - b.centre_of_mass).norm());
+    }
+    return {std::sqrt(error.elastic), std::sqrt(error.kinetic), std::sqrt(error.centre)};
+}
+
+// What a cut changes by light fragments falls fast with the size of elements.
+TEST(CutBodies, ChangeEnergiesLittleInSmoothMotion) {
+    const CutError coarse = error_of_cuts(6, 12), fine = error_of_cuts(12, 12);
+    EXPECT_LT(fine.elastic, coarse.elastic / 4.0);
+    EXPECT_LT(fine.kinetic, coarse.kinetic / 4.0);
+    EXPECT_LT(fine.centre, coarse.centre / 4.0);
+    EXPECT_LE(fine.elastic, 1e-5);
+    EXPECT_LE(fine.kinetic, 4e-5);
+    EXPECT_LE(fine.centre, 4e-5);
+}
+
+BoundaryConditions all_loads_on(const Mesh& mesh) {
+    std::vector<FaceId> right, all = topology::boundary_faces(mesh);
+    for (const FaceId f : all) {
+        bool is_right = true;
+        for (int p = 0; p < mesh.face_size(f); ++p)
+            is_right &= mesh.rest_position(mesh.face_corner(f, p)).x() == 1.0;
+        if (is_right) right.push_back(f);
+    }
+    std::vector<ElementId> half;
+    for (const ElementId e : mesh.elements())
+        if (e.index() % 2 == 0) half.push_back(e);
+    BoundaryConditions s;
+    s.gravity = {0.0, 0.0, -9.81};
+    s.loads = {{"wind", TractionLoad{right, {3.0, -2.0, 5.0}}, {}},
+               {"gas", PressureLoad{all, 70.0}, {}},
+               {"field", BodyLoad{ElementSet(half), {0.0, 4.0, 0.0}}, {}},
+               {"hooks",
+                NodalLoad{NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 1.0; })),
+                          {0.1, -0.2, 0.3},
+                          {}},
+                {}}};
+    return s;
+}
+
+TEST(CutBodies, BearTheLoadsOfTheWhole) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(10); ++seed) {
+        SCOPED_TRACE(seed);
+        Mesh mesh = Mesh::build(test::jittered_cube(3, 0.1, 2)).mesh;
+        Model model(mesh, table_of_one_law(soft_law), all_loads_on(mesh));
+        test::Random random(seed);
+        const Mat3 F = Mat3::Identity() + 0.1 * Mat3::Ones();
+        const auto force_and_moment = [&] {
+            BodyState state = rest_state(model.fragments());
+            for (Vec3& x : state.positions) x = F * x;
+            set_state(model, state);
+            Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+            for (const NodeId n : model.fragments().nodes()) {
+                const Vec3 f = model.outer_forces()[n.index()] + model.elastic_forces()[n.index()];
+                force += f;
+                moment += model.positions()[n.index()].cross(f);
+            }
+            return std::pair{force, moment};
+        };
+        const auto [force, moment] = force_and_moment();
+        for (int i = 0; i < 3; ++i) {
+            follow(model, random_cut(mesh, random));
+            const auto [force_now, moment_now] = force_and_moment();
+            EXPECT_LE((force_now - force).norm(), 1e-12 * force.norm());
+            // Gravity acts on the corners of the fragment that carries a light one, and the hooks
+            // on copies by their masses; in an affine motion nothing else differs.
+            EXPECT_LE((moment_now - moment).norm(), 0.02 * moment.norm());
+        }
+    }
+}
+
+// The two pieces of a block that is cut through, each with one end clamped, fall only with the
+// other one's clamp gone.
+TEST(CutBodies, AreHeldByTheConstraintsThatTheirMaterialTouches) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(10); ++seed) {
+        SCOPED_TRACE(seed);
+        test::Random random(seed);
+        Mesh mesh = Mesh::build(test::jittered_cube(4, 0.1, seed)).mesh;
+        BoundaryConditions s;
+        s.gravity = {0.0, 0.0, -9.81};
+        s.constraints = {holding("left", left_end(mesh))};
+        Model model(mesh, table_of_one_law(soft_law), s);
+        const Vec3 normal = Vec3(1.0, 0.0, 0.0) + random.vector(0.3);
+        follow(model, test::cut_along_plane(mesh, {random.uniform(0.1, 0.4), 0.5, 0.5}, normal));
+        ASSERT_EQ(topology::components(mesh).count, 2);
+        double time = 0.0;
+        for (int i = 0; i < 5; ++i) step(model, time, 0.5 * model.stable_step());
+        const auto pieces = topology::components(mesh).of_element;
+        const auto velocities = model.mesh_velocities();
+        std::vector<bool> is_held(2, false);
+        for (const NodeId n : mesh.nodes())
+            if (mesh.rest_position(n).x() == 0.0) {
+                // Material of the clamped face stays where it is, wherever the cut meets it.
+                EXPECT_LE(velocities[n.index()].norm(), 1e-12);
+                is_held[static_cast<std::size_t>(pieces[mesh.incident_element(n).index()])] = true;
+            }
+        for (const NodeId n : mesh.nodes()) {
+            const auto piece = static_cast<std::size_t>(pieces[mesh.incident_element(n).index()]);
+            if (is_held[piece]) continue;
+            EXPECT_LE((velocities[n.index()] - Vec3(0, 0, -9.81 * time)).norm(), 1e-9);
+        }
+    }
+}
+
+TEST(CutBodies, MoveInImplicitStepsAsInExplicitOnes) {
+    const auto data = test::jittered_cube(3, 0.1, 2);
+    std::vector<std::vector<Vec3>> ends;
+    for (const bool is_implicit : {false, true}) {
+        Mesh mesh = Mesh::build(data).mesh;
+        BoundaryConditions s;
+        s.gravity = {3.0, 0.0, -9.81};
+        s.constraints = {holding("left", left_end(mesh))};
+        s.loads = {{"gas", PressureLoad{topology::boundary_faces(mesh), 50.0}, {}}};
+        Model model(mesh, table_of_one_law(soft_law), s);
+        follow(model, test::cut_along_plane(mesh, {0.52, 0.5, 0.47}, {0.2, 1.0, 0.3},
+                                            [](const Vec3& x) { return x.x() > 0.4; }));
+        model.compute_forces(0.0);
+        ImplicitEuler implicit;
+        SemiImplicitEuler explicit_steps;
+        Integrator& integrator = is_implicit ? static_cast<Integrator&>(implicit) : explicit_steps;
+        const double dt = 0.1 * model.stable_step();
+        double time = 0.0;
+        for (int i = 0; i < 60; ++i, time += dt) {
+            model.compute_forces(time);
+            integrator.step(model, time, dt);
+        }
+        ends.emplace_back(model.mesh_positions().begin(), model.mesh_positions().end());
+        for (std::size_t n = 0; n < ends.back().size(); ++n)
+            ends.back()[n] -= mesh.rest_positions()[n];
+    }
+    double largest = 0.0, difference = 0.0;
+    for (std::size_t n = 0; n < ends[0].size(); ++n) {
+        largest = std::max(largest, ends[0][n].norm());
+        difference = std::max(difference, (ends[1][n] - ends[0][n]).norm());
+    }
+    EXPECT_GT(largest, 1e-4);
+    EXPECT_LE(difference, 0.05 * largest);
+}
+
+TEST(CutBodies, FindTheirEquilibrium) {
+    Mesh mesh = Mesh::build(test::jittered_cube(4, 0.1, 2)).mesh;
+    BoundaryConditions s;
+    s.gravity = {0.0, 0.0, -1.0};
+    s.constraints = {holding("left", left_end(mesh))};
+    s.loads = {{"gas", PressureLoad{topology::boundary_faces(mesh), 20.0}, {}}};
+    Model model(mesh, table_of_one_law(soft_law), s);
+    follow(model, test::cut_along_plane(mesh, {0.52, 0.5, 0.47}, {0.2, 1.0, 0.3},
+                                        [](const Vec3& x) { return x.x() > 0.3; }));
+    Statics statics;
+    statics.step(model, 0.0, 1.0);
+    model.compute_forces(1.0);
+    double scale = 0.0, imbalance = 0.0;
+    for (const NodeId n : model.fragments().nodes()) {
+        if (model.constraints().of_node(n.index())) continue;
+        const Vec3 f = model.elastic_forces()[n.index()] + model.outer_forces()[n.index()];
+        imbalance = std::max(imbalance, f.norm());
+        scale = std::max(scale, model.outer_forces()[n.index()].norm());
+    }
+    EXPECT_LE(imbalance, 1e-7 * scale);
+    EXPECT_GT(model.max_displacement(), 1e-3);
+}
+
+TEST(CutBodies, AreNeverStifferThanTheirStiffestElement) {
+    for (const auto* family : test::tetrahedral_families())
+        for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
+            SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+            MovingBody body(family->data, topology::default_light_share, seed);
+            double least = std::numeric_limits<double>::infinity();
+            for (const ElementId e : body.model.fragments().elements())
+                least = std::min(least, body.model.element_stable_step(e));
+            test::Random random(seed);
+            for (int i = 0; i < 4; ++i) {
+                follow(body.model, random_cut(body.mesh, random));
+                EXPECT_GE(body.model.stable_step(), least * (1.0 - 1e-12));
+            }
+        }
+}
+
+}  // namespace
+}  // namespace incise::physics

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/fragment_archive.h"
+
+#include <algorithm>
+#include <string>
+
+#include "incise/topology/geometry.h"
+#include "incise/topology/validate.h"
+
+namespace incise::topology {
+
+/// The list of members that an archive of fragments contains, and the computation of the others.
+class FragmentArchive {
+  public:
+    static void list(auto& ar, auto& f) {
+        ar(f.light_share_, f.num_origins_, f.kinds_, f.regions_, f.origins_of_carrier_, f.carriers_,
+           f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
+           f.carrier_of_cell_, f.fragment_of_cell_);
+    }
+
+    static FragmentMesh load(const Mesh& material, ArchiveReader& ar) {
+        FragmentMesh fragments(0.0, FollowedEpoch(material));
+        list(ar, fragments);
+        FragmentArchive archive(fragments, material);
+        archive.require_lists();
+        archive.restore_rows();
+        archive.restore_lists_of_cells();
+        if (const auto faults = validate(fragments, material); !faults.empty())
+            require(false, faults.front().c_str());
+        return fragments;
+    }
+
+  private:
+    FragmentArchive(FragmentMesh& fragments, const Mesh& material)
+        : fragments_(fragments), material_(material) {}
+
+    static void require(bool holds, const char* text) {
+        if (!holds) throw InputError(std::string("its fragments are not sound: ") + text);
+    }
+
+    void require_lists() const {
+        const FragmentMesh& f = fragments_;
+        const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.carriers_.size(),
+                          num_nodes = f.origins_.size();
+        require(f.num_origins_ <= num_nodes && f.regions_.size() == num_carriers &&
+                    num_fragments >= num_carriers && f.is_alive_.size() == num_fragments &&
+                    f.shares_.size() == num_fragments && f.rest_positions_.size() == num_nodes &&
+                    f.is_node_alive_.size() == num_nodes &&
+                    f.carrier_of_cell_.size() == material_.element_capacity() &&
+                    f.fragment_of_cell_.size() == material_.element_capacity(),
+                "lists of different lengths");
+        const auto is_carrier = [&](ElementId e) {
+            return e.is_valid() && e.index() < num_carriers;
+        };
+        const auto is_fragment = [&](ElementId e) {
+            return !e.is_valid() || e.index() < num_fragments;
+        };
+        const auto is_node = [&](NodeId n) { return n.is_valid() && n.index() < num_nodes; };
+        const auto is_origin = [&](NodeId n) { return n.is_valid() && n.index() < f.num_origins_; };
+        require(
+            std::ranges::all_of(
+                f.kinds_,
+                [](CellKind kind) { return static_cast<std::size_t>(kind) < num_cell_kinds; }) &&
+                std::ranges::all_of(f.carriers_, is_carrier) &&
+                std::ranges::all_of(f.carrier_of_cell_, is_carrier) &&
+                std::ranges::all_of(f.fragment_of_cell_, is_fragment) &&
+                std::ranges::all_of(f.origins_of_carrier_, is_origin) &&
+                std::ranges::all_of(f.corners_, is_node) &&
+                std::ranges::all_of(f.origins_, is_origin) &&
+                std::ranges::all_of(f.rest_positions_, [](const Vec3& x) { return x.allFinite(); }),
+            "an element or a node that they name is not there");
+    }
+
+    void restore_rows() {
+        FragmentMesh& f = fragments_;
+        for (const CellKind kind : f.kinds_)
+            f.origin_begin_.push_back(f.origin_begin_.back() +
+                                      static_cast<std::size_t>(traits(kind).num_corners));
+        require(f.origins_of_carrier_.size() == f.origin_begin_.back(), "lists of origins");
+        for (const ElementId carrier : f.carriers_)
+            f.corner_begin_.push_back(f.corner_begin_.back() + f.origins_of(carrier).size());
+        require(f.corners_.size() == f.corner_begin_.back(), "lists of corners");
+        f.complete();
+    }
+
+    void restore_lists_of_cells() {
+        FragmentMesh& f = fragments_;
+        std::vector<std::vector<ElementId>> of_carrier(f.kinds_.size()),
+            of_fragment(f.carriers_.size()), fragments_of(f.kinds_.size());
+        for (const ElementId cell : material_.elements()) {
+            require(f.fragment_of_cell(cell).is_valid(), "a cell without a fragment");
+            of_carrier[f.carrier_of_cell(cell).index()].push_back(cell);
+            of_fragment[f.fragment_of_cell(cell).index()].push_back(cell);
+        }
+        for (const ElementId e : f.elements()) fragments_of[f.carrier(e).index()].push_back(e);
+        const auto keep = [&](auto& lists, const auto& all) {
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                const ElementId e(i);
+                const bool is_default =
+                    all[i] == std::vector{e} || (i < f.kinds_.size() && f.was_never_alive(e));
+                if (!is_default) lists[e] = all[i];
+            }
+        };
+        keep(f.cells_of_carrier_, of_carrier);
+        keep(f.fragments_of_carrier_, fragments_of);
+        keep(f.cells_of_fragment_, of_fragment);
+    }
+
+    FragmentMesh& fragments_;
+    const Mesh& material_;
+};
+
+void save(const FragmentMesh& fragments, ArchiveWriter& ar) {
+    FragmentArchive::list(ar, fragments);
+}
+
+FragmentMesh load_fragments(const Mesh& material, ArchiveReader& ar) {
+    return FragmentArchive::load(material, ar);
+}
+
+}  // namespace incise::topology
