@@ -127,17 +127,22 @@ constexpr const char* cut_footer =
     "between; all poses have the same number of points. From pose to pose each segment of the\n"
     "edge sweeps two triangles: give more poses where it twists.\n"
     "\n"
-    "Mode split divides tetrahedra along the cut, with --snap 0 exactly on it, but then into the\n"
-    "thinnest slivers. Mode separate divides nothing: it opens existing faces next to the cut,\n"
-    "those between elements whose centres it parts, so the cut follows the faces of the mesh.\n"
+    "Mode split divides tetrahedra along the cut, within the tolerance --snap of it. The mesh\n"
+    "has thin parts then, which do not shorten the steps of a run. Mode separate divides nothing:\n"
+    "it opens existing faces next to the cut, those between elements whose centres it parts, so\n"
+    "the cut follows the faces of the mesh.\n"
     "\n"
     "What is reported: cut_area is that of one side of the opened faces. surface_distance is how\n"
     "far they are from the surface that was given, at most: max at their nodes, the middles of\n"
     "their edges and their centres; relative is max over the mean length of the edges before;\n"
     "nodes is at their nodes alone, which is less where the surface has folds.\n"
-    "stable_step_ratio is geometric: what the shape of the tetrahedra does to the stable step of\n"
-    "a body of one material. microseconds_per_crossed_element is the time of the splits alone,\n"
-    "without reading, measuring and writing. Where there is nothing to measure, JSON has null.\n"
+    "mean_angle_deg is between the faces and a plane. fragments are the elements of a run: parts "
+    "of\n"
+    "a tetrahedron that hang together. stable_step_ratio is geometric: what their shape does to "
+    "the\n"
+    "stable step of a body of one material. microseconds_per_crossed_element is the time of the\n"
+    "splits alone, without reading, measuring and writing. JSON has null where there is nothing\n"
+    "to measure.\n"
     "\n"
     "A mesh that is written does not know where it was cut, and to cut it along the same surface\n"
     "once more cuts flakes off, but for --snap 0, where hardly anything changes: give all tools\n"
@@ -166,10 +171,10 @@ void declare_cut(CLI::App& app, Action& action) {
         ->type_name("MODE");
     verb->add_option(
             "--snap", options->snap,
-            "Mode split: how far off the cut its nodes may be, in mean edge lengths; from 0, "
-            "exact but with slivers, to 1 (default: " +
+            "Mode split: ends of crossed edges that are nearer to the cut than this share of the "
+            "edge count as on it; from 0, exact, to 0.5 (default: " +
                 io::format_number(cutting::default_snap) + ")")
-        ->type_name("LENGTHS");
+        ->type_name("SHARE");
     verb->add_option("--region-array", options->region_array,
                      "Cell array of VTK files that holds the regions")
         ->capture_default_str();

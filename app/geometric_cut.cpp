@@ -6,6 +6,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -13,11 +14,11 @@
 #include "incise/base/error.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/exact/cut_plan.h"
-#include "incise/cutting/exact/step_length.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/cutting/tools/separator.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -25,6 +26,7 @@ namespace incise::app {
 
 using cutting::TissueMotion;
 using topology::CellKind;
+using topology::FragmentMesh;
 using topology::Mesh;
 
 namespace {
@@ -153,7 +155,47 @@ bool is_all_tetrahedra(const Mesh& mesh) {
     return is_all;
 }
 
-CutBody describe(const Mesh& mesh) {
+/// Returns the stable step of fragments in a body of one material, times the speed of waves, m. It
+/// is 2 / sqrt(s / m) at a node (physics::StableStep), where s is the sum of V (1/h) sum_j (1/h_j)
+/// over its fragments, and m that of V / 4, with the altitudes h.
+double step_length_of(const FragmentMesh& fragments) {
+    std::vector<double> stiffness(fragments.node_capacity(), 0.0), volume = stiffness;
+    for (const ElementId e : fragments.elements()) {
+        const auto corners = fragments.corners(e);
+        std::array<Vec3, 4> x;
+        for (std::size_t k = 0; k < 4; ++k) x[k] = fragments.rest_position(corners[k]);
+        std::array<double, 4> inverse_altitudes;
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 &a = x[(k + 1) % 4], &b = x[(k + 2) % 4], &c = x[(k + 3) % 4];
+            inverse_altitudes[k] =
+                (b - a).cross(c - a).norm() / (6.0 * fragments.carrier_volume(e));
+            sum += inverse_altitudes[k];
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            stiffness[corners[k].index()] += fragments.volume(e) * inverse_altitudes[k] * sum;
+            volume[corners[k].index()] += fragments.volume(e);
+        }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const NodeId n : fragments.nodes())
+        least = std::min(least, std::sqrt(volume[n.index()] / stiffness[n.index()]));
+    return least;
+}
+
+void describe_fragments(const FragmentMesh& fragments, const Mesh& mesh, CutBody& body) {
+    body.fragments = fragments.num_elements();
+    for (const ElementId e : fragments.elements())
+        body.smallest_share = std::min(body.smallest_share, fragments.share(e));
+    std::vector<bool> has_material(fragments.node_capacity(), false);
+    for (const NodeId n : mesh.nodes())
+        if (const topology::Embedding at = fragments.embedding(mesh, n); at.count == 1)
+            has_material[at.nodes[0].index()] = true;
+    for (const NodeId n : fragments.nodes()) body.ghost_nodes += has_material[n.index()] ? 0 : 1;
+    if (is_all_tetrahedra(mesh)) body.step_length = step_length_of(fragments);
+}
+
+CutBody describe(const Mesh& mesh, const FragmentMesh& fragments) {
     const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
     CutBody body;
     body.elements = mesh.num_elements();
@@ -164,7 +206,7 @@ CutBody describe(const Mesh& mesh) {
     body.mean_edge_length = metrics.mean_edge_length;
     body.box_min = metrics.box_min;
     body.box_max = metrics.box_max;
-    if (is_all_tetrahedra(mesh)) body.step_length = cutting::step_length(mesh);
+    describe_fragments(fragments, mesh, body);
     return body;
 }
 
@@ -195,6 +237,10 @@ void add(const CutCounts& counts, CutCounts& total) {
     total.cut_area += counts.cut_area;
     total.volume_removed += counts.volume_removed;
     total.split_seconds += counts.split_seconds;
+    if (counts.mean_angle) {  // of all planes so far, by their areas
+        const double before = total.mean_angle.value_or(0.0) * (total.cut_area - counts.cut_area);
+        total.mean_angle = (before + *counts.mean_angle * counts.cut_area) / total.cut_area;
+    }
     if (const auto& distance = counts.surface_distance) {
         if (!total.surface_distance) total.surface_distance = CutCounts::Distance{};
         auto& largest = *total.surface_distance;
@@ -210,8 +256,10 @@ class CountingCutter {
         : mesh_(mesh),
           mode_(options.mode),
           snap_(options.snap),
-          cutter_(mesh, mesh.rest_positions(),
-                  mode_ == CutMode::split ? cutting::uncut_body(mesh) : cutting::UncutBody{}) {}
+          cutter_(mesh, mesh.rest_positions()),
+          fragments_(mesh) {}
+
+    const FragmentMesh& fragments() const { return fragments_; }
 
     CutCounts apply(const CutTool& tool) {
         counts_ = {};
@@ -230,6 +278,7 @@ class CountingCutter {
             separate(
                 [&](const Vec3& a, const Vec3& b) { return surface.side(a) != surface.side(b); });
         measure_distance([&](const Vec3& x) { return std::abs(unit.dot(x - plane.point)); });
+        measure_angle(unit);
     }
 
     void cut(const SurfaceCut& given) {
@@ -340,6 +389,7 @@ class CountingCutter {
 
     void record_changes(const topology::ChangeSet& changes) {
         cutter_.apply(mesh_, changes);
+        fragments_.apply(mesh_, changes);
         counts_.elements_added += changes.elements_added.size();
         counts_.elements_removed += changes.elements_removed.size();
         counts_.nodes_added += changes.nodes_added.size();
@@ -359,6 +409,16 @@ class CountingCutter {
             sum += at(p);
         }
         opened_faces_.middles.push_back(sum / size);
+        opened_faces_.areas.push_back(0.5 * (at(1) - at(0)).cross(at(2) - at(0)));
+    }
+
+    void measure_angle(const Vec3& normal) {
+        double sum = 0.0, all = 0.0;
+        for (const Vec3& area : opened_faces_.areas) {
+            sum += area.norm() * std::atan2(area.cross(normal).norm(), std::abs(area.dot(normal)));
+            all += area.norm();
+        }
+        if (all > 0.0) counts_.mean_angle = sum / all;
     }
 
     template <class Distance>
@@ -381,10 +441,12 @@ class CountingCutter {
     const CutMode mode_;
     const double snap_;
     cutting::Cutter cutter_;
+    FragmentMesh fragments_;
     // The counts and faces of the present tool.
     CutCounts counts_;
     struct {
         std::vector<Vec3> nodes, middles;  // m, at rest; middles of edges and of faces
+        std::vector<Vec3> areas;           // m2, of the first three corners
     } opened_faces_;
 };
 
@@ -411,9 +473,9 @@ std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts&
     return text.str();
 }
 
-CutBody describe_result(const Mesh& mesh) {
+CutBody describe_result(const Mesh& mesh, const FragmentMesh& fragments) {
     try {
-        return describe(mesh);
+        return describe(mesh, fragments);
     } catch (const InputError& error) {
         throw InputError(std::string("after the cuts: ") + error.what() +
                          "\nuse a larger snap, or move the cut a little");
@@ -449,8 +511,8 @@ std::optional<double> GeometricCutReport::stable_step_ratio() const {
 GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options) {
     GeometricCutReport report;
-    report.before = describe(mesh);
     CountingCutter cutter(mesh, options);
+    report.before = describe(mesh, cutter.fragments());
     for (const CutTool& tool : tools) {
         try {
             const CutCounts counts = cutter.apply(tool);
@@ -466,7 +528,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
             throw InputError(tool.name + ": " + error.what());
         }
     }
-    report.after = describe_result(mesh);
+    report.after = describe_result(mesh, cutter.fragments());
     report.pieces = pieces_of(mesh);
     return report;
 }

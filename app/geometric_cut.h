@@ -64,7 +64,10 @@ struct CutCounts {
     std::size_t nodes_duplicated = 0;  ///< of these, the copies at opened faces
     std::size_t nodes_snapped = 0;     ///< nodes near the surface that were treated as on it
     std::size_t faces_opened = 0;
-    double cut_area = 0.0;        ///< of one side of the opened faces, m2
+    double cut_area = 0.0;  ///< of one side of the opened faces, m2
+    /// Angle between the opened faces and the plane, radians, weighted by area. Not set unless the
+    /// tool is a plane.
+    std::optional<double> mean_angle;
     double volume_removed = 0.0;  ///< m3
     double split_seconds = 0.0;   ///< wall time of the splits only, s
     /// Largest distance of the opened faces from the surface of the tool, m. Not set if no face was
@@ -96,8 +99,12 @@ struct CutBody {
     double min_dihedral_angle = 0.0;                      ///< radians
     double min_altitude = 0.0, mean_edge_length = 0.0;    ///< m
     Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();  ///< bounding box, m
-    /// cutting::step_length(), m. Not set if there are elements other than tetrahedra.
+    /// The stable step of the fragments in a body of one material, times the speed of waves, m. Not
+    /// set if there are elements other than tetrahedra.
     std::optional<double> step_length;
+    std::size_t fragments = 0;    ///< elements of the physics: topology::FragmentMesh
+    std::size_t ghost_nodes = 0;  ///< nodes of fragments without material at them
+    double smallest_share = 1.0;  ///< of a fragment in the volume of its carrier
 };
 
 /// The result of geometric_cut().
@@ -123,8 +130,8 @@ struct GeometricCutReport {
 /// Applies the tools in their order to the body at rest. Planes, surfaces and sweeps cut the body.
 /// Shapes remove the elements whose centres they cover.
 ///
-/// With CutMode::split, tools divide elements by cutting::Cutter::split(), with the limits of the
-/// uncut mesh. With CutMode::separate, a sweep opens cutting::faces_to_open(). Planes and surfaces
+/// With CutMode::split, tools divide elements by cutting::Cutter::split(), with the tolerance
+/// `snap`. With CutMode::separate, a sweep opens cutting::faces_to_open(). Planes and surfaces
 /// open the faces between elements whose centres are on different sides. Two points are on
 /// different sides of a surface if the straight line between them crosses it an odd number of
 /// times.

@@ -41,9 +41,9 @@ struct Job {
 
 double parse_snap(const std::string& text) {
     const auto snap = io::parse_number<double>(text);
-    if (snap && *snap >= 0.0 && *snap <= 1.0) return *snap;
+    if (snap && *snap >= 0.0 && *snap <= 0.5) return *snap;
     throw InputError("--snap: " + scenario::in_quotes(text) +
-                     " is not allowed; it must be a number from 0 to 1");
+                     " is not allowed; it must be a number from 0 to 0.5");
 }
 
 /// True if both paths name the same file, also through a link.
@@ -146,6 +146,8 @@ void put_counts(ordered_json& json, const app::CutCounts& counts, double mean_ed
     json["nodes_duplicated"] = counts.nodes_duplicated;
     json["faces_opened"] = counts.faces_opened;
     json["cut_area"] = counts.cut_area;
+    json["mean_angle_deg"] =
+        or_null(counts.mean_angle ? std::optional(degrees(*counts.mean_angle)) : std::nullopt);
     json["volume_removed"] = counts.volume_removed;
     json["surface_distance"] = distance_json(counts.surface_distance, mean_edge_length);
 }
@@ -162,6 +164,9 @@ ordered_json as_json(const CutOptions& options, const Result& result) {
     json["elements"] = {{"before", before.elements}, {"after", after.elements}};
     json["nodes"] = {{"before", before.nodes}, {"after", after.nodes}};
     json["volume"] = {{"before", before.volume}, {"after", after.volume}};
+    json["fragments"] = {{"before", before.fragments}, {"after", after.fragments}};
+    json["ghost_nodes"] = after.ghost_nodes;
+    json["smallest_share"] = after.smallest_share;
     put_counts(json, report.total, before.mean_edge_length);
     json["volume_error"] = report.volume_error();
     json["growth"] = or_null(report.growth());
@@ -194,6 +199,8 @@ void print_counts(const app::CutCounts& counts, double mean_edge_length) {
                     counts.surface_distance->faces,
                     counts.surface_distance->faces / mean_edge_length,
                     counts.surface_distance->nodes);
+    if (counts.mean_angle)
+        std::printf("angle to plane    %.4g degrees on average\n", degrees(*counts.mean_angle));
 }
 
 void print_text(const Result& result) {
@@ -215,6 +222,8 @@ void print_text(const Result& result) {
         std::printf("  and smaller ones %zu\n", report.pieces.size() - most_pieces);
     std::printf("elements          %zu to %zu\n", before.elements, after.elements);
     std::printf("nodes             %zu to %zu\n", before.nodes, after.nodes);
+    std::printf("fragments         %zu to %zu, ghost nodes %zu, smallest share %.4g\n",
+                before.fragments, after.fragments, after.ghost_nodes, after.smallest_share);
     print_counts(report.total, before.mean_edge_length);
     if (const auto growth = report.growth()) std::printf("growth            %.4g\n", *growth);
     std::printf("volume error      %.3g\n", report.volume_error());

@@ -118,7 +118,7 @@ void split(benchmark::State& state) {
     double crossed = 0.0;
     for (auto _ : state) {
         state.PauseTiming();
-        cutting::Cutter cutter(mesh, model.mesh_positions(), cutting::uncut_body(mesh));
+        cutting::Cutter cutter(mesh, model.mesh_positions());
         const cutting::CutId cut = cutter.begin_cut(cutting::default_snap);
         state.ResumeTiming();
         std::vector<std::pair<topology::ChangeSet, physics::ModelChanges>> history;

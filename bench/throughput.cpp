@@ -186,9 +186,7 @@ struct CutCube {
         : method(measured.method),
           mesh(make_cube(kind_of(measured), num_elements)),
           model(mesh, table_of(measured.material)),
-          cutter(mesh, model.mesh_positions(),
-                 kind_of(measured) == topology::CellKind::tetrahedron ? cutting::uncut_body(mesh)
-                                                                      : cutting::UncutBody{}) {}
+          cutter(mesh, model.mesh_positions()) {}
 
     void follow(const topology::ChangeSet& changes) {
         model.apply(model.mesh(), changes);

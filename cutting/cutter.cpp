@@ -39,8 +39,8 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
 
 }  // namespace
 
-Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, UncutBody uncut)
-    : uncut_(std::move(uncut)), boxes_(mesh, positions), before_(mesh, positions) {}
+Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions)
+    : boxes_(mesh, positions), before_(mesh, positions) {}
 
 void Cutter::begin_motion(std::span<const Vec3> positions) {
     before_.assign(positions);
@@ -72,7 +72,7 @@ std::vector<SuspendedCut> Cutter::suspended_cuts(std::optional<std::size_t> work
     std::vector<SuspendedCut> resting;
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (Cut& cut = cuts_[i]; i != worker && !cut.front.is_empty())
-            resting.push_back({cut.front, {cut.edge, cut.edge}, cut.has_moved, cut.snap > 0.0});
+            resting.push_back({cut.front, {cut.edge, cut.edge}, cut.has_moved});
     return resting;
 }
 
@@ -90,7 +90,7 @@ Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
     if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
         auto resting = suspended_cuts(id.index);
         done = noted(cutting::split(mesh, tissue, SweptEdge(edge_before, edge_after), cut.front,
-                                    {cut.snap, uncut_}, snap_history_, resting),
+                                    {cut.snap}, snap_history_, resting),
                      id.index);
     }
     cut.edge = edge_after;
@@ -103,8 +103,8 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, std::span<const Vec3> positions,
     Cut& cut = cut_of(id);
     auto resting = suspended_cuts(id.index);
     boxes_.refresh(mesh, positions);
-    return noted(finish(mesh, {mesh, positions, positions, &boxes_}, blade, cut.front,
-                        {cut.snap, uncut_}, snap_history_, resting),
+    return noted(finish(mesh, {mesh, positions, positions, &boxes_}, blade, cut.front, {cut.snap},
+                        snap_history_, resting),
                  id.index);
 }
 
@@ -112,7 +112,7 @@ Split Cutter::split(Mesh& mesh, std::span<const Vec3> positions, const CutSurfac
                     double snap) {
     CutFront front;
     auto resting = suspended_cuts(std::nullopt);
-    return noted(cutting::split(mesh, motion(mesh, positions), surface, front, {snap, uncut_},
+    return noted(cutting::split(mesh, motion(mesh, positions), surface, front, {snap},
                                 snap_history_, resting),
                  std::nullopt);
 }

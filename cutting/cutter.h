@@ -43,9 +43,8 @@ struct CutId {
 /// edit. apply() takes the positions after the edit, with those of the new nodes.
 class Cutter {
   public:
-    /// Starts without cuts. `uncut` describes the body before its first cut: see SplitOptions.
-    /// Cost: O(n).
-    Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions, UncutBody uncut = {});
+    /// Starts without cuts. Cost: O(n).
+    Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
     /// Begins a motion of the tissue from `positions`. Without this call, the next motion begins
     /// where the previous one began. Cost: O(n).
@@ -100,9 +99,7 @@ class Cutter {
     /// True if begin_cut() has returned this number and the cut has not been removed.
     bool has_cut(CutId id) const { return id.index < cuts_.size() && cuts_[id.index].is_in_use; }
     /// Archives everything except the present motion.
-    static void archive(auto& ar, auto& self) {
-        ar(self.uncut_, self.cuts_, self.boxes_, self.snap_history_);
-    }
+    static void archive(auto& ar, auto& self) { ar(self.cuts_, self.boxes_, self.snap_history_); }
 
   private:
     struct Cut {
@@ -132,7 +129,6 @@ class Cutter {
     }
     Split noted(Split done, std::optional<std::size_t> worker);
 
-    UncutBody uncut_;
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;
     std::vector<Cut> cuts_;             // by CutId

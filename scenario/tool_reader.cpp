@@ -16,7 +16,7 @@ constexpr Keys tool_keys[] = {"kind", "name", "path",  "shape",   "edge", "mode"
                               "snap", "time", "plane", "surface", "scale"};
 constexpr Keys kinds[] = {"carver", "blade", "cut"};
 constexpr Keys modes[] = {"split", "separate"};  // in the order of CutMode
-constexpr Limits snap_limits{.low = 0.0, .high = 1.0, .includes_low = true, .includes_high = true};
+constexpr Limits snap_limits{.low = 0.0, .high = 0.5, .includes_low = true, .includes_high = true};
 constexpr Keys plane_keys[] = {"point", "normal"};
 constexpr Keys pose_keys[] = {"time", "at", "rotate"};
 constexpr Keys rotation_keys[] = {"axis", "angle"};

@@ -146,8 +146,8 @@ struct FaultOfShape {
         return what + (" of " + io::format_number(length)) + " m: it must be above 0";
     }
     static std::string fault_of_snap(double snap) {
-        if (snap >= 0.0 && snap <= 1.0) return "";
-        return "it has a snap of " + io::format_number(snap) + ": it must be from 0 to 1";
+        if (snap >= 0.0 && snap <= 0.5) return "";
+        return "it has a snap of " + io::format_number(snap) + ": it must be from 0 to 0.5";
     }
 };
 

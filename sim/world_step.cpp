@@ -1,10 +1,8 @@
 // Construction of a world, and its main loop.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <array>
 #include <sstream>
 #include <utility>
 
-#include "incise/cutting/exact/step_length.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
@@ -33,23 +31,6 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     return table;
 }
 
-/// Returns the lengths of the body at rest that limits of cuts refer to. The speed of waves in an
-/// element is element_step_length() divided by the stable step of the element.
-cutting::UncutBody uncut_body(const physics::Model& model) {
-    const Mesh& mesh = model.mesh();
-    cutting::UncutBody body{cutting::mean_edge_length(mesh), {}};
-    const double stable_step = model.stable_step();
-    for (const ElementId e : mesh.elements()) {
-        if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
-        std::array<Vec3, 4> x;
-        for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
-        const double speed = cutting::element_step_length(x) / model.element_stable_step(e);
-        double& length = body.step_length[mesh.region(e)];
-        length = std::max(length, speed * stable_step);
-    }
-    return body;
-}
-
 }  // namespace
 
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver) {
@@ -67,7 +48,7 @@ World::Parts::Parts(WorldDef def)
       integrator(make_integrator(def.solver)),
       solver(def.solver),
       ledger(model),
-      cutter(mesh, model.mesh_positions(), uncut_body(model)),
+      cutter(mesh, model.mesh_positions()),
       constraints("constraint", model.num_constraints()),
       loads("load", model.loads().all().size()) {
     model.set_num_threads(def.num_threads);

@@ -41,8 +41,8 @@ std::optional<EdgeIntersection> CutEnd::intersection(const Edge& edge) const {
                             at(place), Vec3::Zero(),         Vec3::Zero()};
 }
 
-std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces, double share,
-                                                       double farthest) {
+std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces,
+                                                       double share) {
     std::vector<CrossedEdge> crossed;
     std::set<std::pair<NodeId, NodeId>> known;
     for (const FaceId f : faces)
@@ -52,12 +52,9 @@ std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> f
             if (!known.insert({edge.a, edge.b}).second) continue;
             if (const auto there = intersection(edge)) crossed.push_back({edge, f.element, *there});
         }
-    for (const auto& [edge, element, intersection] : crossed) {
-        const double length = (mesh_.rest_position(edge.b) - mesh_.rest_position(edge.a)).norm();
-        const double from = std::min(intersection.from_a, intersection.from_b);
-        if (from < share && from * length <= farthest)
+    for (const auto& [edge, element, intersection] : crossed)
+        if (std::min(intersection.from_a, intersection.from_b) < share)
             put_at(intersection.from_a <= intersection.from_b ? edge.a : edge.b);
-    }
     return crossed;
 }
 

@@ -35,11 +35,9 @@ class CutEnd {
     };
     /// Returns the edges that the blade's edge crosses, each once. Near ends of these edges count
     /// as at the blade's edge from now on.
-    /// @param faces     on the cut
-    /// @param share     of a crossed edge: its nearer end is near if it is nearer than this
-    /// @param farthest  and no farther away than this, m at rest
-    std::vector<CrossedEdge> crossed_edges(std::span<const FaceId> faces, double share,
-                                           double farthest);
+    /// @param faces  on the cut
+    /// @param share  of a crossed edge: its nearer end is near if it is nearer than this
+    std::vector<CrossedEdge> crossed_edges(std::span<const FaceId> faces, double share);
 
     /// Makes the node count as at the blade's edge.
     void put_at(NodeId n) { nodes_.insert(n); }

@@ -87,8 +87,7 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
     const auto is_place = [&](const auto& place) {
         return is_element(place.first) && place.second.corner >= 0 && place.second.corner < 4;
     };
-    return std::ranges::all_of(nodes_, is_sound) && std::ranges::all_of(places_, is_place) &&
-           std::ranges::all_of(waiting_, is_element);
+    return std::ranges::all_of(nodes_, is_sound) && std::ranges::all_of(places_, is_place);
 }
 
 // If both ends of an edge were copied, too many pairs of copies are noted as crossed. The mesh has

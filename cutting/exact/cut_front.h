@@ -28,11 +28,6 @@ namespace incise::cutting {
 /// across it, is another cut.
 class CutFront {
   public:
-    /// Returns the number of the cut, which is higher than those of earlier cuts. It is 0 before
-    /// the cut begins, and comes from SnapHistory::take_rank().
-    std::uint64_t number() const { return number_; }
-    void set_number(std::uint64_t number) { number_ = number; }
-
     /// Makes a node count as on the cut. If it is on the cut already, only its local edge length
     /// can change, and only to more.
     /// @param n                  the node
@@ -104,11 +99,6 @@ class CutFront {
     /// form rings. The ends of crossed edges are not checked.
     bool is_on(const topology::Mesh& mesh) const;
 
-    /// Returns elements of small components that must not come off yet. First it must be known
-    /// whether they are connected to the rest of their side.
-    const std::vector<ElementId>& waiting() const { return waiting_; }
-    void set_waiting(std::vector<ElementId> elements) { waiting_ = std::move(elements); }
-
     std::size_t size() const { return nodes_.size(); }
     bool is_empty() const { return nodes_.empty(); }
 
@@ -145,8 +135,7 @@ class CutFront {
     }
 
     static void archive(auto& ar, auto& self) {
-        ar(self.number_, self.nodes_, self.crossed_, self.places_, self.waiting_, self.num_new_,
-           self.has_changed_);
+        ar(self.nodes_, self.crossed_, self.places_, self.num_new_, self.has_changed_);
     }
 
   private:
@@ -165,13 +154,11 @@ class CutFront {
         bool is_crossed = false;
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
-    std::uint64_t number_ = 0;
     std::unordered_map<NodeId, Node> nodes_;
     // By node, the other ends of its crossed edges; each edge is in both directions.
     std::unordered_map<NodeId, std::vector<NodeId>> crossed_;
     // Of elements whose corners are all on the cut.
     std::unordered_map<ElementId, LocalPlace> places_;
-    std::vector<ElementId> waiting_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };

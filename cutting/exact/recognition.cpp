@@ -22,19 +22,17 @@ class Recognizer {
 
     /// Puts the node on the front if the surface passes by it as one of its records says. `length`
     /// is that of an edge there, m.
-    void look_at(NodeId n, double length, CutFront& front, std::vector<Arrival>& arrivals) const {
+    void look_at(NodeId n, double length, CutFront& front) const {
         for (const CutRecord& record : snap_history_.of(n)) {
             const bool may_freeze = is_where_it_was(n, record, length);
             if (front.is_on(n) && !may_freeze) continue;
             const std::optional<Crossing> intersection =
                 may_freeze ? intersection_near(n, record, length)
                            : intersection_by(n, record.to_surface, record.normal, length);
-            if (!intersection) continue;
-            if (!front.is_on(n)) {
-                arrivals.push_back({n, intersection->time});
-                front.put_on(n, record.is_exact, length, record.rank);
-            }
-            if (!may_freeze || !is_along(record, intersection->normal)) continue;
+            // Another surface through the same point is another cut.
+            if (!intersection || !is_along(record, intersection->normal)) continue;
+            if (!front.is_on(n)) front.put_on(n, record.is_exact, length, record.rank);
+            if (!may_freeze) continue;
             front.freeze(n);
             return;
         }
@@ -92,28 +90,26 @@ class Recognizer {
 
 }  // namespace
 
-std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& surface,
-                               std::span<const EdgeList::Entry> edges,
-                               const SnapHistory& snap_history, CutFront& front) {
-    if (snap_history.is_empty()) return {};
+void recognize(const TissueMotion& tissue, const CutSurface& surface,
+               std::span<const EdgeList::Entry> edges, const SnapHistory& snap_history,
+               CutFront& front) {
+    if (snap_history.is_empty()) return;
     const auto is_new = [&](NodeId n) { return !snap_history.of(n).empty() && !front.is_on(n); };
     std::vector<Edge> scarred;
     for (const auto& [edge, element] : edges)
         if (is_new(edge.a) || is_new(edge.b)) scarred.push_back(edge);
-    if (scarred.empty()) return {};
+    if (scarred.empty()) return;
     // Sorted, so that the order does not depend on which elements are near.
     std::sort(scarred.begin(), scarred.end());
 
     const Recognizer recognizer(tissue, surface, edges, snap_history);
-    std::vector<Arrival> arrivals;
     for (const Edge& edge : scarred)
         for (const NodeId n : {edge.a, edge.b}) {
             if (front.is_on(n)) continue;
             const double length =
                 (tissue.mesh.rest_position(edge.b) - tissue.mesh.rest_position(edge.a)).norm();
-            recognizer.look_at(n, length, front, arrivals);
+            recognizer.look_at(n, length, front);
         }
-    return arrivals;
 }
 
 }  // namespace incise::cutting

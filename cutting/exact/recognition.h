@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/edge_list.h"
@@ -13,14 +12,8 @@
 
 namespace incise::cutting {
 
-/// The time at which a node came to count as on the cut.
-struct Arrival {
-    NodeId node;
-    double time;  ///< 0 before the step, 1 after it
-};
-
 /// Puts nodes of earlier cuts on the front if the surface passes by them at the same place. It need
-/// not cross an edge of theirs. Returns the nodes that came to the front.
+/// not cross an edge of theirs.
 ///
 /// A node is frozen if an earlier cut had the same surface, the node has not moved since, and
 /// neither it nor a neighbour moves in this step. The cut then has nothing to add there.
@@ -29,8 +22,8 @@ struct Arrival {
 /// @param edges         of the elements near the surface, in any order
 /// @param snap_history  of all earlier cuts
 /// @param front         of this cut
-std::vector<Arrival> recognize(const TissueMotion& tissue, const CutSurface& surface,
-                               std::span<const EdgeList::Entry> edges,
-                               const SnapHistory& snap_history, CutFront& front);
+void recognize(const TissueMotion& tissue, const CutSurface& surface,
+               std::span<const EdgeList::Entry> edges, const SnapHistory& snap_history,
+               CutFront& front);
 
 }  // namespace incise::cutting

@@ -69,9 +69,6 @@ void SnapHistory::apply(const topology::Mesh&, const topology::ChangeSet& change
         if (place != snap_history_.end())
             snap_history_.insert_or_assign(record.id, std::vector<CutRecord>(place->second));
     }
-    for (const topology::ElementRecord& record : changes.elements_added)
-        if (const auto place = slivers_.find(record.parent); place != slivers_.end())
-            add_sliver(record.id, place->second);
 }
 
 }  // namespace incise::cutting

@@ -60,30 +60,14 @@ class SnapHistory {
     /// cut, and cuts have numbers of the same sequence.
     std::uint64_t take_rank() { return next_rank_++; }
 
-    /// Notes that an element stayed with the other side of a cut, as part of a sliver fragment.
-    /// `cut` is CutFront::number().
-    void add_sliver(ElementId e, std::uint64_t cut) {
-        auto& first = slivers_.emplace(e, cut).first->second;
-        first = std::min(first, cut);
-    }
-    /// True if the element did so at a cut that began before the one with number `cut`.
-    bool is_earlier_sliver(ElementId e, std::uint64_t cut) const {
-        const auto place = slivers_.find(e);
-        return place != slivers_.end() && place->second < cut;
-    }
-    bool is_sliver(ElementId e) const { return slivers_.contains(e); }
-
     /// Gives `middle`, a new node on the edge from `a` to `b`, its records. A cut passes by the
     /// middle if it passes by one end and through the edge beyond the middle, or if it passes by
     /// both ends.
     void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
-    /// Follows an edit. Copies of a node have its records. Parts of an element of a sliver fragment
-    /// are elements of it, too.
+    /// Follows an edit. Copies of a node have its records.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    static void archive(auto& ar, auto& self) {
-        ar(self.snap_history_, self.slivers_, self.next_rank_);
-    }
+    static void archive(auto& ar, auto& self) { ar(self.snap_history_, self.next_rank_); }
 
     /// Positions nearer to each other than this share of the size of elements count as the same.
     static constexpr double rounding = 1e-6;
@@ -92,7 +76,6 @@ class SnapHistory {
     void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
 
     std::unordered_map<NodeId, std::vector<CutRecord>> snap_history_;
-    std::unordered_map<ElementId, std::uint64_t> slivers_;
     std::uint64_t next_rank_ = 1;
 };
 

@@ -19,8 +19,6 @@
 #include "incise/cutting/exact/cut_end.h"
 #include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
-#include "incise/cutting/exact/fitting_place.h"
-#include "incise/cutting/exact/near_nodes.h"
 #include "incise/cutting/exact/recognition.h"
 #include "incise/cutting/exact/separation.h"
 #include "incise/cutting/exact/surface_boundary.h"
@@ -37,10 +35,6 @@ namespace {
 
 /// The least snap, as a share of an edge. Nearer to an end than this, rounding would decide.
 constexpr double smallest_snap = 1e-7;
-
-/// Nodes up to this share of the largest distance always count as on the surface. Farther nodes do
-/// so only if that keeps the shape of elements (docs/cutting.md).
-constexpr double share_always_snapped = 1.0 / 3.0;
 
 /// Share of an edge. An intersection that is nearer to an end on the surface is none of its own. It
 /// comes from a bend of the surface, or because the motion of tissue between two steps is taken as
@@ -77,21 +71,17 @@ class Splitter {
           snap_history_(snap_history),
           suspended_(resting),
           options_(options),
-          snap_(std::max(share_always_snapped * options.snap, smallest_snap)),
-          farthest_(std::max(options.snap, smallest_snap) * options.uncut.edge_length),
-          num_old_nodes_(mesh.node_capacity()),
-          near_nodes_(mesh, {snap_, farthest_}) {
+          snap_(std::max(options.snap, smallest_snap)),
+          num_old_nodes_(mesh.node_capacity()) {
         if (blade_end) end_.emplace(mesh, *blade_end, [&](NodeId n) { return point(n)[1]; });
     }
 
     Split run() {
-        const bool begins = front_.is_empty();
         find_crossed_edges();
-        if (touched_.empty() && front_.waiting().empty()) {
+        if (touched_.empty()) {
             leave_behind({});
             return {};
         }
-        if (begins) front_.set_number(snap_history_.take_rank());
         edit_.emplace(mesh_);
         while (!queue_.empty()) divide_next();
         put_on_lying_nodes();
@@ -100,7 +90,6 @@ class Splitter {
         Split result{edit_->commit(), report_};
         front_.apply(mesh_, result.changes, true);
         snap_history_.apply(mesh_, result.changes);
-        for (const auto& [e, cut] : slivers_) snap_history_.add_sliver(e, cut);
         leave_behind(result.changes);
         return result;
     }
@@ -158,15 +147,20 @@ class Splitter {
     Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
     void receive(const Edge& edge, ElementId element, EdgeIntersections intersections);
     CutRecord record_at(NodeId n, const EdgeIntersection& intersection) const;
-    bool is_at(const EdgeEnd& end, const EdgeIntersection& intersection);
+    /// An end of a crossed edge, with the intersection as seen from there.
+    struct EdgeEnd {
+        NodeId node;
+        double place, from;  // as in EdgeIntersection, from this end
+    };
+    bool is_at(const EdgeEnd& end, const EdgeIntersection& intersection) const;
     bool passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const;
     void resolve(const Edge& edge, const EdgeIntersections& intersections);
-    bool is_to_be_divided(const Edge& edge, ElementId element, EdgeIntersections& intersections);
+    bool is_to_be_divided(const Edge& edge, EdgeIntersections& intersections);
     void divide_next();
-    double place_to_divide(const Edge& edge, ElementId element,
-                           const EdgeIntersection& intersection);
-    NodeId divide(const Edge& edge, ElementId element, double place,
-                  const EdgeIntersection& intersection);
+    bool may_be_divided(const Edge& edge) const {
+        return std::max(generation(edge.a), generation(edge.b)) < max_generation;
+    }
+    NodeId divide(const Edge& edge, ElementId element, const EdgeIntersection& intersection);
     struct Division {
         NodeId middle;
         std::vector<NodeId> ring;  // the other nodes of the elements round the edge
@@ -178,12 +172,7 @@ class Splitter {
     NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
     void part();
     std::optional<CutFront::Place> position_at_crease(ElementId e) const;
-    void open(const CutFront& front, const Separation& separation);
-    double time_of_separation(FaceId f) const;
-    std::array<MovingPoint, 3> points(FaceId f) const {
-        return {point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, 1)),
-                point(mesh_.face_corner(f, 2))};
-    }
+    void open(FaceId f);
     void put_on_lying_nodes();
     void put_on(NodeId n, bool is_exact, double local_edge_length);
     void snap_to(NodeId n, double local_edge_length);
@@ -195,24 +184,18 @@ class Splitter {
     SnapHistory& snap_history_;
     const std::span<SuspendedCut> suspended_;
     const SplitOptions& options_;
-    const double snap_;      // share of an edge: nearer nodes count as on the surface
-    const double farthest_;  // m at rest: farther nodes do not count as on the surface
+    const double snap_;  // share of an edge: nearer nodes count as on the surface
     const std::size_t num_old_nodes_;
-    NearNodes near_nodes_;
     std::optional<MeshEdit> edit_;  // once there is something to do
     std::optional<CutEnd> end_;     // only in finish()
 
     std::vector<MovingPoint> new_points_;
-    double now_ = 0.0;  // the time in the step of what is being done
-    // The times in this step at which nodes came to the cut.
-    std::unordered_map<NodeId, double> came_on_;
+    double now_ = 0.0;              // the time in the step of what is being done
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
     NodesOnSurface lying_;            // on the surface to rounding
     std::vector<ElementId> touched_;  // crossed, parts of such, or with a face on the surface
-    std::vector<ElementId> ring_;     // scratch
-    std::vector<std::pair<ElementId, std::uint64_t>> slivers_;  // with the number of the cut
     SplitReport report_;
 };
 
@@ -292,10 +275,7 @@ void Splitter::find_crossed_edges() {
         if (e != last && lying_.have_face_of(mesh_, e)) touched_.push_back(e);
         last = e;
     }
-    if (!found.empty())
-        for (const auto& [n, time] :
-             recognize(tissue_, surface_, edges.entries(), snap_history_, front_))
-            came_on_[n] = time;
+    if (!found.empty()) recognize(tissue_, surface_, edges.entries(), snap_history_, front_);
     for (const Found& f : found)
         if (f.intersections.size() % 2 == 1) front_.toggle(f.entry.edge.a, f.entry.edge.b);
     for (Found& f : found) receive(f.entry.edge, f.entry.element, std::move(f.intersections));
@@ -303,38 +283,17 @@ void Splitter::find_crossed_edges() {
 
 /// Opens the faces on this cut and on the suspended cuts.
 void Splitter::part() {
-    std::ranges::copy_if(front_.waiting(), std::back_inserter(touched_),
-                         [&](ElementId e) { return mesh_.is_alive(e); });
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto separation_of = [&](const CutFront& front, const PlaceOnCut& place_on_cut,
-                                   const std::function<bool(FaceId)>& is_reached, bool snaps,
-                                   const Course& course) {
-        return separation(mesh_, front, snap_history_, touched_, place_on_cut, is_reached,
-                          snaps ? std::optional(course) : std::nullopt);
-    };
+    const PlaceOnCut unknown;
     const PlaceOnCut position_at_crease = [&](ElementId e) { return this->position_at_crease(e); };
-    const auto is_behind_end = [&](FaceId f) { return !end_ || end_->is_behind(f); };
-    // A surface at rest does not go on, nor does a blade at its end, so nothing has to wait.
-    Separation own = separation_of(
-        front_, surface_.has_creases() ? position_at_crease : PlaceOnCut(), is_behind_end,
-        options_.snap > 0.0,
-        {[&](FaceId f) { return time_of_separation(f); },
-         [&](FaceId f) { return !end_ && surface_.ends_inside(points(f)).value_or(false); }});
-    std::vector<Separation> others;
+    std::vector<FaceId> faces = faces_to_separate(
+        mesh_, front_, touched_, surface_.has_creases() ? position_at_crease : unknown);
+    if (end_) std::erase_if(faces, [&](FaceId f) { return !end_->is_behind(f); });
     for (const SuspendedCut& blade : suspended_)
-        others.push_back(
-            separation_of(blade.front, {}, {}, blade.snaps,
-                          {[](FaceId) { return 0.0; },
-                           [&](FaceId f) { return blade.is_inside(points(f)).value_or(false); }}));
-    open(front_, own);
-    front_.set_waiting(std::move(own.waiting));
-    for (std::size_t i = 0; i < others.size(); ++i) {
-        CutFront& front = suspended_[i].front;
-        open(front, others[i]);
-        std::ranges::copy(front.waiting(), std::back_inserter(others[i].waiting));
-        front.set_waiting(std::move(others[i].waiting));
-    }
+        std::ranges::copy(faces_to_separate(mesh_, blade.front, touched_, unknown),
+                          std::back_inserter(faces));
+    for (const FaceId f : faces) open(f);
 }
 
 /// Returns the side of an element by its middle. Corners that the edit has made are not used:
@@ -351,33 +310,11 @@ std::optional<CutFront::Place> Splitter::position_at_crease(ElementId e) const {
     return CutFront::Place{old, is_crossed_from_middle(surface_, points, point(old))};
 }
 
-void Splitter::open(const CutFront& front, const Separation& separation) {
-    for (const FaceId f : separation.faces) {
-        if (!mesh_.neighbor(f).is_valid()) continue;  // another cut has opened it
-        report_.cut_area += topology::rest_area(mesh_, f);
-        ++report_.faces_opened;
-        edit_->open(f);
-    }
-    for (const ElementId e : separation.slivers) slivers_.emplace_back(e, front.number());
-}
-
-/// Returns the time in the step at which the face had its three nodes on the cut and its elements
-/// on different sides. Returns -1 if nodes and edges give no such time: it was before the step.
-double Splitter::time_of_separation(FaceId f) const {
-    double last = -1.0;
-    for (int p = 0; p < 3; ++p)
-        if (const auto place = came_on_.find(mesh_.face_corner(f, p)); place != came_on_.end())
-            last = std::max(last, place->second);
-    std::array<NodeId, 3> corners;
-    for (int p = 0; p < 3; ++p) corners[static_cast<std::size_t>(p)] = mesh_.face_corner(f, p);
-    for (const ElementId e : {f.element, mesh_.neighbor(f).element})
-        for (const NodeId apex : mesh_.corners(e)) {
-            if (std::ranges::find(corners, apex) != corners.end()) continue;
-            for (const NodeId n : corners)
-                for (const EdgeIntersection& intersection : intersections(edge_between(apex, n), e))
-                    last = std::max(last, intersection.time);
-        }
-    return last;
+void Splitter::open(FaceId f) {
+    if (!mesh_.neighbor(f).is_valid()) return;  // another cut has opened it
+    report_.cut_area += topology::rest_area(mesh_, f);
+    ++report_.faces_opened;
+    edit_->open(f);
 }
 
 /// Puts the nodes that lie on the surface on the cut, once all edges are divided. If they were on
@@ -393,7 +330,6 @@ void Splitter::put_on_lying_nodes() {
 }
 
 void Splitter::put_on(NodeId n, bool is_exact, double local_edge_length) {
-    if (!front_.is_on(n)) came_on_[n] = now_;
     front_.put_on(n, is_exact, local_edge_length,
                   front_.is_on(n) ? front_.rank(n) : snap_history_.take_rank());
 }
@@ -411,8 +347,8 @@ CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) co
 }
 
 /// True if an intersection with an edge counts as at the end of the edge.
-bool Splitter::is_at(const EdgeEnd& end, const EdgeIntersection& intersection) {
-    if (near_nodes_.has(end, intersection.normal_at_rest)) return true;
+bool Splitter::is_at(const EdgeEnd& end, const EdgeIntersection& intersection) const {
+    if (end.place < snap_) return true;
     const double size = (point(end.node)[1] - intersection.point).norm();
     return snap_history_.has(end.node, record_at(end.node, intersection), size);
 }
@@ -427,8 +363,7 @@ bool Splitter::passes_by(NodeId n, NodeId other, const EdgeIntersection& interse
 }
 
 // At a node near the surface, the nearest intersection with each edge counts as at the node.
-bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
-                                EdgeIntersections& intersections) {
+bool Splitter::is_to_be_divided(const Edge& edge, EdgeIntersections& intersections) {
     auto begin = intersections.begin(), end = intersections.end();
     const auto drop_bends = [&] {
         while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
@@ -442,10 +377,10 @@ bool Splitter::is_to_be_divided(const Edge& edge, ElementId element,
     if (begin == end || are_both_on()) return false;  // only rounding is between them
     const double length = rest_length(edge);
     const auto is_near_a = [&](const EdgeIntersection& p) {
-        return is_at({edge.a, edge.b, element, p.place, p.from_a}, p);
+        return is_at({edge.a, p.place, p.from_a}, p);
     };
     const auto is_near_b = [&](const EdgeIntersection& p) {
-        return is_at({edge.b, edge.a, element, 1.0 - p.place, p.from_b}, p);
+        return is_at({edge.b, 1.0 - p.place, p.from_b}, p);
     };
     // What is near both ends is at the nearer one.
     const auto is_at_a = [&](const EdgeIntersection& p) {
@@ -497,11 +432,10 @@ void Splitter::divide_next() {
     };
     std::ranges::copy_if(due, std::back_inserter(later), is_later);
     if (!later.empty()) std::erase_if(due, is_later);
-    if (EdgeIntersections left = due; is_to_be_divided(edge, element, left)) {
+    if (EdgeIntersections left = due; is_to_be_divided(edge, left)) {
         const EdgeIntersection& intersection = first_of(left);
-        const double t = place_to_divide(edge, element, intersection);
-        if (t > 0.0) {
-            const NodeId middle = divide(edge, element, t, intersection);
+        if (may_be_divided(edge)) {
+            const NodeId middle = divide(edge, element, intersection);
             snap_history_.add(middle, record_at(middle, intersection));
             return;
         }
@@ -512,18 +446,6 @@ void Splitter::divide_next() {
     }
     resolve(edge, due);
     if (!later.empty()) receive(edge, element, std::move(later));
-}
-
-/// Returns the edge parameter at which to divide the edge, or a negative number if its nearer end
-/// is to count as on the surface.
-double Splitter::place_to_divide(const Edge& edge, ElementId element,
-                                 const EdgeIntersection& intersection) {
-    if (std::max(generation(edge.a), generation(edge.b)) >= max_generation) return -1.0;
-    if (options_.uncut.step_length.empty()) return intersection.place;
-    ring_.clear();
-    topology::collect_edge_ring(mesh_, element, edge.a, edge.b, ring_);
-    return fitting_place(mesh_, {edge.a, edge.b, ring_}, intersection,
-                         {options_.uncut, least_step_share(options_.snap), farthest_});
 }
 
 Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double t) {
@@ -566,13 +488,12 @@ void Splitter::place_halves(const Edge& edge, const Division& division, double l
 }
 
 /// Divides an edge where the surface crosses it, and returns the new node.
-NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
-                        const EdgeIntersection& intersection) {
+NodeId Splitter::divide(const Edge& edge, ElementId element, const EdgeIntersection& intersection) {
     const double local_edge_length = rest_length(edge);
-    const Division division = bisect(edge, element, t);
+    const Division division = bisect(edge, element, intersection.place);
     const NodeId middle = division.middle;
     const std::vector<NodeId>& ring = division.ring;
-    put_on(middle, t == intersection.place, local_edge_length);
+    put_on(middle, true, local_edge_length);
 
     const auto holder = [&](NodeId other) {
         ElementId found;
@@ -591,15 +512,8 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
     const auto has_boundary = [&](NodeId p, NodeId q, NodeId r) {
         return surface_.ends_inside({point(p), point(q), point(r)});
     };
-    const auto place = [&](NodeId a, NodeId b, const EdgeIntersections& towards_b) {
-        place_on_side(front_, a, b, middle, ring, has_boundary, [&](std::size_t i) {
-            return (to_ring[i].size() + towards_b.size()) % 2 == 1;
-        });
-    };
-    if (t < intersection.place)
-        place(edge.b, edge.a, to_a);
-    else
-        place(edge.a, edge.b, to_b);
+    place_on_side(front_, edge.a, edge.b, middle, ring, has_boundary,
+                  [&](std::size_t i) { return (to_ring[i].size() + to_b.size()) % 2 == 1; });
     place_halves(edge, division, local_edge_length);
     // What the blade did earlier concerns the edge that was there then. In smaller steps, the new
     // edges would not be examined for it.
@@ -617,10 +531,9 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, double t,
 /// Divides faces on the cut at the blade's edge where they go on ahead of it.
 void Splitter::divide_at_end() {
     if (!end_) return;
-    now_ = 1.0;
     const PlaceOnCut unknown;
     const auto faces = Sides(mesh_, front_, touched_, unknown).separated_faces();
-    for (const auto& [edge, element, intersection] : end_->crossed_edges(faces, snap_, farthest_))
+    for (const auto& [edge, element, intersection] : end_->crossed_edges(faces, snap_))
         receive(edge, element, {intersection});
     while (!queue_.empty()) {
         const Edge edge = queue_.top().edge;
@@ -628,9 +541,8 @@ void Splitter::divide_at_end() {
         const auto [element, intersections] = std::move(pending_.extract(edge).mapped());
         if (end_->is_at(edge.a) || end_->is_at(edge.b)) continue;
         const EdgeIntersection& intersection = intersections.front();
-        const double t = place_to_divide(edge, element, intersection);
-        if (t > 0.0)
-            end_->put_at(divide_on_cut(edge, element, t));
+        if (may_be_divided(edge))
+            end_->put_at(divide_on_cut(edge, element, intersection.place));
         else
             end_->put_at(intersection.from_a < intersection.from_b ? edge.a : edge.b);
     }
@@ -652,8 +564,6 @@ NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
 }
 
 }  // namespace
-
-double least_step_share(double snap) { return 0.55 * std::min(snap / 0.6, 1.0); }
 
 Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
             const SplitOptions& options, SnapHistory& snap_history,

@@ -8,7 +8,6 @@
 #include "incise/cutting/exact/blade_end.h"
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/snap_history.h"
-#include "incise/cutting/exact/step_length.h"
 #include "incise/cutting/exact/suspended_cut.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
@@ -17,24 +16,16 @@
 
 namespace incise::cutting {
 
-/// The default of `snap`, from measurements: docs/measurements/cutting.md.
-inline constexpr double default_snap = 0.6;
-
-/// Returns the share of the uncut body's step length (step_length.h) that cuts try to leave to
-/// every element. It is 0.55 from a snap of 0.6 on, and less in proportion below.
-double least_step_share(double snap);
+/// The default of `snap`. The longest edges of a mesh are about twice as long as the mean, so that
+/// nodes of the cut are off the surface by at most 0.03 of a mean edge.
+inline constexpr double default_snap = 0.015;
 
 /// The options of a cut.
 struct SplitOptions {
-    /// How far nodes of the cut may be off the surface, in mean edge lengths of the uncut body. The
-    /// range is [0, 1]. No node is moved.
-    ///
-    /// A node counts as on the surface if it is nearer to it than a third of `snap` of an edge that
-    /// the surface crosses. It also counts, up to a distance of `snap`, where elements would
-    /// otherwise keep less than least_step_share() of the uncut body's step length. If the nearer
-    /// end of an edge is farther away than `snap`, half of that share is enough.
+    /// The tolerance of a cut, as a share of an edge that the surface crosses. The range is
+    /// [0, 0.5]. An end of such an edge that is nearer to the surface counts as on it. No node is
+    /// moved. Without a tolerance, a cut leaves parts of any size.
     double snap = default_snap;
-    UncutBody uncut = {};  ///< the body before its first cut
 };
 
 /// The report of a cut.
@@ -81,8 +72,8 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
 
 /// Ends the cut of a blade at its edge, where its path ends. Elements that the edge is in are
 /// divided along the continuation of the path. Faces on the cut are divided at the edge, with the
-/// same limits, and those behind the edge open. Small components that have waited come off or stay.
-/// The front is empty afterwards.
+/// same tolerance, and those behind the edge open. Small components that have waited come off or
+/// stay. The front is empty afterwards.
 ///
 /// Parameters and cost are those of split(). Nothing happens if the front is empty. If the
 /// continuation comes to an element that is no tetrahedron, no element is divided along it.

@@ -19,7 +19,6 @@ struct SuspendedCut {
     /// True if the blade has moved in this step. Tissue is then where it is after the step, else
     /// before.
     bool has_moved;
-    bool snaps;  ///< true if the snap of the cut is above 0
 
     /// True if the blade's edge passes through the triangle an odd number of times.
     std::optional<bool> is_inside(std::array<MovingPoint, 3> triangle) const {

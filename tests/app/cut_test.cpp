@@ -333,7 +333,7 @@ TEST_F(Cut, RefusesWhatItCannotUnderstand) {
               "'split'?"},
              {"--snap 1.5 --plane 0,0,0,1,0,0",
               "--snap: '1.5' is not allowed; it must be a number "
-              "from 0 to 1"},
+              "from 0 to 0.5"},
              {"--snap nan --plane 0,0,0,1,0,0", "--snap: 'nan' is not allowed"},
              {"--json out.vtu --plane 0,0,0,1,0,0", "--json: out.vtu is the mesh"},
              {"--json ./box.vtu --plane 0,0,0,1,0,0", "--json: box.vtu is the mesh"},

@@ -258,21 +258,5 @@ TEST(SnapHistory, RecognizesARepeatedCutAlsoAtCopies) {
     EXPECT_FALSE(snap_history.has(copy, cut_record(x, 0.1), 1.0));
 }
 
-TEST(SnapHistory, CountsPartsOfSliversAsSlivers) {
-    SnapHistory snap_history;
-    const ElementId whole(std::size_t{5}), part(std::size_t{9}), other(std::size_t{10});
-    snap_history.add_sliver(whole, 1);
-    topology::ChangeSet changes;
-    changes.elements_added.push_back({part, topology::CellKind::tetrahedron, 0, whole, {}});
-    changes.elements_added.push_back(
-        {other, topology::CellKind::tetrahedron, 0, ElementId(std::size_t{4}), {}});
-    snap_history.apply(any_mesh(), changes);
-    EXPECT_TRUE(snap_history.is_sliver(whole));
-    EXPECT_TRUE(snap_history.is_sliver(part));
-    EXPECT_FALSE(snap_history.is_sliver(other));
-    EXPECT_TRUE(snap_history.is_earlier_sliver(part, 2));   // of an earlier cut
-    EXPECT_FALSE(snap_history.is_earlier_sliver(part, 1));  // of the same
-}
-
 }  // namespace
 }  // namespace incise::cutting

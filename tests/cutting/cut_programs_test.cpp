@@ -34,9 +34,9 @@ class Patient {
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
           rest_volume_(rest_volume(mesh_)) {
-        constexpr std::array<double, 3> snaps = {0.0, 0.3, 0.6};
+        constexpr std::array<double, 3> snaps = {0.0, default_snap, 0.1};
         const double snap = snaps[random_.below(3)];
-        options_ = random_.below(2) == 0 ? guarded(mesh_, snap) : SplitOptions{snap, {}};
+        options_ = SplitOptions{snap};
         Box box;
         for (const Vec3& X : mesh_.rest_positions()) box.extend(X);
         size_ = box.diagonal().norm();
@@ -48,9 +48,7 @@ class Patient {
     }
 
     std::string describe() const {
-        return "snap " + std::to_string(options_.snap) +
-               (options_.uncut.step_length.empty() ? "" : ", guarded") +
-               (is_at_rest_ ? ", at rest" : ", deformed");
+        return "snap " + std::to_string(options_.snap) + (is_at_rest_ ? ", at rest" : ", deformed");
     }
 
     /// @param is_convex  the body at rest
@@ -61,11 +59,12 @@ class Patient {
             SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
             carry_out(cut);
             if (cut.kind == CutKind::plane)
-                expect_parted(
-                    mesh_, model_.mesh_positions(), {cut.point, cut.normal},
-                    how_far_off() * longest_edge(mesh_, model_.mesh_positions()) + 1e-6 * size_ +
-                        (has_joins_ && !is_at_rest_ ? 0.05 * mean_edge_length(mesh_) : 0.0),
-                    snap_history_);
+                expect_parted(mesh_, model_.mesh_positions(), {cut.point, cut.normal},
+                              how_far_off() * longest_edge(mesh_, model_.mesh_positions()) +
+                                  1e-6 * size_ +
+                                  (has_joins_ && !is_at_rest_
+                                       ? 0.05 * longest_edge(mesh_, mesh_.rest_positions())
+                                       : 0.0));
             if (i == 0 && is_convex && is_at_rest_ && cut.kind == CutKind::plane)
                 expect_halves(cut);
             // Light fragments move with others, so that in a deformed body their faces are a little
@@ -141,7 +140,7 @@ class Patient {
     /// what is near at rest may be farther.
     double how_far_off() const {
         if (is_at_rest_) return options_.snap;
-        return options_.snap > 0.0 ? 0.6 : 0.0;
+        return 3.0 * options_.snap;
     }
 
     /// A convex body at rest is in two; each is as large as the plane leaves it, but for what is

@@ -53,8 +53,7 @@ struct Deformation {
 struct Program {
     GeneratedBody body;
     Deformation deformation;
-    int snap;  ///< in tenths
-    bool is_guarded;
+    int snap;  ///< in hundredths
     std::vector<Cut> cuts;
 };
 
@@ -83,7 +82,7 @@ std::ostream& operator<<(std::ostream& out, const Program& program) {
     else
         out << "stretched by " << program.deformation.stretch << ", bent by "
             << program.deformation.bend;
-    out << ", snap 0." << program.snap << (program.is_guarded ? ", guarded" : "");
+    out << ", snap 0.0" << program.snap;
     for (std::size_t i = 0; i < program.cuts.size(); ++i)
         out << "\n  " << i + 1 << ". " << program.cuts[i];
     return out;
@@ -113,12 +112,11 @@ rc::Gen<Program> programs() {
         },
         inRange(0, 3), grid(-1, 9), test::up_to(3, grid(-4, 12)), grid(-2, 2), inRange(1, 4));
     return rc::gen::apply(
-        [](GeneratedBody body, Grid stretch, Grid bend, int snap, bool is_guarded,
-           std::vector<Cut> all) {
-            return Program{std::move(body), {stretch, bend}, snap, is_guarded, std::move(all)};
+        [](GeneratedBody body, Grid stretch, Grid bend, int snap, std::vector<Cut> all) {
+            return Program{std::move(body), {stretch, bend}, snap, std::move(all)};
         },
         test::generated_bodies(test::tetrahedral_families(), 48), grid(0, 2), grid(0, 1),
-        inRange(0, 8), rc::gen::arbitrary<bool>(), test::up_to(4, cuts));
+        inRange(0, 10), test::up_to(4, cuts));
 }
 
 /// A body in motion that is cut while its tissue is still.
@@ -129,9 +127,9 @@ class Patient {
           mesh_(Mesh::build(with_all_materials(program.body.mesh())).mesh),
           model_(mesh_, table_),
           first_mesh_(mesh_),
-          snap_(program.snap / 10.0),
+          snap_(program.snap / 100.0),
           is_at_rest_(program.deformation.is_none()) {
-        options_ = program.is_guarded ? guarded(mesh_, snap_) : SplitOptions{snap_, {}};
+        options_ = SplitOptions{snap_};
         deform(program.deformation);
         for (const Vec3& x : model_.positions()) box_.extend(x);
         longest_edge_ = longest_edge(mesh_, model_.positions());
@@ -146,7 +144,7 @@ class Patient {
         if (cut.kind == Kind::blade) finish_and_check(cut, front);
         if (cut.kind != Kind::plane) return;
         expect_parted(mesh_, model_.mesh_positions(), plane_of(cut),
-                      how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm(), snap_history_);
+                      how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm());
         const std::size_t num_cuts = done_.size();
         CutFront of_second;
         cut_and_check(*stroke.front(), of_second);
@@ -242,7 +240,7 @@ class Patient {
     /// what is near at rest may be farther.
     double how_far_off() const {
         if (is_at_rest_ || snap_ == 0.0) return snap_;
-        return std::max(snap_, 0.6);
+        return 3.0 * snap_;
     }
 
     physics::MaterialTable table_;

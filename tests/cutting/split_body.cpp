@@ -9,7 +9,6 @@
 #include <map>
 #include <set>
 
-#include "incise/cutting/exact/step_length.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/validate.h"
@@ -131,8 +130,6 @@ Box SplitBody::box() const {
     for (const Vec3& x : positions) box.extend(x);
     return box;
 }
-
-SplitOptions guarded(const Mesh& mesh, double snap) { return {snap, uncut_body(mesh)}; }
 
 std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes) {
     for (const auto& record : changes.nodes_added) {
@@ -290,12 +287,11 @@ double enclosed_volume(const SurfaceData& surface) {
 }
 
 void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const PlaneOfCut& plane,
-                   double off, const SnapHistory& snap_history) {
+                   double off) {
     const auto pieces = topology::components(mesh);
     const auto num_pieces = static_cast<std::size_t>(pieces.count);
     std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
     for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
-        if (snap_history.is_sliver(ElementId(e))) continue;
         const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
         for (const NodeId n : mesh.corners(ElementId(e))) {
             const Vec3 from = positions[n.index()] - plane.point;

@@ -28,10 +28,10 @@ class SplitBody {
     Split cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
               const std::vector<Vec3>& moved, std::span<SuspendedCut> resting = {});
     /// A cut for itself through tissue that is still.
-    Split cut(const CutSurface& surface, const SplitOptions& options = {0.0, {}});
+    Split cut(const CutSurface& surface, const SplitOptions& options = {0.0});
 
     /// What the parts of a stroke did, one after the other.
-    std::vector<Split> cut(const Stroke& stroke, const SplitOptions& options = {0.0, {}});
+    std::vector<Split> cut(const Stroke& stroke, const SplitOptions& options = {0.0});
 
     /// Ends the cut of a blade in tissue that is still.
     Split finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options);
@@ -44,9 +44,6 @@ class SplitBody {
 };
 
 SplitReport sum(const std::vector<Split>& parts);
-
-/// The limits that go with a snap in a body of one material: step_length.h.
-SplitOptions guarded(const topology::Mesh& mesh, double snap);
 
 /// Positions after an edit: new nodes are where its record says.
 std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes);
@@ -79,7 +76,7 @@ struct PlaneOfCut {
 };
 /// Expects that no piece is on both sides of a plane, but for so much (m), and slivers.
 void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
-                   const PlaneOfCut& plane, double off, const SnapHistory& snap_history);
+                   const PlaneOfCut& plane, double off);
 
 /// A sphere of 20 * 4^n triangles with their corners on it.
 topology::SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions);

@@ -122,7 +122,7 @@ TEST(SplitByBlade, PartlyThroughIsAlikeInManySteps) {
                     expect_same_in_many_steps(family->data, [&](SplitBody& body, int num_steps) {
                         Random random(seed);
                         const BladePath path(body.box(), random, share);
-                        body.cut(sweep(path.from, path.to, num_steps), guarded(body.mesh, snap));
+                        body.cut(sweep(path.from, path.to, num_steps), SplitOptions{snap});
                     });
                 }
 }
@@ -159,7 +159,7 @@ TEST(SplitByBlade, WithWavedEdgesIsAlikeInManySteps) {
                 expect_same_in_many_steps(family->data, [&](SplitBody& body, int num_steps) {
                     Random random(seed);
                     const WavedBlade blade(body.box(), random);
-                    body.cut(sweep(blade.from, blade.to, num_steps), guarded(body.mesh, snap));
+                    body.cut(sweep(blade.from, blade.to, num_steps), SplitOptions{snap});
                 });
             }
 }
@@ -176,8 +176,8 @@ TEST(SplitByBlade, ThroughCutBodiesIsAlikeInManySteps) {
                 expect_same_in_many_steps(family->data, [&](SplitBody& body, int num_steps) {
                     Random random(seed);
                     const BladePath earlier(body.box(), random), path(body.box(), random);
-                    body.cut(sweep(earlier.from, earlier.to, 1), guarded(body.mesh, snap));
-                    body.cut(sweep(path.from, path.to, num_steps), guarded(body.mesh, snap));
+                    body.cut(sweep(earlier.from, earlier.to, 1), SplitOptions{snap});
+                    body.cut(sweep(path.from, path.to, num_steps), SplitOptions{snap});
                 });
             }
 }
@@ -193,7 +193,7 @@ TEST(SplitByBlade, ResumesFromItsArchiveToTheSameCut) {
                 const BladePath path(body.box(), random);
                 CutFront front;
                 for (const auto& part : sweep(path.from, path.to, 40)) {
-                    body.cut(*part, front, guarded(body.mesh, default_snap), body.positions);
+                    body.cut(*part, front, SplitOptions{default_snap}, body.positions);
                     if (!is_archived) continue;
                     ArchiveWriter ar;
                     ar(front);

@@ -25,7 +25,7 @@ using test::Random;
 TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
     for (const auto* family : test::tetrahedral_families()) {
         if (family->name != "cube" && family->name != "ball") continue;
-        for (const double snap : {0.0, 0.25, 0.6})
+        for (const double snap : {0.0, 0.05, 0.1})
             for (const int num_steps : {1, 5, 30})
                 for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
                     SCOPED_TRACE(testing::Message()
@@ -34,7 +34,7 @@ TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
                     Random random(seed);
                     SplitBody body(family->data);
                     const BladePath path(body.box(), random);
-                    const double off = snap / 3.0 * longest_edge(body.mesh, body.positions);
+                    const double off = snap * longest_edge(body.mesh, body.positions);
                     const auto volume = [&](double height, int side) {
                         return volume_above(body.mesh, body.positions,
                                             path.point + height * path.normal, side * path.normal);
@@ -42,7 +42,7 @@ TEST(SplitByBlade, RightThroughLeavesTheTwoHalves) {
                     const double rest = rest_volume(body.mesh);
                     const double least = std::max(volume(off, 1), volume(-off, -1)) - 1e-9 * rest;
                     const double most = std::max(volume(-off, 1), volume(off, -1)) + 1e-9 * rest;
-                    body.cut(sweep(path.from, path.to, num_steps), {snap, {}});
+                    body.cut(sweep(path.from, path.to, num_steps), {snap});
                     const auto volumes = piece_volumes(body.mesh);
                     ASSERT_EQ(volumes.size(), 2u);
                     EXPECT_GE(volumes[0], least);
@@ -67,10 +67,10 @@ TEST(SplitByBlade, RetracingOrRepeatingAStrokeChangesNothing) {
                     const BladePath path(body.box(), random, share);
                     CutFront front;
                     for (const auto& part : sweep(path.from, path.to, num_steps))
-                        body.cut(*part, front, {0.0, {}}, body.positions);
+                        body.cut(*part, front, {0.0}, body.positions);
                     const MeshSnapshot once(body.mesh);
                     for (const auto& part : sweep(path.to, path.from, num_steps))
-                        body.cut(*part, front, {0.0, {}}, body.positions);
+                        body.cut(*part, front, {0.0}, body.positions);
                     EXPECT_EQ(MeshSnapshot(body.mesh), once);
                     body.cut(sweep(path.from, path.to, num_steps));
                     EXPECT_EQ(MeshSnapshot(body.mesh), once);
@@ -79,7 +79,7 @@ TEST(SplitByBlade, RetracingOrRepeatingAStrokeChangesNothing) {
 
 // At any time, what is open is what the blade has left behind, but for one element at the front.
 TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
-    for (const double snap : {0.0, 0.6})
+    for (const double snap : {0.0, 0.1})
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
             SplitBody body(test::jittered_cube(8, 0.2, seed));
@@ -92,15 +92,15 @@ TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
                 const double from = -0.1 + 1.2 * i / num_steps, to = from + 1.2 / num_steps;
                 const SweptEdge step({{0.53, -1, from}, {0.53, 2, from}},
                                      {{0.53, -1, to}, {0.53, 2, to}});
-                area += body.cut(step, front, {snap, {}}, body.positions).report.cut_area;
+                area += body.cut(step, front, {snap}, body.positions).report.cut_area;
                 const double passed = std::clamp(to, 0.0, 1.0);
                 // Nodes that are snapped make the sheet uneven.
-                EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + snap / 3.0 * edge));
+                EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + snap * edge));
                 EXPECT_GE(area, passed - (1.0 + snap) * edge);
                 for (const NodeId n : nodes_of_cut(body.mesh).front) {
                     const double z = body.positions[n.index()].z();
                     EXPECT_GE(z, to - (1.0 + snap) * edge);
-                    EXPECT_LE(z, to + snap / 3.0 * edge + 1e-12);
+                    EXPECT_LE(z, to + snap * edge + 1e-12);
                 }
                 largest = std::max(largest, front.size());
             }
@@ -158,14 +158,14 @@ TEST(SplitByBlade, ConvergesWithTheStepsInMovingTissue) {
             Random random(seed);
             const auto data = test::jittered_cube(test::is_sanitized ? 3 : 6, 0.2, seed);
             const MovingCut cut(SplitBody(data).box(), random, strength);
-            const auto converged = cut.volumes(data, 240, {0.0, {}});
+            const auto converged = cut.volumes(data, 240, {0.0});
             ASSERT_EQ(converged.size(), 2u);
             double coarse = 0.0, fine = 0.0;
             for (const int num_steps : {2, 7, 15, 30, 60, 120}) {
                 SCOPED_TRACE(testing::Message() << "strength " << strength << ", seed " << seed
                                                 << ", " << num_steps << " steps");
-                for (const double snap : {0.0, 0.6}) {
-                    const auto volumes = cut.volumes(data, num_steps, {snap, {}});
+                for (const double snap : {0.0, 0.1}) {
+                    const auto volumes = cut.volumes(data, num_steps, {snap});
                     ASSERT_EQ(volumes.size(), 2u) << "snap " << snap;
                     EXPECT_NEAR(volumes[0] + volumes[1], 1.0, 1e-12);
                     if (snap > 0.0) continue;
@@ -206,7 +206,7 @@ TEST(SplitByBlade, ThatStopsAtMeshEdgesPartsTheBody) {
     for (const int n : test::some_of(numbers_of_bricks))
         for (const double at : test::some_of(places))
             for (const double part : {0.05, 0.1})
-                for (const double snap : {0.0, 0.25, 0.6})
+                for (const double snap : {0.0, 0.05, 0.1})
                     for (const bool along_x : {true, false}) {
                         SCOPED_TRACE(testing::Message()
                                      << n << " bricks, at " << at << ", parts of " << part
@@ -215,7 +215,7 @@ TEST(SplitByBlade, ThatStopsAtMeshEdgesPartsTheBody) {
                                                           Vec3::Zero(), Vec3::Ones(), {n, n, n}));
                         body.cut(along_x ? way_of_edge({{-0.1, at}, {1.1, at}}, part)
                                          : way_of_edge({{at, 1.1}, {at, -0.1}}, part),
-                                 guarded(body.mesh, snap));
+                                 SplitOptions{snap});
                         ASSERT_EQ(topology::components(body.mesh).count, 2);
                     }
 }
@@ -236,8 +236,7 @@ TEST(SplitByBlade, PartsLongAndFlatElementsInTwo) {
                     const double from = random.uniform(0.3, 0.5), to = random.uniform(0.4, 0.6);
                     SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                                       Vec3::Ones(), bricks));
-                    body.cut(way_of_edge({{-0.1, from}, {1.2, to}}, part),
-                             guarded(body.mesh, snap));
+                    body.cut(way_of_edge({{-0.1, from}, {1.2, to}}, part), SplitOptions{snap});
                     ASSERT_EQ(topology::components(body.mesh).count, 2);
                 }
 }
@@ -252,7 +251,7 @@ TEST(SplitByBlade, RemembersElementsThatAreLongInItsDirection) {
             const double from = random.uniform(0.3, 0.7), to = from + random.uniform(-0.1, 0.1);
             SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                               Vec3::Ones(), {3, 1, 20}));
-            body.cut(way_of_edge({{-0.1, from}, {1.1, to}}, 0.02), guarded(body.mesh, snap));
+            body.cut(way_of_edge({{-0.1, from}, {1.1, to}}, 0.02), SplitOptions{snap});
             ASSERT_EQ(topology::components(body.mesh).count, 2);
         }
 }
@@ -260,12 +259,12 @@ TEST(SplitByBlade, RemembersElementsThatAreLongInItsDirection) {
 // Each ends beside others, and cuts again what they have cut; what they had to leave joined at
 // their borders is not taken for finished.
 TEST(SplitByBlade, StrokesOverlappingByAnElementPartTheBody) {
-    for (const double snap : {0.0, 0.1, 0.6})
+    for (const double snap : {0.0, default_snap, 0.1})
         for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
             Random random(seed);
             SplitBody body(test::jittered_cube(5, 0.2, seed));
-            const SplitOptions options = guarded(body.mesh, snap);
+            const SplitOptions options = SplitOptions{snap};
             const double overlap = longest_edge(body.mesh, body.positions);
             const Vec3 centre = Vec3::Constant(0.5) + random.vector(0.1);
             const Vec3 across = random.vector(1.0).normalized();
@@ -287,7 +286,7 @@ TEST(SplitByBlade, StrokesOverlappingByAnElementPartTheBody) {
             }
             EXPECT_GE(topology::components(body.mesh).count, 2);
             expect_parted(body.mesh, body.positions, {centre, across},
-                          (snap > 0.0 ? 0.6 : 1e-9) * overlap, body.snap_history);
+                          (3.0 * snap + 1e-9) * overlap);
         }
 }
 
@@ -299,7 +298,7 @@ TEST(SplitByBlade, DrawnOutAlongItselfLeavesItsCut) {
         CutFront front;
         const auto go = [&](const Polyline& from, const Polyline& to) {
             for (const auto& part : sweep(from, to, 8))
-                body.cut(*part, front, guarded(body.mesh, snap), body.positions);
+                body.cut(*part, front, SplitOptions{snap}, body.positions);
         };
         const Polyline above{{0.53, 0.4, -0.1}, {0.53, 1.5, -0.1}};
         const Polyline inside{{0.53, 0.4, 0.55}, {0.53, 1.5, 0.55}};
@@ -322,7 +321,7 @@ TEST(SplitByBlade, CrossingItsPathWithSnapLeavesFourComponents) {
                                               Vec3::Ones(), bricks));
             body.cut(way_of_edge({{-0.1, z}, {1.2, z}, {1.2, 1.2}, {x, 1.2}, {x, -0.1}},
                                  seed % 2 == 0 ? 0.05 : 9.0),
-                     guarded(body.mesh, default_snap));
+                     SplitOptions{default_snap});
             ASSERT_EQ(topology::components(body.mesh).count, 4);
         }
 }
@@ -343,7 +342,7 @@ bool are_sides_joined(const topology::Mesh& mesh) {
 
 // It meets again what it has cut a little earlier, some of which it has left behind by then.
 TEST(SplitByBlade, ReturningBesideItsPathPartsTheBody) {
-    for (const double snap : {0.0, 0.3})
+    for (const double snap : {0.0, 0.05})
         for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::num_cases(60));
              ++seed) {
             SCOPED_TRACE(testing::Message() << "snap " << snap << ", seed " << seed);
@@ -367,7 +366,7 @@ TEST(SplitByBlade, ReturningBesideItsPathPartsTheBody) {
                 way.push_back({way[0][0] + beside, low + random.uniform(0.05, 0.6)});
                 way.push_back({way[0][0] + 2.0 * beside, -0.3});
             }
-            body.cut(way_of_edge(way, seed % 5 == 0 ? 9.0 : 0.07), guarded(body.mesh, snap));
+            body.cut(way_of_edge(way, seed % 5 == 0 ? 9.0 : 0.07), SplitOptions{snap});
             ASSERT_FALSE(are_sides_joined(body.mesh));
         }
 }
@@ -402,7 +401,7 @@ TEST(SplitByBlade, CrossingItsPathBesideNodesLeavesFourComponents) {
             SplitBody body(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
                                               Vec3::Ones(), {12, 1, 12}));
             body.cut(way_of_edge({{-0.1, z}, {1.2, z}, {1.2, 1.2}, {x, 1.2}, {x, -0.1}}, part),
-                     guarded(body.mesh, snap));
+                     SplitOptions{snap});
             ASSERT_EQ(topology::components(body.mesh).count, 4);
         }
 }

@@ -34,9 +34,7 @@ struct Blade {
         const Vec3 middle = point + (2.0 * share - 1.0) * way;
         return {middle - along, middle + along};
     }
-    SuspendedCut resting(double share, double snap) {
-        return {front, {edge(share), edge(share)}, true, snap > 0.0};
-    }
+    SuspendedCut resting(double share) { return {front, {edge(share), edge(share)}, true}; }
 };
 
 /// Bodies of 384 tetrahedra, and two blades whose planes cross.
@@ -49,12 +47,12 @@ struct CrossingBlades {
         : body(test::jittered_cube(4, 0.2, seed)),
           a(body.box(), random),
           b(body.box(), random),
-          options(guarded(body.mesh, snap)) {}
+          options(SplitOptions{snap}) {}
     bool are_parallel() const { return std::abs(a.normal.dot(b.normal)) > 0.9; }
 
     /// One of them goes on, the other one rests.
     void move(Blade& blade, double from, double to, Blade& other, double rests_at) {
-        std::vector<SuspendedCut> resting{other.resting(rests_at, options.snap)};
+        std::vector<SuspendedCut> resting{other.resting(rests_at)};
         const Split done = body.cut(SweptEdge(blade.edge(from), blade.edge(to)), blade.front,
                                     options, body.positions, resting);
         other.front.apply(body.mesh, done.changes);
@@ -79,7 +77,7 @@ double reach_across(const topology::Mesh& mesh, const Blade& blade) {
     return farthest;
 }
 
-void expect_parted(const CrossingBlades& blades, double longest) {
+void expect_parted_by_both(const CrossingBlades& blades, double longest) {
     EXPECT_GE(topology::components(blades.body.mesh).count, 4);
     EXPECT_LT(reach_across(blades.body.mesh, blades.a), longest);
     EXPECT_LT(reach_across(blades.body.mesh, blades.b), longest);
@@ -97,7 +95,7 @@ void for_crossing_blades(Cut cut) {
             if (blades.are_parallel()) continue;
             const double longest = longest_edge(blades.body.mesh, blades.body.positions);
             cut(blades, 3 + static_cast<int>(seed % 5) * 7);
-            expect_parted(blades, longest);
+            expect_parted_by_both(blades, longest);
             if (testing::Test::HasFailure()) return;
         }
 }
@@ -130,7 +128,7 @@ TEST(SuspendedCut, GoesOnThroughWhatAPlaneHasCut) {
         const double part = 0.47;
         for (int i = 0; i < num_steps; ++i)
             blades.move(blades.a, part * i / num_steps, part * (i + 1) / num_steps, blades.b, 0.0);
-        std::vector<SuspendedCut> resting{blades.a.resting(part, blades.options.snap)};
+        std::vector<SuspendedCut> resting{blades.a.resting(part)};
         CutFront front;
         const Split done = blades.body.cut(Plane(blades.b.point, blades.b.normal), front,
                                            blades.options, blades.body.positions, resting);

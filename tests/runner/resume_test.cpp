@@ -80,6 +80,7 @@ void expect_resumable(const RunFolder& folder, const std::string& text,
     stops.push_back(whole.num_steps() - 1);
     std::sort(stops.begin(), stops.end());
     stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    std::erase_if(stops, [&](std::uint64_t step) { return step >= whole.num_steps(); });
     const auto files = files_of(folder / "whole");
     const std::string end = state_of(whole);
     for (const std::uint64_t stop : stops) {

@@ -406,7 +406,7 @@ TEST(ScenarioErrors, OfTools) {
               "Known here: split, separate");
     EXPECT_EQ(error_of(blade + "snap = 1.5\n"),
               "scene.toml:13:8: key 'tool[0].snap': 1.5 is not allowed: must be at least 0 and "
-              "at most 1");
+              "at most 0.5");
     EXPECT_EQ(error_of(blade + "mode = \"separate\"\nsnap = 0.1\n"),
               "scene.toml:14:8: key 'tool[0].snap': belongs to mode = \"split\": leave it out");
     EXPECT_EQ(error_of(blade + "time = 1\n"),

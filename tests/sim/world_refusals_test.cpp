@@ -182,7 +182,7 @@ TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
         {cutting::PlaneCut{{0, 0, 0}, {nan, 0, 0}}, "its plane is not finite"},
         {cutting::PlaneCut{{0, 0, 0}, {1, 0, 0}, 7.0}, "a snap of 7"},
         {Blade{{{0, 0, 0}, {0, 0, 0}}}, "are the same"},
-        {Blade{{{0, 0, 0}, {1, 0, 0}}, cutting::CutMode::split, nan}, "from 0 to 1"},
+        {Blade{{{0, 0, 0}, {1, 0, 0}}, cutting::CutMode::split, nan}, "from 0 to 0.5"},
         {cutting::Carver{cutting::Capsule{{nan, 0, 0}, {0, 0, 0}, 1.0}}, "its axis"},
         {cutting::Carver{cutting::Cuboid{{1, 1, -1}}}, "it must be above 0"}};
     for (const auto& [shape, why] : shapes) {

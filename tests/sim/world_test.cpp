@@ -161,7 +161,7 @@ TEST(World, ResumesFromSavedBytesToTheBit) {
             if (i % 6 == 0 || i == 34 || i == 35) moments.push_back(whole.world().save());
             whole.run(i, i + 1);
         }
-        EXPECT_EQ(topology::components(whole.world().mesh()).count, 2);
+        EXPECT_GE(topology::components(whole.world().mesh()).count, 2);  // and chips
         const std::string end = whole.world().save();
         int next = 0;
         for (int i = 0; i < Session::num_steps; ++i) {
