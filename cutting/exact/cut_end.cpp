@@ -37,8 +37,7 @@ std::optional<EdgeIntersection> CutEnd::intersection(const Edge& edge) const {
         ((ahead < 0.0) == (a < 0.0) ? low : high) = place;
         place = 0.5 * (low + high);
     }
-    return EdgeIntersection{place,     std::abs(a) / length, std::abs(b) / length, 1.0,
-                            at(place), Vec3::Zero(),         Vec3::Zero()};
+    return EdgeIntersection{place, 1.0, at(place), Vec3::Zero()};
 }
 
 std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces,
@@ -53,8 +52,8 @@ std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> f
             if (const auto there = intersection(edge)) crossed.push_back({edge, f.element, *there});
         }
     for (const auto& [edge, element, intersection] : crossed)
-        if (std::min(intersection.from_a, intersection.from_b) < share)
-            put_at(intersection.from_a <= intersection.from_b ? edge.a : edge.b);
+        if (std::min(intersection.place, 1.0 - intersection.place) < share)
+            put_at(nearer_end(edge, intersection));
     return crossed;
 }
 

@@ -5,40 +5,29 @@
 
 #include <vector>
 
+#include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/surfaces/cut_surface.h"
-#include "incise/topology/mesh.h"
 
 namespace incise::cutting {
 
-/// An edge of the mesh that a surface may cross.
-struct CrossableEdge {
-    MovingPoint a, b;  ///< before and after the step, m
-    Vec3 at_rest;      ///< from a to b in the rest frame, m
-};
-
-/// An intersection of a surface with an edge: the edge parameter, and the distances of both ends
-/// from the surface there, in lengths of the edge.
+/// An intersection of a surface with an edge.
 struct EdgeIntersection {
-    double place, from_a, from_b;
-    double time;          ///< 0 before the step, 1 after it
-    Vec3 point, normal;   ///< after the step, m; the normal of unit length, or zero if not known
-    Vec3 normal_at_rest;  ///< the same normal in the rest frame
+    double place;        ///< edge parameter: 0 at the first end, 1 at the second one
+    double time;         ///< 0 before the step, 1 after it
+    Vec3 point, normal;  ///< after the step, m; the normal of unit length, or zero if not known
 };
 using EdgeIntersections = std::vector<EdgeIntersection>;  // in ascending order of edge parameters
 
-/// Returns the intersections in ascending order of edge parameters. Two at once that are nearer to
-/// each other than `apart`, a share of the edge, cancel out.
-std::vector<Crossing> crossings_of(const CutSurface& surface, const CrossableEdge& edge,
-                                   double apart);
+/// Returns the end of an edge that is nearer to an intersection with it, or the first if both are
+/// equally near.
+inline NodeId nearer_end(const Edge& edge, const EdgeIntersection& intersection) {
+    return intersection.place <= 0.5 ? edge.a : edge.b;
+}
 
-/// Returns an intersection with the distances of both ends from the surface.
-/// @param crossing        of the surface and the edge
-/// @param surface         gives the distances if it is not flat
-/// @param edge            the edge
-/// @param normal_at_rest  of the surface at the crossing, in the rest frame and of any length; if
-///                        zero, it is not known, and the surface counts as perpendicular to the
-///                        edge
-EdgeIntersection intersection_at(const Crossing& crossing, const CutSurface& surface,
-                                 const CrossableEdge& edge, const Vec3& normal_at_rest);
+/// Returns the intersections of a surface with the edge from `a` to `b`, in ascending order of edge
+/// parameters. Two at once that are nearer to each other than `apart`, a share of the edge, cancel
+/// out.
+EdgeIntersections intersections_of(const CutSurface& surface, const MovingPoint& a,
+                                   const MovingPoint& b, double apart);
 
 }  // namespace incise::cutting

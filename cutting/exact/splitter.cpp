@@ -70,7 +70,6 @@ class Splitter {
           front_(front),
           snap_history_(snap_history),
           suspended_(resting),
-          options_(options),
           snap_(std::max(options.snap, smallest_snap)),
           num_old_nodes_(mesh.node_capacity()) {
         if (blade_end) end_.emplace(mesh, *blade_end, [&](NodeId n) { return point(n)[1]; });
@@ -143,16 +142,12 @@ class Splitter {
     double rest_length(const Edge& edge) const { return rest_edge(edge.a, edge.b).norm(); }
 
     void find_crossed_edges();
-    EdgeIntersections intersections(const Edge& edge, ElementId element) const;
-    Vec3 normal_at_rest(ElementId e, const Vec3& normal) const;
+    EdgeIntersections intersections(const Edge& edge) const {
+        return intersections_of(surface_, point(edge.a), point(edge.b), snap_);
+    }
     void receive(const Edge& edge, ElementId element, EdgeIntersections intersections);
     CutRecord record_at(NodeId n, const EdgeIntersection& intersection) const;
-    /// An end of a crossed edge, with the intersection as seen from there.
-    struct EdgeEnd {
-        NodeId node;
-        double place, from;  // as in EdgeIntersection, from this end
-    };
-    bool is_at(const EdgeEnd& end, const EdgeIntersection& intersection) const;
+    bool is_at(NodeId end, double distance, const EdgeIntersection& intersection) const;
     bool passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const;
     void resolve(const Edge& edge, const EdgeIntersections& intersections);
     bool is_to_be_divided(const Edge& edge, EdgeIntersections& intersections);
@@ -183,7 +178,6 @@ class Splitter {
     CutFront& front_;
     SnapHistory& snap_history_;
     const std::span<SuspendedCut> suspended_;
-    const SplitOptions& options_;
     const double snap_;  // share of an edge: nearer nodes count as on the surface
     const std::size_t num_old_nodes_;
     std::optional<MeshEdit> edit_;  // once there is something to do
@@ -198,31 +192,6 @@ class Splitter {
     std::vector<ElementId> touched_;  // crossed, parts of such, or with a face on the surface
     SplitReport report_;
 };
-
-/// Returns the normal in the rest frame. Normals transform inversely to points: n . F dX = (F^T n)
-/// . dX, with F the deformation gradient.
-Vec3 Splitter::normal_at_rest(ElementId e, const Vec3& normal) const {
-    const auto corners = mesh_.corners(e);
-    Eigen::Matrix3d rest, current;
-    for (int k = 0; k < 3; ++k) {
-        const NodeId n = corners[static_cast<std::size_t>(k) + 1];
-        rest.col(k) = mesh_.rest_position(n) - mesh_.rest_position(corners[0]);
-        current.col(k) = point(n)[1] - point(corners[0])[1];
-    }
-    return rest.transpose().inverse() * (current.transpose() * normal);
-}
-
-EdgeIntersections Splitter::intersections(const Edge& edge, ElementId element) const {
-    const CrossableEdge crossable{point(edge.a), point(edge.b), rest_edge(edge.a, edge.b)};
-    const bool is_tetrahedron = mesh_.kind(element) == CellKind::tetrahedron;
-    EdgeIntersections intersections;
-    for (const Crossing& crossing : crossings_of(surface_, crossable, snap_)) {
-        const Vec3 normal =
-            is_tetrahedron ? normal_at_rest(element, crossing.normal) : Vec3(Vec3::Zero());
-        intersections.push_back(intersection_at(crossing, surface_, crossable, normal));
-    }
-    return intersections;
-}
 
 void Splitter::find_crossed_edges() {
     EdgeList edges;
@@ -250,7 +219,7 @@ void Splitter::find_crossed_edges() {
     std::vector<bool> is_crossed(edges.entries().size());
     for (std::size_t i = 0; i < edges.entries().size(); ++i) {
         const EdgeList::Entry& entry = edges.entries()[i];
-        auto passed = intersections(entry.edge, entry.element);
+        EdgeIntersections passed = intersections(entry.edge);
         if (passed.empty()) continue;
         is_crossed[i] = true;
         found.push_back({entry, std::move(passed)});
@@ -347,10 +316,11 @@ CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) co
 }
 
 /// True if an intersection with an edge counts as at the end of the edge.
-bool Splitter::is_at(const EdgeEnd& end, const EdgeIntersection& intersection) const {
-    if (end.place < snap_) return true;
-    const double size = (point(end.node)[1] - intersection.point).norm();
-    return snap_history_.has(end.node, record_at(end.node, intersection), size);
+/// @param distance  of the intersection from this end, as a share of the edge
+bool Splitter::is_at(NodeId end, double distance, const EdgeIntersection& intersection) const {
+    if (distance < snap_) return true;
+    const double size = (point(end)[1] - intersection.point).norm();
+    return snap_history_.has(end, record_at(end, intersection), size);
 }
 
 /// True if an intersection with the edge from `n` to `other` is none of its own: the surface only
@@ -376,18 +346,16 @@ bool Splitter::is_to_be_divided(const Edge& edge, EdgeIntersections& intersectio
     drop_bends();
     if (begin == end || are_both_on()) return false;  // only rounding is between them
     const double length = rest_length(edge);
-    const auto is_near_a = [&](const EdgeIntersection& p) {
-        return is_at({edge.a, p.place, p.from_a}, p);
-    };
+    const auto is_near_a = [&](const EdgeIntersection& p) { return is_at(edge.a, p.place, p); };
     const auto is_near_b = [&](const EdgeIntersection& p) {
-        return is_at({edge.b, 1.0 - p.place, p.from_b}, p);
+        return is_at(edge.b, 1.0 - p.place, p);
     };
     // What is near both ends is at the nearer one.
     const auto is_at_a = [&](const EdgeIntersection& p) {
-        return is_near_a(p) && (p.from_a <= p.from_b || !is_near_b(p));
+        return is_near_a(p) && (nearer_end(edge, p) == edge.a || !is_near_b(p));
     };
     const auto is_at_b = [&](const EdgeIntersection& p) {
-        return is_near_b(p) && (p.from_b < p.from_a || !is_near_a(p));
+        return is_near_b(p) && (nearer_end(edge, p) == edge.b || !is_near_a(p));
     };
     const auto bring = [&](NodeId n, const EdgeIntersection& intersection) {
         if (front_.is_on(n)) return;
@@ -411,9 +379,10 @@ void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections in
 void Splitter::resolve(const Edge& edge, const EdgeIntersections& intersections) {
     for (const EdgeIntersection& intersection : intersections) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
-        if (is_at_a && (!is_at_b || intersection.from_a <= intersection.from_b))
+        const NodeId nearer = nearer_end(edge, intersection);
+        if (is_at_a && (!is_at_b || nearer == edge.a))
             snap_history_.add(edge.a, record_at(edge.a, intersection));
-        if (is_at_b && (!is_at_a || intersection.from_b <= intersection.from_a))
+        if (is_at_b && (!is_at_a || nearer == edge.b))
             snap_history_.add(edge.b, record_at(edge.b, intersection));
     }
 }
@@ -439,7 +408,7 @@ void Splitter::divide_next() {
             snap_history_.add(middle, record_at(middle, intersection));
             return;
         }
-        const NodeId end = intersection.from_a < intersection.from_b ? edge.a : edge.b;
+        const NodeId end = nearer_end(edge, intersection);
         snap_to(end, rest_length(edge));
         snap_history_.add(
             end, record_at(end, intersection));  // at a crease, also for a node made on the cut
@@ -502,9 +471,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, const EdgeIntersect
                 if (mesh_.corner_of(e, other) >= 0) found = e;
         return found;
     };
-    const auto ask = [&](NodeId other) {
-        return intersections(edge_between(other, middle), holder(other));
-    };
+    const auto ask = [&](NodeId other) { return intersections(edge_between(other, middle)); };
     std::vector<EdgeIntersections> to_ring;
     to_ring.reserve(ring.size());
     for (const NodeId n : ring) to_ring.push_back(ask(n));
@@ -544,7 +511,7 @@ void Splitter::divide_at_end() {
         if (may_be_divided(edge))
             end_->put_at(divide_on_cut(edge, element, intersection.place));
         else
-            end_->put_at(intersection.from_a < intersection.from_b ? edge.a : edge.b);
+            end_->put_at(nearer_end(edge, intersection));
     }
 }
 

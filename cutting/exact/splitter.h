@@ -72,8 +72,7 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
 
 /// Ends the cut of a blade at its edge, where its path ends. Elements that the edge is in are
 /// divided along the continuation of the path. Faces on the cut are divided at the edge, with the
-/// same tolerance, and those behind the edge open. Small components that have waited come off or
-/// stay. The front is empty afterwards.
+/// same tolerance, and those behind the edge open. The front is empty afterwards.
 ///
 /// Parameters and cost are those of split(). Nothing happens if the front is empty. If the
 /// continuation comes to an element that is no tetrahedron, no element is divided along it.

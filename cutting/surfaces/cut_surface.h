@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,9 +38,6 @@ class CutSurface {
     /// @pre  all calls for the same segment have the same direction
     virtual void append_crossings(const MovingPoint& a, const MovingPoint& b,
                                   std::vector<Crossing>& crossings) const = 0;
-    /// Returns the distance of a point from the surface, m. Returns not-a-number for surfaces that
-    /// are flat near each intersection, as the normal there gives their distance.
-    virtual double distance(const Vec3&) const { return std::numeric_limits<double>::quiet_NaN(); }
     /// True if the surface may turn sharply within an element and is there as a whole at once.
     /// False for swept surfaces, since decisions at their creases would depend on the steps.
     virtual bool has_creases() const { return false; }

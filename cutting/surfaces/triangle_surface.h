@@ -26,8 +26,8 @@ class TriangleSurface final : public CutSurface {
     /// Returns a hash of the triangles.
     SurfaceIdentity identity() const override { return identity_; }
 
-    /// Returns infinity if there are no triangles.
-    double distance(const Vec3& x) const override;
+    /// Returns the distance of a point from the surface, m, or infinity if there are no triangles.
+    double distance(const Vec3& x) const;
 
   private:
     struct Tree;
