@@ -6,8 +6,6 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -20,7 +18,6 @@
 #include "incise/cutting/tools/separator.h"
 #include "incise/topology/fragment_mesh.h"
 #include "incise/topology/geometry.h"
-#include "incise/topology/mesh_metrics.h"
 
 namespace incise::app {
 
@@ -31,24 +28,12 @@ using topology::Mesh;
 
 namespace {
 
-template <class Do>
-void for_each_element(const Mesh& mesh, Do act) {
-    for (const ElementId e : mesh.elements()) act(e);
-}
-
-double volume_of(const Mesh& mesh, CellKind kind, std::span<const NodeId> corners) {
+/// Returns the volume at rest of an element that is no longer in the mesh, m3.
+double volume_of(const topology::ElementRecord& removed, const Mesh& mesh) {
     std::array<Vec3, topology::max_corners> x;
-    for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
-    return topology::signed_volume(kind, {x.data(), corners.size()});
-}
-
-/// Returns the volume at rest of the whole body, m3. The sum has more digits than its terms, so
-/// that the volume error has no part from the summation.
-double volume_of(const Mesh& mesh) {
-    long double sum = 0.0;
-    for_each_element(mesh,
-                     [&](ElementId e) { sum += volume_of(mesh, mesh.kind(e), mesh.corners(e)); });
-    return static_cast<double>(sum);
+    const std::size_t size = std::size(removed.corners);
+    for (std::size_t k = 0; k < size; ++k) x[k] = mesh.rest_position(removed.corners[k]);
+    return topology::signed_volume(removed.kind, {x.data(), size});
 }
 
 /// The state of a mesh before a split, from which the faces that the split opens are found.
@@ -56,13 +41,13 @@ class FacesBefore {
   public:
     explicit FacesBefore(const Mesh& mesh)
         : rows_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
-        for_each_element(mesh, [&](ElementId e) {
-            if (mesh.kind(e) != CellKind::tetrahedron) return;
+        for (const ElementId e : mesh.elements()) {
+            if (mesh.kind(e) != CellKind::tetrahedron) continue;
             Row& row = rows_[e.index()];
             for (std::size_t k = 0; k < 4; ++k) row.corners[k] = mesh.corners(e)[k];
             for (int f = 0; f < 4; ++f)
                 row.joined |= (mesh.neighbor({e, f}).is_valid() ? 1u : 0u) << f;
-        });
+        }
     }
 
     /// Returns both sides of each face that the split has opened. These are the boundary faces
@@ -147,83 +132,6 @@ cutting::BladeEnd end_of(const SweepCut& sweep) {
 Vec3 well_scaled(const Vec3& normal) {
     const int exponent = -std::ilogb(normal.cwiseAbs().maxCoeff());
     return normal.unaryExpr([&](double x) { return std::scalbn(x, exponent); });
-}
-
-bool is_all_tetrahedra(const Mesh& mesh) {
-    bool is_all = true;
-    for_each_element(mesh, [&](ElementId e) { is_all &= mesh.kind(e) == CellKind::tetrahedron; });
-    return is_all;
-}
-
-/// Returns the stable step of fragments in a body of one material, times the speed of waves, m. It
-/// is 2 / sqrt(s / m) at a node (physics::StableStep), where s is the sum of V (1/h) sum_j (1/h_j)
-/// over its fragments, and m that of V / 4, with the altitudes h.
-double step_length_of(const FragmentMesh& fragments) {
-    std::vector<double> stiffness(fragments.node_capacity(), 0.0), volume = stiffness;
-    for (const ElementId e : fragments.elements()) {
-        const auto corners = fragments.corners(e);
-        std::array<Vec3, 4> x;
-        for (std::size_t k = 0; k < 4; ++k) x[k] = fragments.rest_position(corners[k]);
-        std::array<double, 4> inverse_altitudes;
-        double sum = 0.0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Vec3 &a = x[(k + 1) % 4], &b = x[(k + 2) % 4], &c = x[(k + 3) % 4];
-            inverse_altitudes[k] =
-                (b - a).cross(c - a).norm() / (6.0 * fragments.carrier_volume(e));
-            sum += inverse_altitudes[k];
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            stiffness[corners[k].index()] += fragments.volume(e) * inverse_altitudes[k] * sum;
-            volume[corners[k].index()] += fragments.volume(e);
-        }
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (const NodeId n : fragments.nodes())
-        least = std::min(least, std::sqrt(volume[n.index()] / stiffness[n.index()]));
-    return least;
-}
-
-void describe_fragments(const FragmentMesh& fragments, const Mesh& mesh, CutBody& body) {
-    body.fragments = fragments.num_elements();
-    for (const ElementId e : fragments.elements())
-        body.smallest_share = std::min(body.smallest_share, fragments.share(e));
-    std::vector<bool> has_material(fragments.node_capacity(), false);
-    for (const NodeId n : mesh.nodes())
-        if (const topology::Embedding at = fragments.embedding(mesh, n); at.count == 1)
-            has_material[at.nodes[0].index()] = true;
-    for (const NodeId n : fragments.nodes()) body.ghost_nodes += has_material[n.index()] ? 0 : 1;
-    if (is_all_tetrahedra(mesh)) body.step_length = step_length_of(fragments);
-}
-
-CutBody describe(const Mesh& mesh, const FragmentMesh& fragments) {
-    const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
-    CutBody body;
-    body.elements = mesh.num_elements();
-    body.nodes = mesh.num_nodes();
-    body.volume = volume_of(mesh);
-    body.min_dihedral_angle = metrics.min_dihedral_angle;
-    body.min_altitude = metrics.min_altitude;
-    body.mean_edge_length = metrics.mean_edge_length;
-    body.box_min = metrics.box_min;
-    body.box_max = metrics.box_max;
-    describe_fragments(fragments, mesh, body);
-    return body;
-}
-
-std::vector<Piece> pieces_of(const Mesh& mesh) {
-    const topology::Components components = topology::components(mesh);
-    std::vector<Piece> pieces(static_cast<std::size_t>(components.count));
-    std::vector<long double> volumes(pieces.size(), 0.0);
-    for_each_element(mesh, [&](ElementId e) {
-        const auto p = static_cast<std::size_t>(components.of_element[e.index()]);
-        volumes[p] += volume_of(mesh, mesh.kind(e), mesh.corners(e));
-        ++pieces[p].elements;
-    });
-    for (std::size_t p = 0; p < pieces.size(); ++p)
-        pieces[p].volume = static_cast<double>(volumes[p]);
-    std::stable_sort(pieces.begin(), pieces.end(),
-                     [](const Piece& a, const Piece& b) { return a.volume > b.volume; });
-    return pieces;
 }
 
 void add(const CutCounts& counts, CutCounts& total) {
@@ -323,7 +231,7 @@ class CountingCutter {
             cutter_.carve(mesh_, mesh_.rest_positions(), removal.shape, pose, pose).changes;
         long double removed = 0.0;
         for (const topology::ElementRecord& record : changes.elements_removed)
-            removed += volume_of(mesh_, record.kind, record.corners);
+            removed += volume_of(record, mesh_);
         counts_.volume_removed = static_cast<double>(removed);
         record_changes(changes);
     }
@@ -362,7 +270,7 @@ class CountingCutter {
     void separate(AreParted are_separated) {
         std::vector<FaceId> faces;
         const auto rest = mesh_.rest_positions();
-        for_each_element(mesh_, [&](ElementId e) {
+        for (const ElementId e : mesh_.elements()) {
             const Vec3 centre = TissueMotion::centre(mesh_, e, rest);
             for (int f = 0; f < mesh_.num_faces(e); ++f) {
                 const FaceId face{e, f}, other = mesh_.neighbor(face);
@@ -370,7 +278,7 @@ class CountingCutter {
                     are_separated(centre, TissueMotion::centre(mesh_, other.element, rest)))
                     faces.push_back(face);
             }
-        });
+        }
         open(faces);
     }
 
@@ -452,7 +360,7 @@ class CountingCutter {
 
 /// Returns a warning if the tool cut nothing, because this is rarely intended.
 std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts& counts,
-                                           const CutBody& body) {
+                                           const BodyMeasures& body) {
     std::ostringstream text;
     text.precision(4);
     if (std::holds_alternative<ShapeRemoval>(tool.kind)) {
@@ -473,9 +381,9 @@ std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts&
     return text.str();
 }
 
-CutBody describe_result(const Mesh& mesh, const FragmentMesh& fragments) {
+BodyMeasures measures_after(const Mesh& mesh, const FragmentMesh& fragments) {
     try {
-        return describe(mesh, fragments);
+        return measures_of(mesh, fragments);
     } catch (const InputError& error) {
         throw InputError(std::string("after the cuts: ") + error.what() +
                          "\nuse a larger snap, or move the cut a little");
@@ -512,7 +420,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                                  const GeometricCutOptions& options) {
     GeometricCutReport report;
     CountingCutter cutter(mesh, options);
-    report.before = describe(mesh, cutter.fragments());
+    report.before = measures_of(mesh, cutter.fragments());
     for (const CutTool& tool : tools) {
         try {
             const CutCounts counts = cutter.apply(tool);
@@ -528,7 +436,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
             throw InputError(tool.name + ": " + error.what());
         }
     }
-    report.after = describe_result(mesh, cutter.fragments());
+    report.after = measures_after(mesh, cutter.fragments());
     report.pieces = pieces_of(mesh);
     return report;
 }

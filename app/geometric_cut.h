@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "incise/app/body_measures.h"
 #include "incise/base/types.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
@@ -86,30 +87,9 @@ struct ToolReport {
     int pieces = 0;  ///< connected components of the body after the tool
 };
 
-/// A connected component of the body.
-struct Piece {
-    double volume = 0.0;  ///< m3
-    std::size_t elements = 0;
-};
-
-/// Measures of the body before or after the cuts.
-struct CutBody {
-    std::size_t elements = 0, nodes = 0;
-    double volume = 0.0;                                  ///< m3
-    double min_dihedral_angle = 0.0;                      ///< radians
-    double min_altitude = 0.0, mean_edge_length = 0.0;    ///< m
-    Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();  ///< bounding box, m
-    /// The stable step of the fragments in a body of one material, times the speed of waves, m. Not
-    /// set if there are elements other than tetrahedra.
-    std::optional<double> step_length;
-    std::size_t fragments = 0;    ///< elements of the physics: topology::FragmentMesh
-    std::size_t ghost_nodes = 0;  ///< nodes of fragments without material at them
-    double smallest_share = 1.0;  ///< of a fragment in the volume of its carrier
-};
-
 /// The result of geometric_cut().
 struct GeometricCutReport {
-    CutBody before, after;
+    BodyMeasures before, after;
     std::vector<Piece> pieces;  ///< largest volume first
     CutCounts total;
     std::vector<ToolReport> tools;

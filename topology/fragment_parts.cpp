@@ -39,7 +39,8 @@ double FragmentParts::share_of(std::size_t part) {
     double all = 0.0;
     std::size_t count = 0;
     for (auto [i, end] = of(carrier); i < end; ++i, ++count) all += parts_[i].volume;
-    // The volumes of parts round. What a smaller part weighs that was taken away does not matter.
+    // If the parts fill the carrier to rounding, their shares add up to exactly 1. A removed part
+    // that is smaller than that does not count.
     constexpr double rounding = 1e-10;
     if (std::abs(all - whole) > rounding * whole) return parts_[part].volume / whole;
     return count == 1 ? 1.0 : parts_[part].volume / all;

@@ -283,13 +283,9 @@ class FollowingBody {
           acting_(mesh_.mesh(), acting),
           model_(mesh_.mesh(), table_, acting_.at_start()) {
         test::Random random(3);
-        const topology::FragmentMesh& fragments = model_.fragments();
-        BodyState state = random_state(fragments, random, 0.0005, 1.0);
+        BodyState state = random_state(model_.fragments(), random, 0.0005, 1.0);
         // From afar they would come to their offsets faster than a body may.
-        for (const NodeId n : fragments.nodes())
-            if (const auto* constraint_of = model_.constraints().of_node(n.index()))
-                model_.constraints().prescribe(*constraint_of, fragments, n, now_time,
-                                               state.positions[n.index()]);
+        put_on_constraints(model_, now_time, state);
         set_state(model_, state, now_time);
     }
 

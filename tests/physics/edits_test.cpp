@@ -70,10 +70,7 @@ class EditedBody {
     void shake() {
         const topology::FragmentMesh& fragments = model_.fragments();
         BodyState state = random_state(fragments, random_, 0.02, 1.0);
-        for (const NodeId n : fragments.nodes())
-            if (const auto* constraint_of = model_.constraints().of_node(n.index()))
-                model_.constraints().prescribe(*constraint_of, fragments, n, time,
-                                               state.positions[n.index()]);
+        put_on_constraints(model_, time, state);
         const double room = shortest_edge();
         for (const auto& record : nodes_born_) {
             Vec3 x = random_.vector(0.01 * room);

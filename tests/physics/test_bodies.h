@@ -127,6 +127,14 @@ BodyState random_state(const Mesh& mesh, test::Random& random, double shake, dou
     return state;
 }
 
+/// Moves the nodes of a state that constraints hold to where these want them.
+inline void put_on_constraints(const Model& model, double time, BodyState& state) {
+    for (const NodeId n : model.fragments().nodes())
+        if (const auto* constraint_of = model.constraints().of_node(n.index()))
+            model.constraints().prescribe(*constraint_of, model.fragments(), n, time,
+                                          state.positions[n.index()]);
+}
+
 inline void set_state(Model& model, const BodyState& state, double time = 0.0) {
     model.set_state(state.positions, state.velocities, time);
 }
