@@ -251,7 +251,7 @@ TEST_F(RunFiles, FramesHoldTheState) {
     EXPECT_EQ(frame.time, 0.2);
     std::vector<NodeId> nodes;
     std::vector<ElementId> elements;
-    const auto data = topology::to_mesh_data(mesh(), model.positions(), &nodes, &elements);
+    const auto data = topology::to_mesh_data(mesh(), model.mesh_positions(), &nodes, &elements);
     EXPECT_EQ(frame.mesh.points, data.points);
     EXPECT_EQ(frame.mesh.corners, data.corners);
     EXPECT_EQ(frame.mesh.regions, data.regions);

@@ -86,8 +86,8 @@ path = [{ time = 0, at = [-0.01, 0, 0] },
         }
         EXPECT_EQ(num_edits, run.edits().size());
         EXPECT_GE(num_edits, 3u);
-        EXPECT_EQ(topology::to_mesh_data(world.mesh(), world.model().positions()).corners,
-                  topology::to_mesh_data(run.mesh(), run.model().positions()).corners);
+        EXPECT_EQ(topology::to_mesh_data(world.mesh(), world.positions()).corners,
+                  topology::to_mesh_data(run.mesh(), run.model().mesh_positions()).corners);
         EXPECT_TRUE(std::ranges::equal(world.model().positions(), run.model().positions()));
         EXPECT_TRUE(std::ranges::equal(world.model().velocities(), run.model().velocities()));
     }
