@@ -217,7 +217,7 @@ class CountingCutter {
         }
         if (cutter_.is_in_tissue(cut))
             split_by([&](std::span<const Vec3> positions) {
-                return cutter_.end_cut(cut, mesh_, positions, end_of(sweep));
+                return cutter_.end_cut(cut, mesh_, fragments_, positions, end_of(sweep));
             });
         cutter_.remove_cut(cut);
         if (counts_.faces_opened == 0) return;

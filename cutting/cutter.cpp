@@ -98,13 +98,13 @@ Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
     return done;
 }
 
-Split Cutter::end_cut(CutId id, Mesh& mesh, std::span<const Vec3> positions,
-                      const BladeEnd& blade) {
+Split Cutter::end_cut(CutId id, Mesh& mesh, const topology::FragmentMesh& fragments,
+                      std::span<const Vec3> positions, const BladeEnd& blade) {
     Cut& cut = cut_of(id);
     auto resting = suspended_cuts(id.index);
     boxes_.refresh(mesh, positions);
-    return noted(finish(mesh, {mesh, positions, positions, &boxes_}, blade, cut.front, {cut.snap},
-                        snap_history_, resting),
+    return noted(finish(mesh, fragments, {mesh, positions, positions, &boxes_}, blade, cut.front,
+                        {cut.snap}, snap_history_, resting),
                  id.index);
 }
 

@@ -67,9 +67,10 @@ class Cutter {
     bool is_in_tissue(CutId cut) const { return !cut_of(cut).front.is_empty(); }
     /// Ends a cut at the present edge of its blade, in tissue at rest. split() can begin the same
     /// cut again.
+    /// @param fragments  of the mesh
     /// Throws InputError for an unknown cut. Cost: see cutting::finish.
-    Split end_cut(CutId cut, topology::Mesh& mesh, std::span<const Vec3> positions,
-                  const BladeEnd& blade);
+    Split end_cut(CutId cut, topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+                  std::span<const Vec3> positions, const BladeEnd& blade);
     /// Removes a cut. Its number may be given to a later cut. Throws InputError for an unknown cut.
     void remove_cut(CutId cut) { cut_of(cut) = {}; }
 

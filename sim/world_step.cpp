@@ -121,7 +121,8 @@ void World::Parts::cut_with(ToolId id, double end) {
         }
         const cutting::BladeEnd blade(tool.edge_after, tool.motion);
         follow(id, carry_out([&] {
-                   return cutter.end_cut(*tool.cut, mesh, model.mesh_positions(), blade);
+                   return cutter.end_cut(*tool.cut, mesh, model.fragments(), model.mesh_positions(),
+                                         blade);
                }),
                end);
     }

@@ -2,9 +2,13 @@
 #include "incise/cutting/exact/cut_end.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <set>
 
 namespace incise::cutting {
+
+using topology::Mesh;
 
 namespace {
 
@@ -20,6 +24,47 @@ constexpr double size_of_neighbourhood = 3.0, least_share_behind = 0.3;
 /// How much farther than to the end of an element a blade is taken to go on, in units of the
 /// element's size. If it went to just that end, rounding or the shift of exact signs would decide.
 constexpr double room_ahead = 1e-3;
+
+/// Returns the elements of the same carrier that hang together with an element inside it, this one
+/// first.
+template <class CarrierOf>
+std::vector<ElementId> part_of_carrier(const Mesh& mesh, ElementId e, CarrierOf carrier_of) {
+    std::vector<ElementId> part{e};
+    for (std::size_t next = 0; next < part.size(); ++next)
+        for (int f = 0; f < mesh.num_faces(part[next]); ++f) {
+            const ElementId other = mesh.neighbor({part[next], f}).element;
+            if (other.is_valid() && carrier_of(other) == carrier_of(e) &&
+                std::ranges::find(part, other) == part.end())
+                part.push_back(other);
+        }
+    return part;
+}
+
+/// Returns the area of one side of the faces inside a part of a carrier that are open, at rest, m2.
+double opened_area(const Mesh& mesh, std::span<const ElementId> part) {
+    using Triangle = std::array<Vec3, 3>;
+    std::vector<Triangle> open;  // with its corners in a fixed order
+    double area = 0.0;
+    const auto is_before = [](const Vec3& a, const Vec3& b) {
+        return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+    };
+    for (const ElementId e : part)
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            if (mesh.neighbor({e, f}).is_valid()) continue;
+            Triangle x;
+            for (int p = 0; p < 3; ++p)
+                x[static_cast<std::size_t>(p)] = mesh.rest_position(mesh.face_corner({e, f}, p));
+            std::ranges::sort(x, is_before);
+            const auto other = std::ranges::find(open, x);
+            if (other == open.end()) {
+                open.push_back(x);
+                continue;
+            }
+            open.erase(other);
+            area += topology::rest_area(mesh, {e, f});
+        }
+    return area;
+}
 
 }  // namespace
 
@@ -57,6 +102,7 @@ std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> f
     return crossed;
 }
 
+/// True if no part of a face on the cut is ahead of the blade's edge.
 bool CutEnd::is_behind(FaceId f) const {
     int num_at = 0;
     double sum = 0.0;
@@ -70,6 +116,42 @@ bool CutEnd::is_behind(FaceId f) const {
             return false;
     }
     return num_at < 3 || sum <= 0.0;
+}
+
+/// True if a face is ahead of the edge, at least in part, and inside a carrier.
+bool CutEnd::is_ahead_inside(FaceId f) const {
+    return !is_behind(f) && carrier_of(f.element) == carrier_of(mesh_.neighbor(f).element);
+}
+
+std::vector<FaceId> CutEnd::faces_to_open(std::span<const FaceId> faces) const {
+    struct Section {
+        double behind, ahead;  // area on either side of the edge, at rest, m2
+    };
+    std::vector<Section> sections;                          // of parts of carriers with the edge
+    std::unordered_map<ElementId, std::size_t> section_of;  // by element of such a part
+    for (const FaceId f : faces) {
+        if (section_of.contains(f.element) || !is_ahead_inside(f)) continue;
+        const auto part =
+            part_of_carrier(mesh_, f.element, [&](ElementId e) { return carrier_of(e); });
+        for (const ElementId e : part) section_of[e] = sections.size();
+        sections.push_back({opened_area(mesh_, part), 0.0});
+    }
+    const auto section_with = [&](FaceId f) -> Section* {
+        const auto a = section_of.find(f.element), b = section_of.find(mesh_.neighbor(f).element);
+        const bool is_inside =
+            a != section_of.end() && b != section_of.end() && a->second == b->second;
+        return is_inside ? &sections[a->second] : nullptr;
+    };
+    for (const FaceId f : faces)
+        if (Section* section = section_with(f))
+            (is_behind(f) ? section->behind : section->ahead) += topology::rest_area(mesh_, f);
+    std::vector<FaceId> chosen;
+    std::ranges::copy_if(faces, std::back_inserter(chosen), [&](FaceId f) {
+        if (is_behind(f)) return true;
+        const Section* section = section_with(f);
+        return section && section->behind >= (1.0 - rounding_of_places) * section->ahead;
+    });
+    return chosen;
 }
 
 BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
@@ -95,13 +177,15 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
     return {blade.edge(), std::vector<Vec3>(blade.edge().size(), from_cut / count)};
 }
 
-double exit_distance(const TissueMotion& tissue, const BladeEnd& blade) {
+double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& fragments,
+                     const BladeEnd& blade) {
+    const Mesh& mesh = tissue.mesh;
+    const auto carrier_of = [&](ElementId e) { return fragments.carrier_of_cell(e); };
     const SweptEdge edge(blade.edge(), blade.edge());
     double farthest = 0.0;
     tissue.for_each_near(
         [&](const Box& box) { return edge.may_meet(box); },
         [&](ElementId e) {
-            const topology::Mesh& mesh = tissue.mesh;
             if (mesh.kind(e) != topology::CellKind::tetrahedron) return;
             bool has_edge = false;
             for (int f = 0; f < 4 && !has_edge; ++f) {
@@ -115,9 +199,11 @@ double exit_distance(const TissueMotion& tissue, const BladeEnd& blade) {
             if (!has_edge) return;
             // The edge may be in the hindmost face of the element, or in the foremost.
             const double more = room_ahead * tissue.box(e).diagonal().norm();
-            for (const NodeId n : mesh.corners(e))
-                farthest = std::max(
-                    farthest, more + std::max(0.0, blade.distance_ahead(tissue.after[n.index()])));
+            for (const ElementId other : part_of_carrier(mesh, e, carrier_of))
+                for (const NodeId n : mesh.corners(other))
+                    farthest = std::max(
+                        farthest,
+                        more + std::max(0.0, blade.distance_ahead(tissue.after[n.index()])));
         });
     return farthest;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -13,7 +14,9 @@
 #include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/surface_boundary.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
 
@@ -21,11 +24,22 @@ namespace incise::cutting {
 /// elements have been divided along the continuation of the blade's path. Of the faces on the
 /// continuation, those behind the blade's edge open. Faces that the edge passes through are divided
 /// at the edge.
-/// @lifetime  mesh and blade must outlive the object
+///
+/// A carrier that is cut in part moves as if it were whole. So in a carrier through whose section
+/// the blade has passed by half or more, the faces ahead of the edge open, too.
+/// @lifetime  mesh, fragments and blade must outlive the object
 class CutEnd {
   public:
-    CutEnd(const topology::Mesh& mesh, const BladeEnd& blade, PositionOf position)
-        : mesh_(mesh), blade_(blade), position_(std::move(position)) {}
+    /// @param mesh       during the edit
+    /// @param fragments  before the edit
+    CutEnd(const topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+           const BladeEnd& blade, PositionOf position)
+        : mesh_(mesh), fragments_(fragments), blade_(blade), position_(std::move(position)) {}
+
+    /// Follows the division of elements.
+    void follow(std::span<const topology::MeshEdit::DividedElement> elements) {
+        for (const auto& [kept, added] : elements) new_carriers_[added] = carrier_of(kept);
+    }
 
     /// An edge of a face with one end behind the blade's edge and the other ahead of it.
     struct CrossedEdge {
@@ -43,18 +57,27 @@ class CutEnd {
     void put_at(NodeId n) { nodes_.insert(n); }
     bool is_at(NodeId n) const { return nodes_.contains(n); }
 
-    /// True if no part of a face on the cut is ahead of the blade's edge.
+    /// Returns which faces on the cut and on its continuation open, in their order.
+    /// @param faces  between the two sides, joined
     /// @pre  edges that cross the blade's edge have been divided there
-    bool is_behind(FaceId f) const;
+    std::vector<FaceId> faces_to_open(std::span<const FaceId> faces) const;
 
   private:
+    bool is_behind(FaceId f) const;
+    bool is_ahead_inside(FaceId f) const;
+    ElementId carrier_of(ElementId e) const {
+        const auto known = new_carriers_.find(e);
+        return known != new_carriers_.end() ? known->second : fragments_.carrier_of_cell(e);
+    }
     std::optional<EdgeIntersection> intersection(const Edge& edge) const;
     double distance_ahead(NodeId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;
+    const topology::FragmentMesh& fragments_;
     const BladeEnd& blade_;
     PositionOf position_;
-    std::unordered_set<NodeId> nodes_;  // that count as at the blade's edge
+    std::unordered_map<ElementId, ElementId> new_carriers_;  // of elements that the edit has made
+    std::unordered_set<NodeId> nodes_;                       // that count as at the blade's edge
 };
 
 /// Returns the same blade if its cut is behind it, else one that goes on away from its cut. A blade
@@ -62,8 +85,10 @@ class CutEnd {
 BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
                        const PositionOf& position);
 
-/// Returns how far the edge must go on to be past all tetrahedra that it is in, m. Returns 0 if it
-/// is in none. An edge in the face between two elements counts as in one of them (space_time.h).
-double exit_distance(const TissueMotion& tissue, const BladeEnd& blade);
+/// Returns how far the edge must go on to be past all carriers that it is in, m. Returns 0 if it is
+/// in none. Only tetrahedra count. An edge in the face between two elements counts as in one of
+/// them (space_time.h).
+double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& fragments,
+                     const BladeEnd& blade);
 
 }  // namespace incise::cutting

@@ -58,12 +58,18 @@ const EdgeIntersection& first_of(const EdgeIntersections& intersections) {
                          [&](const EdgeIntersection& p) { return is_first(p) && skipped-- == 0; });
 }
 
+/// Where the path of a blade ends, and the fragments of the body before that.
+struct PathEnd {
+    const BladeEnd& blade;
+    const topology::FragmentMesh& fragments;
+};
+
 /// Makes the edit of one step of a cut: see split() and finish(). Used once.
 class Splitter {
   public:
     Splitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, CutFront& front,
              const SplitOptions& options, SnapHistory& snap_history,
-             std::span<SuspendedCut> resting, const BladeEnd* blade_end = nullptr)
+             std::span<SuspendedCut> resting, const PathEnd* end = nullptr)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
@@ -72,7 +78,8 @@ class Splitter {
           suspended_(resting),
           snap_(std::max(options.snap, smallest_snap)),
           num_old_nodes_(mesh.node_capacity()) {
-        if (blade_end) end_.emplace(mesh, *blade_end, [&](NodeId n) { return point(n)[1]; });
+        if (end)
+            end_.emplace(mesh, end->fragments, end->blade, [&](NodeId n) { return point(n)[1]; });
     }
 
     Split run() {
@@ -258,7 +265,7 @@ void Splitter::part() {
     const PlaceOnCut position_at_crease = [&](ElementId e) { return this->position_at_crease(e); };
     std::vector<FaceId> faces = faces_to_separate(
         mesh_, front_, touched_, surface_.has_creases() ? position_at_crease : unknown);
-    if (end_) std::erase_if(faces, [&](FaceId f) { return !end_->is_behind(f); });
+    if (end_) faces = end_->faces_to_open(faces);
     for (const SuspendedCut& blade : suspended_)
         std::ranges::copy(faces_to_separate(mesh_, blade.front, touched_, unknown),
                           std::back_inserter(faces));
@@ -421,6 +428,7 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
     const MovingPoint from = point(edge.a), to = point(edge.b);
     const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
     const NodeId middle = halves.node;
+    if (end_) end_->follow(halves.elements);
     generations_.push_back(1 + std::max(generation(edge.a), generation(edge.b)));
     ++report_.edges_divided;
     new_points_.push_back({(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]});
@@ -538,14 +546,15 @@ Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, C
     return Splitter(mesh, tissue, surface, front, options, snap_history, resting).run();
 }
 
-Split finish(Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
-             const SplitOptions& options, SnapHistory& snap_history,
-             std::span<SuspendedCut> resting) {
+Split finish(Mesh& mesh, const topology::FragmentMesh& fragments, const TissueMotion& tissue,
+             const BladeEnd& blade, CutFront& front, const SplitOptions& options,
+             SnapHistory& snap_history, std::span<SuspendedCut> resting) {
     if (front.is_empty()) return {};
     const BladeEnd end =
         away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
-    Split result = Splitter(mesh, tissue, end.continuation(exit_distance(tissue, end)), front,
-                            options, snap_history, resting, &end)
+    const PathEnd path_end{end, fragments};
+    Split result = Splitter(mesh, tissue, end.continuation(exit_distance(tissue, fragments, end)),
+                            front, options, snap_history, resting, &path_end)
                        .run();
     front = {};
     return result;

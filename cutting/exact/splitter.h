@@ -12,6 +12,7 @@
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/topology/change_set.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -51,8 +52,7 @@ struct Split {
 /// whose three nodes are on the surface and whose elements are on different sides of it.
 ///
 /// A body that the surface passes right through comes apart. Where the surface ends, the opened
-/// faces end within one element of it. Small components at its end wait in the front for the step
-/// in which the blade has gone on or away (separation.h).
+/// faces end within one element of it.
 /// @param mesh          the mesh to cut
 /// @param tissue        its motion in this step
 /// @param surface       what the cut follows
@@ -70,15 +70,20 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
             CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
             std::span<SuspendedCut> resting = {});
 
-/// Ends the cut of a blade at its edge, where its path ends. Elements that the edge is in are
+/// Ends the cut of a blade at its edge, where its path ends. Carriers that the edge is in are
 /// divided along the continuation of the path. Faces on the cut are divided at the edge, with the
-/// same tolerance, and those behind the edge open. The front is empty afterwards.
+/// same tolerance, and those behind the edge open. A carrier that the blade has cut by half or more
+/// opens whole, since one that is cut in part moves as if it were whole (topology::FragmentMesh).
+/// So the cut ends up to half an element before or behind the edge, and on average at it. The front
+/// is empty afterwards.
 ///
 /// Parameters and cost are those of split(). Nothing happens if the front is empty. If the
 /// continuation comes to an element that is no tetrahedron, no element is divided along it.
+/// @param fragments  of the mesh
 /// @pre  the tissue is at rest: before and after are the same
-Split finish(topology::Mesh& mesh, const TissueMotion& tissue, const BladeEnd& blade,
-             CutFront& front, const SplitOptions& options, SnapHistory& snap_history,
+Split finish(topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+             const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
+             const SplitOptions& options, SnapHistory& snap_history,
              std::span<SuspendedCut> resting = {});
 
 }  // namespace incise::cutting

@@ -112,6 +112,36 @@ struct StoppingBlade {
                 }
                 polygon = rest;
             }
+        return area_of(polygon);
+    }
+
+    /// Of its plane in a tetrahedron: as far as it gets, and all of it, m2.
+    struct Section {
+        double behind, whole;
+    };
+    Section section_of(const std::array<Vec3, 4>& corners) const {
+        Polyline all, behind;
+        for (std::size_t p = 0; p < 4; ++p)
+            for (std::size_t q = 0; q < p; ++q) {
+                const double a = normal.dot(corners[p] - stop), b = normal.dot(corners[q] - stop);
+                if (a * b < 0.0)
+                    all.push_back(corners[p] + a / (a - b) * (corners[q] - corners[p]));
+            }
+        Vec3 middle = Vec3::Zero();
+        for (const Vec3& x : all) middle += x / static_cast<double>(all.size());
+        std::ranges::sort(all, {}, [&](const Vec3& x) {
+            return std::atan2(along.dot(x - middle), ahead.dot(x - middle));
+        });
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Vec3 &x = all[i], &y = all[(i + 1) % all.size()];
+            const double a = ahead.dot(x - stop), b = ahead.dot(y - stop);
+            if (a <= 0.0) behind.push_back(x);
+            if (a * b < 0.0) behind.push_back(x + a / (a - b) * (y - x));
+        }
+        return {area_of(behind), area_of(all)};
+    }
+
+    static double area_of(const Polyline& polygon) {
         Vec3 area = Vec3::Zero();
         for (std::size_t i = 2; i < polygon.size(); ++i)
             area += 0.5 * (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
@@ -143,19 +173,34 @@ double projected_area(const SplitBody& body, const Vec3& normal) {
     return area;
 }
 
-TEST(FinishedCut, OpensToTheBladesEdgeExactly) {
+// It opens to the blade's edge exactly, and through the carriers that it has cut by half or more.
+TEST(FinishedCut, OpensToTheEdgeAndThroughCarriersCutByHalf) {
+    std::size_t num_opened_whole = 0;
     for (std::uint64_t seed = 0; seed < test::num_cases(12); ++seed) {
         SCOPED_TRACE(seed);
         Random random(seed);
         SplitBody body(test::jittered_cube(3 + static_cast<int>(seed % 4), 0.2, seed));
         const StoppingBlade blade(random);
+        double expected = 0.0, swept = 0.0;
+        for (const ElementId e : body.mesh.elements()) {
+            std::array<Vec3, 4> corners;
+            for (std::size_t k = 0; k < 4; ++k)
+                corners[k] = body.positions[body.mesh.corners(e)[k].index()];
+            const auto [behind, whole] = blade.section_of(corners);
+            const bool is_opened_whole = behind >= 0.5 * whole;
+            num_opened_whole += is_opened_whole && behind < 0.99 * whole;
+            expected += is_opened_whole ? whole : behind;
+            swept += behind;
+        }
+        ASSERT_NEAR(swept, blade.swept_area(), 1e-9);
         const auto parts = cut_to_the_stop(body, blade, 3, {0.0});
-        EXPECT_NEAR(sum(parts).cut_area, blade.swept_area(), 1e-6);
+        EXPECT_NEAR(sum(parts).cut_area, expected, 1e-6);
         EXPECT_EQ(topology::components(body.mesh).count, 1);
     }
+    EXPECT_GT(num_opened_whole, test::num_cases(12));
 }
 
-TEST(FinishedCut, EndsWithinSnapOfTheEdgeWithoutBias) {
+TEST(FinishedCut, EndsWithinAnElementOfTheEdgeWithoutBias) {
     const auto num_seeds = test::num_cases(24);
     double missing = 0.0;  // in bricks over the width of the cube
     for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
@@ -165,7 +210,7 @@ TEST(FinishedCut, EndsWithinSnapOfTheEdgeWithoutBias) {
         SplitBody body(test::jittered_cube(num_bricks, 0.2, seed));
         const StoppingBlade blade(random);
         const SplitOptions options = SplitOptions{default_snap};
-        const double farthest = default_snap * longest_edge(body.mesh, body.positions);
+        const double farthest = longest_edge(body.mesh, body.positions);
         cut_to_the_stop(body, blade, 4, options);
         missing += (blade.swept_area() - projected_area(body, blade.normal)) * num_bricks;
         for (const auto& [face, other] : cut_faces(body.mesh))

@@ -104,7 +104,8 @@ class Patient {
         if (!cut.end) return;
         follow([&] {
             const auto here = model_.mesh_positions();
-            return finish(mesh_, {mesh_, here, here}, *cut.end, front, options_, snap_history_);
+            return finish(mesh_, model_.fragments(), {mesh_, here, here}, *cut.end, front, options_,
+                          snap_history_);
         });
         EXPECT_TRUE(front.is_empty());
     }

@@ -215,7 +215,7 @@ class Patient {
     void finish_and_check(const Cut& cut, CutFront& front) {
         const BladeEnd end(edge_of(cut, 1.0), {cut.places.size(), way_of(cut)});
         edit_and_check([&](const TissueMotion& tissue) {
-            return finish(mesh_, tissue, end, front, options_, snap_history_);
+            return finish(mesh_, model_.fragments(), tissue, end, front, options_, snap_history_);
         });
         EXPECT_TRUE(front.is_empty());
     }

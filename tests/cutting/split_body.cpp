@@ -90,6 +90,7 @@ SplitReport sum(const std::vector<Split>& parts) {
 
 SplitBody::SplitBody(const topology::MeshData& data)
     : mesh(Mesh::build(data).mesh),
+      fragments(mesh),
       positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {}
 
 Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
@@ -97,6 +98,7 @@ Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOpti
     const Split done =
         split(mesh, {mesh, positions, moved}, surface, front, options, snap_history, resting);
     positions = followed(moved, done.changes);
+    fragments.apply(mesh, done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
     if (!done.changes.is_empty()) {
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
@@ -119,8 +121,9 @@ std::vector<Split> SplitBody::cut(const Stroke& stroke, const SplitOptions& opti
 Split SplitBody::finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options) {
     const std::vector<Vec3> here = positions;
     const Split done =
-        cutting::finish(mesh, {mesh, here, here}, blade, front, options, snap_history);
+        cutting::finish(mesh, fragments, {mesh, here, here}, blade, front, options, snap_history);
     positions = followed(here, done.changes);
+    fragments.apply(mesh, done.changes);
     EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
     return done;
 }

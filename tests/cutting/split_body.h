@@ -39,6 +39,7 @@ class SplitBody {
     Box box() const;  ///< of the present positions
 
     topology::Mesh mesh;
+    topology::FragmentMesh fragments;
     std::vector<Vec3> positions;  ///< by node id, m
     SnapHistory snap_history;     // of all cuts so far
 };

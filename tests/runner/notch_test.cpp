@@ -274,9 +274,9 @@ void expect_smaller(const Errors& errors, const Errors& than) {
 TEST(NotchCutByABlade, HalfThroughConverges) {
     const Notch notch = notch_of_depth(0.05);
     const Errors of_coarse = errors_of_cut_block(notch, coarse);
-    expect_within(of_coarse, 0.10, 0.04);
+    expect_within(of_coarse, 0.06, 0.04);
     const Errors of_refined = errors_of_cut_block(notch, refined);
-    expect_within(of_refined, 0.05, 0.02);
+    expect_within(of_refined, 0.03, 0.02);
     expect_smaller(of_refined, of_coarse);
 }
 
@@ -287,18 +287,18 @@ TEST(NotchCutByABlade, LessDeepConvergesIfCutExactly) {
     const Notch notch = notch_of_depth(0.03);
     const std::string exact = "snap = 0\n";
     const Errors of_coarse = errors_of_cut_block(notch, {21, 8, 21}, exact);
-    expect_within(of_coarse, 0.10, 0.07);
+    expect_within(of_coarse, 0.06, 0.07);
     const Errors of_refined = errors_of_cut_block(notch, refined, exact);
-    expect_within(of_refined, 0.05, 0.06);
+    expect_within(of_refined, 0.03, 0.03);
     expect_smaller(of_refined, of_coarse);
 }
 
 TEST(NotchCutByABlade, LessDeepConvergesIfSnapped) {
     const Notch notch = notch_of_depth(0.03);
     const Errors of_coarse = errors_of_cut_block(notch, coarse);
-    expect_within(of_coarse, 0.10, 0.07);
+    expect_within(of_coarse, 0.06, 0.07);
     const Errors of_refined = errors_of_cut_block(notch, {41, 14, 41});
-    expect_within(of_refined, 0.05, 0.03);
+    expect_within(of_refined, 0.03, 0.03);
     expect_smaller(of_refined, of_coarse);
 }
 
@@ -308,9 +308,9 @@ TEST(NotchCutByABlade, HardlyDependsOnSnapping) {
         const Notch notch = notch_of_depth(depth);
         const Errors usual = errors_of_cut_block(notch, coarse);
         const Errors exact = errors_of_cut_block(notch, coarse, "snap = 0\n");
-        EXPECT_NEAR(usual.force, exact.force, 0.03);
-        EXPECT_NEAR(usual.middle_opening, exact.middle_opening, 0.06);
-        EXPECT_NEAR(usual.side_opening, exact.side_opening, 0.06);
+        EXPECT_NEAR(usual.force, exact.force, 0.005);
+        EXPECT_NEAR(usual.middle_opening, exact.middle_opening, 0.005);
+        EXPECT_NEAR(usual.side_opening, exact.side_opening, 0.005);
     }
 }
 
