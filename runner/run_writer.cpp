@@ -49,6 +49,10 @@ Json to_json(const sim::EditRecord& edit) {
             {"nodes_snapped", edit.nodes_snapped},
             {"cut_area", edit.cut_area},
             {"mass_removed", edit.mass_removed},
+            {"fragments_copied", edit.fragments_copied},
+            {"fragment_nodes_copied", edit.fragment_nodes_copied},
+            {"volume_joined", edit.volume_joined},
+            {"volume_released", edit.volume_released},
             {"min_altitude_ratio", edit.min_altitude_ratio},
             {"before", to_json(edit.before)},
             {"after", to_json(edit.after)}};

@@ -78,8 +78,8 @@ BodyTotals Ledger::body_totals() const {
 }
 
 EditRecord Ledger::record(double time, std::uint64_t step, const std::string& tool,
-                          const cutting::Split& done, const BodyTotals& before,
-                          double mass_removed) {
+                          const cutting::Split& done, const topology::FragmentChanges& fragments,
+                          const BodyTotals& before, double mass_removed) {
     const topology::ChangeSet& changes = done.changes;
     const Divided divided = divided_elements(model_.mesh(), changes);
     EditRecord edit;
@@ -99,6 +99,14 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     if (divided.num_parents > 0)
         edit.min_altitude_ratio = divided.least_altitude / initial_min_altitude_;
     edit.mass_removed = mass_removed;
+    edit.fragments_copied = fragments.mesh.elements_added.size();
+    edit.fragment_nodes_copied = fragments.mesh.nodes_added.size();
+    for (const topology::CarriedCell& cell : fragments.cells) {
+        if (!cell.to.is_valid()) continue;  // removed
+        const double volume = topology::rest_volume(model_.mesh(), cell.cell);
+        if (cell.is_away && !cell.was_away) edit.volume_joined += volume;
+        if (cell.was_away && !cell.is_away) edit.volume_released += volume;
+    }
     edit.before = before;
     counts_ = count();
     components_.apply(model_.mesh(), changes);

@@ -11,6 +11,7 @@
 #include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/component_count.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::sim {
@@ -46,6 +47,13 @@ struct EditRecord {
     std::size_t nodes_snapped = 0;  ///< nodes near the cut that were treated as on it
     double cut_area = 0.0;          ///< m2, at rest, of one side of the opened faces
     double mass_removed = 0.0;      ///< kg: density times rest volume of the removed elements
+    /// What the edit did to the elements and nodes of the physics (topology::FragmentMesh). Copies
+    /// change neither momenta nor energies. If volume_joined and volume_released are 0, then
+    /// `before` and `after` of an edit that removes nothing are equal to rounding.
+    std::size_t fragments_copied = 0;       ///< new fragments
+    std::size_t fragment_nodes_copied = 0;  ///< new nodes of fragments
+    double volume_joined = 0.0;    ///< m3, at rest, that fragments took over from light ones
+    double volume_released = 0.0;  ///< m3, at rest, that they gave back
     /// The least altitude of the divided elements and of their parts, divided by the least altitude
     /// of the mesh at the start. Not a number if no element was divided.
     double min_altitude_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -54,7 +62,8 @@ struct EditRecord {
         ar(self.time, self.step, self.tool, self.elements_removed, self.elements_crossed,
            self.elements_split, self.elements_added, self.faces_opened, self.nodes_added,
            self.nodes_duplicated, self.nodes_removed, self.nodes_snapped, self.cut_area,
-           self.mass_removed, self.min_altitude_ratio, self.before, self.after);
+           self.mass_removed, self.fragments_copied, self.fragment_nodes_copied, self.volume_joined,
+           self.volume_released, self.min_altitude_ratio, self.before, self.after);
     }
 };
 
@@ -70,11 +79,13 @@ class Ledger {
     /// Returns the totals after the last edit, or those at the start if there was no edit.
     const BodyTotals& last() const { return last_; }
     /// Records an edit and returns its record.
+    /// @param fragments     what the edit did to the fragments
     /// @param before        totals of the body before the edit
     /// @param mass_removed  see removed_mass(), kg
     /// @pre  the model has followed the edit
     EditRecord record(double time, std::uint64_t step, const std::string& tool,
-                      const cutting::Split& done, const BodyTotals& before, double mass_removed);
+                      const cutting::Split& done, const topology::FragmentChanges& fragments,
+                      const BodyTotals& before, double mass_removed);
 
     std::size_t num_edits() const { return num_edits_; }
 

@@ -159,8 +159,8 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     physics::ModelChanges of_model = model.apply(mesh, changes);
     cutter.apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
-    EditRecord record =
-        ledger.record(end, num_steps, tools[id.index].def.name, done, before, mass_removed);
+    EditRecord record = ledger.record(end, num_steps, tools[id.index].def.name, done,
+                                      of_model.fragments, before, mass_removed);
     report.edits.push_back({id, std::move(record), std::move(done.changes), std::move(of_model)});
 }
 

@@ -139,6 +139,10 @@ TEST_F(RunFiles, EditsAreLinesOfJson) {
         EXPECT_EQ(line.at("nodes_added"), edits[i].nodes_added);
         EXPECT_EQ(line.at("nodes_removed"), edits[i].nodes_removed);
         EXPECT_EQ(line.at("mass_removed"), edits[i].mass_removed);
+        EXPECT_EQ(line.at("fragments_copied"), edits[i].fragments_copied);
+        EXPECT_EQ(line.at("fragment_nodes_copied"), edits[i].fragment_nodes_copied);
+        EXPECT_EQ(line.at("volume_joined"), edits[i].volume_joined);
+        EXPECT_EQ(line.at("volume_released"), edits[i].volume_released);
         for (const auto& [name, body_totals] :
              {std::pair{"before", edits[i].before}, std::pair{"after", edits[i].after}}) {
             const json& side = line.at(name);
