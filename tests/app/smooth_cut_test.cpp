@@ -1,0 +1,152 @@
+// The quality of cuts at their default: how smooth they are, and what they cost of the stable step.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "incise/app/geometric_cut.h"
+#include "incise/base/disjoint_set.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/geometry.h"
+#include "support/mesh_families.h"
+#include "support/num_cases.h"
+
+namespace incise::app {
+namespace {
+
+using topology::Mesh;
+using topology::MeshData;
+
+constexpr std::size_t num_trials = 20;
+constexpr double farthest = 0.03;  // nodes of a cut from its surface, mean edges
+constexpr double largest_angle = 0.5 * std::numbers::pi / 180.0;  // mean, of faces to a plane
+
+/// A body, with the least ratios of the stable step after cuts to that before.
+struct Body {
+    std::string name;
+    MeshData data;
+    double step_after_one, step_after_eight;
+};
+
+MeshData organ(const std::string& file) {
+    return io::read_mesh(std::string(INCISE_DATA_DIR) + "/" + file).mesh;
+}
+
+const std::vector<Body>& bodies() {
+    static const std::vector<Body> all = {
+        {"Kuhn cube",
+         topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(),
+                            {15, 15, 15}),
+         0.75, 0.75},
+        {"jittered cube", test::jittered_cube(15, 0.2, 1), 0.53, 0.5},
+        {"liver", organ("liver.vtu"), 0.75, 0.75},
+        {"kidney", organ("kidney.vtu"), 0.75, 0.75},
+        {"long bricks",
+         topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), {1.0, 1.0, 3.0},
+                            {12, 12, 12}),
+         0.55, 0.5}};
+    return all;
+}
+
+Eigen::AlignedBox3d box_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : mesh.rest_positions()) box.extend(x);
+    return box;
+}
+
+PlaneCut random_plane(const Eigen::AlignedBox3d& box, test::Random& random) {
+    return {box.center() + random.vector(0.2).cwiseProduct(box.sizes()),
+            random.vector(1.0).normalized()};
+}
+
+/// Of the part of a plane that is inside a body of tetrahedra, m2.
+double area_in(const Mesh& mesh, const PlaneCut& plane) {
+    const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
+    double sum = 0.0;
+    for (const ElementId e : mesh.elements()) {
+        std::vector<Vec3> section;
+        const auto corners = mesh.corners(e);
+        for (std::size_t p = 0; p < 4; ++p)
+            for (std::size_t q = 0; q < p; ++q) {
+                const Vec3 &x = mesh.rest_position(corners[p]), &y = mesh.rest_position(corners[q]);
+                const double a = plane.normal.dot(x - plane.point);
+                const double b = plane.normal.dot(y - plane.point);
+                if (a * b < 0.0) section.push_back(x + a / (a - b) * (y - x));
+            }
+        if (section.empty()) continue;
+        Vec3 middle = Vec3::Zero();
+        for (const Vec3& x : section) middle += x / static_cast<double>(section.size());
+        std::ranges::sort(section, {}, [&](const Vec3& x) {
+            return std::atan2(v.dot(x - middle), u.dot(x - middle));
+        });
+        Vec3 area = Vec3::Zero();
+        for (std::size_t i = 2; i < section.size(); ++i)
+            area += 0.5 * (section[i - 1] - section[0]).cross(section[i] - section[0]);
+        sum += area.norm();
+    }
+    return sum;
+}
+
+/// Returns into how many pieces a plane parts a body: two, if the body does not bend back to it.
+std::size_t pieces_beside(const Mesh& mesh, const PlaneCut& plane) {
+    DisjointSet pieces(mesh.node_capacity());
+    const auto is_above = [&](NodeId n) {
+        return plane.normal.dot(mesh.rest_position(n) - plane.point) > 0.0;
+    };
+    for (const ElementId e : mesh.elements())
+        for (const NodeId a : mesh.corners(e))
+            for (const NodeId b : mesh.corners(e))
+                if (is_above(a) == is_above(b)) pieces.join(a.value, b.value);
+    std::set<std::int32_t> heads;
+    for (const NodeId n : mesh.nodes()) heads.insert(pieces.find(n.value));
+    return heads.size();
+}
+
+TEST(SmoothCut, AlongAPlanePartsEveryBodyAndKeepsTheStep) {
+    for (const Body& body : bodies()) {
+        const Mesh whole = Mesh::build(body.data).mesh;
+        test::Random random(1);
+        for (std::size_t trial = 0; trial < test::num_cases(num_trials); ++trial) {
+            SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
+            const PlaneCut plane = random_plane(box_of(whole), random);
+            Mesh mesh = Mesh::build(body.data).mesh;
+            const CutTool tool{"plane", plane};
+            const GeometricCutReport report = geometric_cut(mesh, {&tool, 1}, {});
+            EXPECT_EQ(report.pieces.size(), pieces_beside(whole, plane));
+            ASSERT_TRUE(report.total.surface_distance && report.total.mean_angle);
+            EXPECT_LE(report.total.surface_distance->nodes,
+                      farthest * report.before.mean_edge_length);
+            EXPECT_LE(*report.total.mean_angle, largest_angle);
+            const double area = area_in(whole, plane);
+            EXPECT_NEAR(report.total.cut_area, area, 0.002 * area);
+            EXPECT_GE(*report.stable_step_ratio(), body.step_after_one);
+        }
+    }
+}
+
+TEST(SmoothCut, AlongEightPlanesKeepsTheStep) {
+    for (const Body& body : bodies()) {
+        test::Random random(2);
+        for (std::size_t trial = 0; trial < test::num_cases(5); ++trial) {
+            SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
+            Mesh mesh = Mesh::build(body.data).mesh;
+            std::vector<CutTool> tools;
+            for (int i = 0; i < 8; ++i)
+                tools.push_back({"plane", random_plane(box_of(mesh), random)});
+            const GeometricCutReport report = geometric_cut(mesh, tools, {});
+            EXPECT_GE(report.pieces.size(), 8u);
+            EXPECT_LE(report.volume_error(), 1e-12);
+            EXPECT_GE(*report.stable_step_ratio(), body.step_after_eight);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::app
