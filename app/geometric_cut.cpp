@@ -127,6 +127,19 @@ cutting::BladeEnd end_of(const SweepCut& sweep) {
     return {last, motion};
 }
 
+/// Returns the length of the longest edge of the elements of the physics, at rest, m.
+double longest_edge(const FragmentMesh& fragments) {
+    double longest = 0.0;
+    for (const ElementId e : fragments.elements()) {
+        const auto corners = fragments.corners(e);
+        for (const NodeId a : corners)
+            for (const NodeId b : corners)
+                longest = std::max(
+                    longest, (fragments.rest_position(a) - fragments.rest_position(b)).norm());
+    }
+    return longest;
+}
+
 /// Returns the normal scaled by a power of two, so that squares neither overflow nor become zero.
 /// The scaling is exact: it changes neither signs nor the plane.
 Vec3 well_scaled(const Vec3& normal) {
@@ -221,7 +234,10 @@ class CountingCutter {
             });
         cutter_.remove_cut(cut);
         if (counts_.faces_opened == 0) return;
-        const cutting::TriangleSurface surface(swept_surface(sweep));
+        // A cut may end up to half an element ahead of the edge, on the continuation of its way.
+        SweepCut with_end = sweep;
+        with_end.poses.push_back(end_of(sweep).edge_after(longest_edge(fragments_)));
+        const cutting::TriangleSurface surface(swept_surface(with_end));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 

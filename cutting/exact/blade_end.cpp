@@ -86,10 +86,10 @@ Vec3 BladeEnd::point_at(std::size_t segment, double place) const {
     return (1.0 - place) * edge_[segment] + place * edge_[segment + 1];
 }
 
-SweptEdge BladeEnd::continuation(double distance) const {
+std::vector<Vec3> BladeEnd::edge_after(double distance) const {
     std::vector<Vec3> there = edge_;
     for (std::size_t i = 0; i < there.size(); ++i) there[i] += distance * ahead_[i];
-    return {edge_, there};
+    return there;
 }
 
 }  // namespace incise::cutting

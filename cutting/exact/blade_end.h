@@ -22,9 +22,11 @@ class BladeEnd {
     /// Returns how far a point is ahead of the edge, m; negative behind it.
     double distance_ahead(const Vec3& x) const;
 
-    /// Returns what the edge would sweep if it went straight on. Each of its points moves by
-    /// `distance`, m, across the edge.
-    SweptEdge continuation(double distance) const;
+    /// Returns the edge after it went straight on. Each of its points moves by `distance`, m,
+    /// across the edge.
+    std::vector<Vec3> edge_after(double distance) const;
+    /// Returns what the edge would sweep on that way.
+    SweptEdge continuation(double distance) const { return {edge_, edge_after(distance)}; }
 
     /// Returns the vector to x from the point of the edge that is nearest to x, m.
     Vec3 away_from_edge(const Vec3& x) const;

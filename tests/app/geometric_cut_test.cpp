@@ -154,7 +154,7 @@ TEST(GeometricCut, OfASweepEndsWhereTheBladeDoes) {
         const CutTool tool{"sweep", sweep};
         const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, 0.0});
         EXPECT_TRUE(topology::validate(mesh).empty());
-        EXPECT_NEAR(report.total.cut_area, end, 1e-6);
+        EXPECT_NEAR(report.total.cut_area, end, 0.5 / 4);  // to half a brick
         EXPECT_EQ(report.pieces.size(), 1u);
         ASSERT_TRUE(report.total.surface_distance);
         EXPECT_LT(report.total.surface_distance->faces, 1e-7);
