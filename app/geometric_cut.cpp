@@ -228,16 +228,18 @@ class CountingCutter {
             else
                 open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
         }
-        if (cutter_.is_in_tissue(cut))
+        SweepCut followed = sweep;
+        if (cutter_.is_in_tissue(cut)) {
+            const cutting::BladeEnd end = end_of(sweep);
             split_by([&](std::span<const Vec3> positions) {
-                return cutter_.end_cut(cut, mesh_, fragments_, positions, end_of(sweep));
+                return cutter_.end_cut(cut, mesh_, fragments_, positions, end);
             });
+            // The cut may end up to half an element ahead of the edge, on this continuation.
+            followed.poses.push_back(end.edge_after(longest_edge(fragments_)));
+        }
         cutter_.remove_cut(cut);
         if (counts_.faces_opened == 0) return;
-        // A cut may end up to half an element ahead of the edge, on the continuation of its way.
-        SweepCut with_end = sweep;
-        with_end.poses.push_back(end_of(sweep).edge_after(longest_edge(fragments_)));
-        const cutting::TriangleSurface surface(swept_surface(with_end));
+        const cutting::TriangleSurface surface(swept_surface(followed));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 

@@ -104,8 +104,8 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     for (const topology::CarriedCell& cell : fragments.cells) {
         if (!cell.to.is_valid()) continue;  // removed
         const double volume = topology::rest_volume(model_.mesh(), cell.cell);
-        if (cell.is_away && !cell.was_away) edit.volume_joined += volume;
-        if (cell.was_away && !cell.is_away) edit.volume_released += volume;
+        if (cell.is_joined) edit.volume_joined += volume;
+        if (cell.is_released) edit.volume_released += volume;
     }
     edit.before = before;
     counts_ = count();

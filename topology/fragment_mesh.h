@@ -33,8 +33,9 @@ struct ShareChange {
 struct CarriedCell {
     ElementId cell, carrier;
     ElementId from, to;
-    /// True if that fragment is none of its own carrier: the cell is or was a part of a light one.
-    bool was_away = false, is_away = false;
+    /// True if the edit took the cell out of a fragment of another carrier, or gave it to one. A
+    /// new cell comes out of the fragment that carried its parent.
+    bool is_released = false, is_joined = false;
     bool operator==(const CarriedCell&) const = default;
 };
 
@@ -49,7 +50,7 @@ struct FragmentChanges {
     /// of the mass.
     bool has_joins() const {
         return std::ranges::any_of(
-            cells, [](const CarriedCell& cell) { return cell.was_away || cell.is_away; });
+            cells, [](const CarriedCell& cell) { return cell.is_released || cell.is_joined; });
     }
     bool operator==(const FragmentChanges&) const = default;
 };

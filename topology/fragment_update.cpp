@@ -394,7 +394,7 @@ FragmentChanges FragmentUpdate::differences() {
         if (now == before) continue;
         const ElementId carrier = fragments_.carrier_of_cell(cell);
         const auto is_away = [&](ElementId e) {
-            return e.is_valid() && fragments_.carrier(e) != carrier;
+            return e.is_valid() && fragments_.carrier(e) != carrier && inherited != now;
         };
         result.cells.push_back({cell, carrier, before, now, is_away(inherited), is_away(now)});
     }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <numbers>
 #include <set>
@@ -17,6 +16,7 @@
 #include "incise/topology/geometry.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
+#include "support/plane_section.h"
 
 namespace incise::app {
 namespace {
@@ -68,28 +68,11 @@ PlaneCut random_plane(const Eigen::AlignedBox3d& box, test::Random& random) {
 
 /// Of the part of a plane that is inside a body of tetrahedra, m2.
 double area_in(const Mesh& mesh, const PlaneCut& plane) {
-    const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
     double sum = 0.0;
     for (const ElementId e : mesh.elements()) {
-        std::vector<Vec3> section;
-        const auto corners = mesh.corners(e);
-        for (std::size_t p = 0; p < 4; ++p)
-            for (std::size_t q = 0; q < p; ++q) {
-                const Vec3 &x = mesh.rest_position(corners[p]), &y = mesh.rest_position(corners[q]);
-                const double a = plane.normal.dot(x - plane.point);
-                const double b = plane.normal.dot(y - plane.point);
-                if (a * b < 0.0) section.push_back(x + a / (a - b) * (y - x));
-            }
-        if (section.empty()) continue;
-        Vec3 middle = Vec3::Zero();
-        for (const Vec3& x : section) middle += x / static_cast<double>(section.size());
-        std::ranges::sort(section, {}, [&](const Vec3& x) {
-            return std::atan2(v.dot(x - middle), u.dot(x - middle));
-        });
-        Vec3 area = Vec3::Zero();
-        for (std::size_t i = 2; i < section.size(); ++i)
-            area += 0.5 * (section[i - 1] - section[0]).cross(section[i] - section[0]);
-        sum += area.norm();
+        std::array<Vec3, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.rest_position(mesh.corners(e)[k]);
+        sum += test::polygon_area(test::plane_section(corners, plane.point, plane.normal));
     }
     return sum;
 }

@@ -13,6 +13,7 @@
 #include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
+#include "support/plane_section.h"
 
 namespace incise::cutting {
 namespace {
@@ -112,7 +113,7 @@ struct StoppingBlade {
                 }
                 polygon = rest;
             }
-        return area_of(polygon);
+        return test::polygon_area(polygon);
     }
 
     /// Of its plane in a tetrahedron: as far as it gets, and all of it, m2.
@@ -120,32 +121,15 @@ struct StoppingBlade {
         double behind, whole;
     };
     Section section_of(const std::array<Vec3, 4>& corners) const {
-        Polyline all, behind;
-        for (std::size_t p = 0; p < 4; ++p)
-            for (std::size_t q = 0; q < p; ++q) {
-                const double a = normal.dot(corners[p] - stop), b = normal.dot(corners[q] - stop);
-                if (a * b < 0.0)
-                    all.push_back(corners[p] + a / (a - b) * (corners[q] - corners[p]));
-            }
-        Vec3 middle = Vec3::Zero();
-        for (const Vec3& x : all) middle += x / static_cast<double>(all.size());
-        std::ranges::sort(all, {}, [&](const Vec3& x) {
-            return std::atan2(along.dot(x - middle), ahead.dot(x - middle));
-        });
+        const Polyline all = test::plane_section(corners, stop, normal);
+        Polyline behind;
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Vec3 &x = all[i], &y = all[(i + 1) % all.size()];
             const double a = ahead.dot(x - stop), b = ahead.dot(y - stop);
             if (a <= 0.0) behind.push_back(x);
             if (a * b < 0.0) behind.push_back(x + a / (a - b) * (y - x));
         }
-        return {area_of(behind), area_of(all)};
-    }
-
-    static double area_of(const Polyline& polygon) {
-        Vec3 area = Vec3::Zero();
-        for (std::size_t i = 2; i < polygon.size(); ++i)
-            area += 0.5 * (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
-        return area.norm();
+        return {test::polygon_area(behind), test::polygon_area(all)};
     }
 };
 
