@@ -165,6 +165,7 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
                              "region array");
         collector.keep(*form, first_cell + static_cast<std::int64_t>(c),
                        std::span(nodes).first(size), *region, mesh);
+        if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }
