@@ -152,6 +152,7 @@ std::string cut_tetrahedra(std::string_view from = "", std::string_view to = "")
 TEST(VtuReader, TakesTheCarriersOfACutBody) {
     const auto mesh = read_bytes("a.vtu", cut_tetrahedra()).mesh;
     EXPECT_THAT(mesh.carriers.of_cell, ElementsAre(0, -1));
+    EXPECT_TRUE(mesh.points_may_coincide);
     EXPECT_THAT(mesh.carriers.corners,
                 ElementsAre(std::array<Vec3, 4>{Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0),
                                                 Vec3(0, 0, 1)}));
