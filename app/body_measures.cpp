@@ -58,23 +58,25 @@ double step_length_of(const FragmentMesh& fragments) {
     return least;
 }
 
-void measure_fragments(const FragmentMesh& fragments, const Mesh& mesh, BodyMeasures& body) {
-    body.fragments = fragments.num_elements();
+}  // namespace
+
+FragmentCounts counts_of(const Mesh& mesh, const FragmentMesh& fragments) {
+    FragmentCounts counts;
+    counts.fragments = fragments.num_elements();
     for (const ElementId e : fragments.elements())
-        body.smallest_share = std::min(body.smallest_share, fragments.share(e));
+        counts.smallest_share = std::min(counts.smallest_share, fragments.share(e));
     std::vector<bool> has_material(fragments.node_capacity(), false);
     for (const NodeId n : mesh.nodes())
         if (const topology::Embedding at = fragments.embedding(mesh, n); at.count == 1)
             has_material[at.nodes[0].index()] = true;
-    for (const NodeId n : fragments.nodes()) body.ghost_nodes += has_material[n.index()] ? 0 : 1;
-    if (is_all_tetrahedra(mesh)) body.step_length = step_length_of(fragments);
+    for (const NodeId n : fragments.nodes()) counts.ghost_nodes += has_material[n.index()] ? 0 : 1;
+    return counts;
 }
-
-}  // namespace
 
 BodyMeasures measures_of(const Mesh& mesh, const FragmentMesh& fragments) {
     const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
     BodyMeasures body;
+    static_cast<FragmentCounts&>(body) = counts_of(mesh, fragments);
     body.elements = mesh.num_elements();
     body.nodes = mesh.num_nodes();
     body.volume = volume_of(mesh);
@@ -83,7 +85,7 @@ BodyMeasures measures_of(const Mesh& mesh, const FragmentMesh& fragments) {
     body.mean_edge_length = metrics.mean_edge_length;
     body.box_min = metrics.box_min;
     body.box_max = metrics.box_max;
-    measure_fragments(fragments, mesh, body);
+    if (is_all_tetrahedra(mesh)) body.step_length = step_length_of(fragments);
     return body;
 }
 

@@ -18,8 +18,15 @@ struct Piece {
     std::size_t elements = 0;
 };
 
+/// Counts of the elements of the physics: topology::FragmentMesh.
+struct FragmentCounts {
+    std::size_t fragments = 0;
+    std::size_t ghost_nodes = 0;  ///< nodes of fragments without material at them
+    double smallest_share = 1.0;  ///< of a fragment in the volume of its carrier
+};
+
 /// Size and quality of a body at rest.
-struct BodyMeasures {
+struct BodyMeasures : FragmentCounts {
     std::size_t elements = 0, nodes = 0;
     double volume = 0.0;                                  ///< m3
     double min_dihedral_angle = 0.0;                      ///< radians
@@ -28,10 +35,11 @@ struct BodyMeasures {
     /// The stable step of the fragments in a body of one material, times the speed of waves, m. Not
     /// set if there are elements other than tetrahedra.
     std::optional<double> step_length;
-    std::size_t fragments = 0;    ///< elements of the physics: topology::FragmentMesh
-    std::size_t ghost_nodes = 0;  ///< nodes of fragments without material at them
-    double smallest_share = 1.0;  ///< of a fragment in the volume of its carrier
 };
+
+/// Returns the counts of the fragments of a mesh. Cost: O(n).
+/// @param fragments  of the mesh, at its epoch
+FragmentCounts counts_of(const topology::Mesh& mesh, const topology::FragmentMesh& fragments);
 
 /// Returns the measures of a body at rest.
 /// Throws InputError for a body whose quality cannot be measured: see topology::measure().

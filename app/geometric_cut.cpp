@@ -16,6 +16,7 @@
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/cutting/tools/separator.h"
+#include "incise/topology/carriers.h"
 #include "incise/topology/fragment_mesh.h"
 #include "incise/topology/geometry.h"
 
@@ -456,6 +457,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
     }
     report.after = measures_after(mesh, cutter.fragments());
     report.pieces = pieces_of(mesh);
+    report.carriers = topology::carriers_of(mesh, cutter.fragments());
     return report;
 }
 

@@ -36,6 +36,7 @@ int convert(const ConvertOptions& options) {
     if (const auto warning = topology::coincidence_warning(
             file.mesh, scenario::weld_advice()))  // gaps, after welding
         print_warning(prefix + *warning);
+    if (const auto loss = io::loss_in_format(options.out, file.mesh)) print_warning(*loss);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "
               << file.mesh.num_cells() << " cells" << report << '\n';

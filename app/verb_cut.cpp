@@ -109,6 +109,8 @@ Result carry_out(const CutOptions& options) {
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})
             for (const auto& warning : *warnings) job.warnings.push_back(prefixed(prefix, warning));
         auto cut = topology::to_mesh_data(built.mesh, built.mesh.rest_positions());
+        cut.carriers = std::move(report.carriers);
+        if (const auto loss = io::loss_in_format(options.out, cut)) job.warnings.push_back(*loss);
         cut.points_may_coincide =
             file.mesh.points_may_coincide || report.total.nodes_duplicated > 0;
         return {std::move(cut), mode, job.snap, std::move(report), std::move(job.warnings)};

@@ -4,7 +4,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
+#include "incise/app/body_measures.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
@@ -21,6 +23,7 @@ struct MeshInfo {
     std::size_t num_points = 0;
     int num_components = 0;
     topology::MeshMetrics metrics;
+    std::optional<FragmentCounts> fragments;  ///< of a body that was cut
     std::vector<std::string> warnings;
 
     double min_dihedral_degrees() const {
@@ -38,6 +41,8 @@ MeshInfo look_at(const InfoOptions& options) {
         info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
+        if (!file.mesh.carriers.is_empty())
+            info.fragments = counts_of(built.mesh, topology::FragmentMesh(built.mesh));
     } catch (const InputError& error) {
         throw InputError(prefixed(options.mesh.string() + ": ", error.what()));
     }
@@ -63,6 +68,11 @@ nlohmann::ordered_json as_json(const MeshInfo& info) {
     json["min_dihedral_deg"] = info.min_dihedral_degrees();
     json["edge_length"] = {
         {"min", m.min_edge_length}, {"mean", m.mean_edge_length}, {"max", m.max_edge_length}};
+    if (info.fragments) {
+        json["fragments"] = info.fragments->fragments;
+        json["ghost_nodes"] = info.fragments->ghost_nodes;
+        json["smallest_share"] = info.fragments->smallest_share;
+    }
     json["warnings"] = info.warnings;
     return json;
 }
@@ -82,6 +92,10 @@ void print_text(const MeshInfo& info) {
     std::printf("surface area     %.6g\n", m.surface_area);
     std::printf("edge length      %.4g to %.4g, mean %.4g\n", m.min_edge_length, m.max_edge_length,
                 m.mean_edge_length);
+    if (info.fragments)
+        std::printf("fragments        %zu, ghost nodes %zu, smallest share %.4g\n",
+                    info.fragments->fragments, info.fragments->ghost_nodes,
+                    info.fragments->smallest_share);
     std::printf("least altitude   %.4g\n", m.min_altitude);
     std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
 }

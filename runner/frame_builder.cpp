@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "incise/topology/carriers.h"
+
 namespace incise::runner {
 
 namespace {
@@ -48,6 +50,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     std::vector<NodeId> nodes;
     const auto positions = model.mesh_positions();
     frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &elements_);
+    frame_.mesh.carriers = topology::carriers_of(mesh, model.fragments());
     frame_.time = time;
 
     auto& points = frame_.point_fields;

@@ -18,7 +18,7 @@ namespace incise::runner {
 
 namespace {
 
-/// Returns a checksum of mesh and fibres at the start, and of the files of surfaces.
+/// Returns a checksum of mesh, carriers and fibres at the start, and of the files of surfaces.
 std::uint64_t fingerprint_of(const physics::Model& model,
                              const std::vector<scenario::ToolSpec>& tools) {
     const topology::Mesh& mesh = model.mesh();
@@ -30,6 +30,9 @@ std::uint64_t fingerprint_of(const physics::Model& model,
         for (const NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
         for (int f = 0; f < mesh.num_faces(e); ++f) ar(mesh.neighbor({e, f}).element);
     }
+    for (const std::int64_t row : mesh.source_carriers().of_cell) ar(row);
+    for (const auto& corners : mesh.source_carriers().corners)
+        for (const Vec3& x : corners) ar(x);
     for (const Vec3& fibre : model.fibres()) ar(fibre);
     for (const scenario::ToolSpec& tool : tools)
         if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))

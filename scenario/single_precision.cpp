@@ -11,10 +11,14 @@ namespace incise::scenario {
 
 namespace {
 
-/// Returns the least altitude of a tetrahedron divided by its longest edge.
+/// Returns the least altitude of a tetrahedron, or of its carrier, divided by the longest edge.
 double thinness(const topology::Mesh& mesh, ElementId e) {
+    const topology::Carriers& carriers = mesh.source_carriers();
     std::array<Vec3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
+    if (carriers.is_empty() || carriers.of_cell[e.index()] == topology::Carriers::whole)
+        for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
+    else
+        x = carriers.corners[static_cast<std::size_t>(carriers.of_cell[e.index()])];
     double longest = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < k; ++l) longest = std::max(longest, (x[k] - x[l]).norm());

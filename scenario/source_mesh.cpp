@@ -51,7 +51,7 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         if (spec.weld == true)
             file.warnings.push_back(topology::weld_report(topology::weld(file.mesh)));
         file.mesh.points_may_coincide = file.mesh.points_may_coincide || spec.weld == false;
-        for (Vec3& x : file.mesh.points) x *= scale;
+        file.mesh.scale(scale);
         return file;
     }
     const auto& box = std::get<BoxMeshSpec>(spec.source);

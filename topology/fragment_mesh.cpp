@@ -35,27 +35,65 @@ std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions
 
 FragmentMesh::FragmentMesh(const Mesh& material, double light_share)
     : FragmentMesh(light_share, FollowedEpoch(material)) {
-    rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
-    origins_ = lowest_at_same_position(rest_positions_);
-    num_origins_ = origins_.size();
+    const Carriers& source = material.source_carriers();
+    const std::vector<NodeId> corners_of_source = add_nodes(material);
+    std::vector<ElementId> carrier_of_row(source.corners.size());
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
         const ElementId e(i);
-        const auto corners = material.corners(e);
+        ElementId carrier = e;
+        auto corners = material.corners(e);
+        if (i < source.of_cell.size() && source.of_cell[i] != Carriers::whole) {
+            const auto row = static_cast<std::size_t>(source.of_cell[i]);
+            if (!carrier_of_row[row].is_valid()) carrier_of_row[row] = e;
+            carrier = carrier_of_row[row];
+            if (carrier == e) corners = std::span(corners_of_source).subspan(4 * row, 4);
+            if (material.is_alive(e)) cells_of_carrier_[carrier].push_back(e);
+        }
         kinds_.push_back(material.kind(e));
         regions_.push_back(material.region(e));
         for (const NodeId n : corners) origins_of_carrier_.push_back(origins_[n.index()]);
         corners_.insert(corners_.end(), corners.begin(), corners.end());
         origin_begin_.push_back(origins_of_carrier_.size());
         carriers_.push_back(e);
-        is_alive_.push_back(material.is_alive(e) ? 1 : 0);
+        is_alive_.push_back(material.is_alive(e) && carrier == e ? 1 : 0);
         shares_.push_back(1.0);
-        carrier_of_cell_.push_back(e);
-        fragment_of_cell_.push_back(e);
+        carrier_of_cell_.push_back(carrier);
+        fragment_of_cell_.push_back(carrier);
     }
     corner_begin_ = origin_begin_;
-    for (std::size_t i = 0; i < material.node_capacity(); ++i)
-        is_node_alive_.push_back(material.is_alive(NodeId(i)) ? 1 : 0);
+    is_node_alive_.assign(rest_positions_.size(), 0);
+    for (std::size_t i = 0; i < is_alive_.size(); ++i)
+        if (is_alive_[i] != 0)
+            for (const NodeId n : corners(ElementId(i))) is_node_alive_[n.index()] = 1;
+    std::vector<ElementId> divided;
+    for (const ElementId carrier : carrier_of_row)
+        if (carrier.is_valid()) divided.push_back(carrier);
+    for (const ElementId carrier : divided) drop_if_trivial(cells_of_carrier_, carrier);
+    cells_of_fragment_ = cells_of_carrier_;
     complete();
+    if (!divided.empty()) FragmentUpdate::divide(*this, material, std::move(divided));
+}
+
+/// Adds the nodes of the material, and one for each position at which only carriers of the source
+/// have a corner. Returns the node of each corner of these carriers, in the order of their rows.
+std::vector<NodeId> FragmentMesh::add_nodes(const Mesh& material) {
+    rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
+    const std::size_t num_nodes = rest_positions_.size();
+    std::vector<Vec3> positions = rest_positions_;
+    for (const std::array<Vec3, 4>& corners : material.source_carriers().corners)
+        positions.insert(positions.end(), corners.begin(), corners.end());
+    std::vector<NodeId> nodes = lowest_at_same_position(positions);
+    origins_.assign(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(num_nodes));
+    for (std::size_t i = num_nodes; i < nodes.size(); ++i) {
+        const bool is_new = nodes[i] == NodeId(i);
+        nodes[i] = is_new ? NodeId(rest_positions_.size()) : nodes[nodes[i].index()];
+        if (!is_new) continue;
+        rest_positions_.push_back(positions[i]);
+        origins_.push_back(nodes[i]);
+    }
+    num_origins_ = origins_.size();
+    nodes.erase(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(num_nodes));
+    return nodes;
 }
 
 void FragmentMesh::complete() {

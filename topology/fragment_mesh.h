@@ -81,8 +81,10 @@ struct Embedding {
 /// Ids of fragments and nodes are numbers of their own: those of the material after cuts differ.
 class FragmentMesh {
   public:
-    /// Takes every living element of `material` as a carrier. Cost: O(n).
-    /// @param material     the body before its first cut
+    /// Takes every living element of `material` as a carrier, unless it is a part of one of
+    /// Mesh::source_carriers(): the fragments of a body that was read are those of the body that
+    /// was written. Their ids, and those of their nodes, can be others. Cost: O(n log n).
+    /// @param material     the body as it was built, before its first edit
     /// @param light_share  see default_light_share; with 0 no fragment is light
     explicit FragmentMesh(const Mesh& material, double light_share = default_light_share);
 
@@ -128,15 +130,17 @@ class FragmentMesh {
     double volume(ElementId e) const { return share(e) * carrier_volume(e); }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
-    /// Returns the node before any cut that the node is, or of which it is a copy: an id of the
-    /// material, too. Of several ones with the same rest position, it is the lowest.
+    /// Returns the node before any cut that the node is, or of which it is a copy. Of several ones
+    /// with the same rest position, it is the lowest. It is an id of the material, too, unless the
+    /// body was built with carriers and has no material at this position.
     NodeId origin(NodeId n) const { return origins_[n.index()]; }
     /// Writes the fragments with the node as a corner to `elements`, in ascending order.
     void star(NodeId n, std::vector<ElementId>& elements) const;
     /// Returns the lowest fragment with the node as a corner; invalid for a dead node.
     ElementId incident_element(NodeId n) const;
 
-    /// Returns the carrier of a fragment: the element that the body had before any cut.
+    /// Returns the carrier of a fragment: the element that the body had before any cut. A carrier
+    /// of the source has the id of its lowest cell.
     ElementId carrier(ElementId e) const { return carriers_[e.index()]; }
     /// Returns the carrier of a cell of the material.
     ElementId carrier_of_cell(ElementId cell) const { return carrier_of_cell_[cell.index()]; }
@@ -172,11 +176,14 @@ class FragmentMesh {
 
     FragmentMesh(double light_share, FollowedEpoch epoch)
         : light_share_(light_share), epoch_(epoch) {}
+    std::vector<NodeId> add_nodes(const Mesh& material);
     /// Computes what follows from the lists of carriers and nodes.
     void complete();
-    /// True if the carrier was dead before any cut.
+    /// True if the element was dead before any cut, or was only a part of another carrier: then it
+    /// is no carrier, though it has the id of one.
     bool was_never_alive(ElementId carrier) const {
-        return !is_alive(carrier) && fragment_of_cell_[carrier.index()] == carrier;
+        return carrier_of_cell_[carrier.index()] != carrier ||
+               (!is_alive(carrier) && fragment_of_cell_[carrier.index()] == carrier);
     }
 
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);

@@ -28,13 +28,31 @@ void insert_sorted(std::vector<T>& values, const T& value) {
 }  // namespace
 
 FragmentChanges FragmentUpdate::run() {
+    begin();
+    follow_cells();
+    find_fragments();
+    return differences();
+}
+
+void FragmentUpdate::divide(FragmentMesh& fragments, const Mesh& material,
+                            std::vector<ElementId> carriers) {
+    const ChangeSet no_edit;
+    FragmentUpdate update(fragments, material, no_edit);
+    update.begin();
+    make_sorted_set(carriers);
+    update.touched_carriers_ = std::move(carriers);
+    update.find_fragments();
+}
+
+void FragmentUpdate::begin() {
     node_capacity_before_ = fragments_.node_capacity();
     element_capacity_before_ = fragments_.element_capacity();
-    follow_cells();
+}
+
+void FragmentUpdate::find_fragments() {
     open_carriers_ = parts_.join_light(touched_carriers_);
     assign_fragments();
     assign_nodes();
-    return differences();
 }
 
 /// Takes the cells that came and went, and notes the carriers that the edit touches.

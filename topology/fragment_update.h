@@ -24,6 +24,10 @@ class FragmentUpdate {
         : fragments_(fragments), material_(material), changes_(changes) {}
 
     FragmentChanges run();
+    /// Finds the fragments of a body that is built, in which each carrier is still one fragment.
+    /// @param carriers  those that consist of several cells, or are only a part of their volume
+    static void divide(FragmentMesh& fragments, const Mesh& material,
+                       std::vector<ElementId> carriers);
 
   private:
     using Part = FragmentParts::Part;
@@ -34,7 +38,9 @@ class FragmentUpdate {
         NodeId before;                     // the node that they had there; invalid if none
         std::vector<ElementId> fragments;  // the elements among them, in ascending order
     };
+    void begin();
     void follow_cells();
+    void find_fragments();
     bool is_added(ElementId cell) const;
 
     void assign_fragments();

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "incise/topology/carriers.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_repair.h"
@@ -320,6 +321,9 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
               [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
     errors.finish();
     warnings.finish();
+    if (result.errors.empty())
+        if (std::string fault = fault_of_carriers(data, result.shared_faces); !fault.empty())
+            result.errors.push_back(std::move(fault));
     if (result.errors.empty())
         if (auto warning = coincidence_warning(data, advice))
             result.warnings.push_back(std::move(*warning));

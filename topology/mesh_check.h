@@ -44,6 +44,7 @@ struct MeshCheck {
 /// - a corner of a hexahedron, wedge or pyramid that is turned inside out
 /// - duplicate cells, and faces that more than two cells share
 /// - neighbours on the same side of their face, or twisted against each other
+/// - carriers that cannot be those of the cells: see fault_of_carriers()
 ///
 /// There are warnings about points that no cell uses, and about points at one position that are not
 /// joined (see mesh_repair.h). Messages name cells and points by their numbers from 0 and by their

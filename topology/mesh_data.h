@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,6 +13,20 @@
 
 namespace incise::topology {
 
+/// The carriers of a body that was cut before: the tetrahedra as they were before any cut, of those
+/// cells that are only parts of one. See FragmentMesh.
+struct Carriers {
+    /// The row of a cell that is whole: it is its own carrier.
+    static constexpr std::int64_t whole = -1;
+    /// By cell, the row of its carrier in `corners`, or `whole`. Empty if all cells are whole.
+    std::vector<std::int64_t> of_cell;
+    /// By row, the rest positions of the four corners, m, in the order of cell_kind.h. Two carriers
+    /// share a corner if its positions are equal. The same holds for a carrier and a whole cell.
+    std::vector<std::array<Vec3, 4>> corners;
+    bool is_empty() const { return of_cell.empty(); }
+    bool operator==(const Carriers&) const = default;
+};
+
 /// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
 /// Mesh::build checks them.
 struct MeshData {
@@ -21,6 +36,7 @@ struct MeshData {
         0};  ///< number of cells + 1; cell c has corners [offsets[c], offsets[c+1])
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
+    Carriers carriers;                  ///< empty for a body that was never cut
     /// For messages: the number of each cell and of each point in the source. Empty where these are
     /// the numbers used here.
     std::vector<std::int64_t> source_cells, source_points;
@@ -43,6 +59,13 @@ struct MeshData {
         corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
         offsets.push_back(corners.size());
         regions.push_back(region);
+    }
+
+    /// Multiplies all lengths, of points and of carriers.
+    void scale(double factor) {
+        for (Vec3& x : points) x *= factor;
+        for (std::array<Vec3, 4>& corners_of_carrier : carriers.corners)
+            for (Vec3& x : corners_of_carrier) x *= factor;
     }
 
     /// True if point `p` was welded to another one.

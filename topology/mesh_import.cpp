@@ -59,11 +59,18 @@ class MeshImport {
         add_rows();
         divide_pinched_nodes();
         build_map();
+        mesh_.source_carriers_ = data_.carriers;
         return {std::move(mesh_), std::move(check_.warnings)};
     }
 
   private:
-    void order_elements() {
+    /// Returns the cells in the order of their ids.
+    std::vector<std::size_t> order_of_cells() const {
+        if (has_carriers()) {
+            std::vector<std::size_t> order(data_.num_cells());
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            return order;
+        }
         std::vector<Vec3> centres(data_.num_cells());
         std::vector<Vec3> x;
         for (std::size_t c = 0; c < data_.num_cells(); ++c) {
@@ -72,16 +79,20 @@ class MeshImport {
                 x.push_back(data_.points[static_cast<std::size_t>(p)]);
             centres[c] = centre(x);
         }
-        cell_of_element_ = hilbert_order(centres);
+        return hilbert_order(centres);
+    }
+
+    void order_elements() {
+        cell_of_element_ = order_of_cells();
         element_of_cell_.resize(cell_of_element_.size());
         for (std::size_t e = 0; e < cell_of_element_.size(); ++e)
             element_of_cell_[cell_of_element_[e]] = ElementId(e);
         mesh_.element_labels_.assign(cell_of_element_.begin(), cell_of_element_.end());
     }
 
-    // Nodes are numbered in the order in which the elements first use them. Unused points become
-    // dead nodes at the end. Every label is then the number of a point, and later nodes have higher
-    // ids.
+    // Nodes are numbered in the order in which the elements first use them, or in that of the
+    // points if there are carriers. Unused points become dead nodes at the end. Every label is then
+    // the number of a point, and later nodes have higher ids.
     void order_nodes() {
         mesh_.label_nodes_.resize(data_.points.size());
         const auto number = [&](std::size_t point) {
@@ -89,10 +100,13 @@ class MeshImport {
             mesh_.node_labels_.push_back(static_cast<std::int64_t>(point));
             mesh_.rest_positions_.push_back(data_.points[point]);
         };
+        std::vector<std::int64_t> used;
         for (const std::size_t c : cell_of_element_)
-            for (const std::int64_t p : data_.cell(c))
-                if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
-                    number(static_cast<std::size_t>(p));
+            used.insert(used.end(), data_.cell(c).begin(), data_.cell(c).end());
+        if (has_carriers()) std::sort(used.begin(), used.end());
+        for (const std::int64_t p : used)
+            if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
+                number(static_cast<std::size_t>(p));
         mesh_.num_nodes_ = mesh_.node_labels_.size();
         for (std::size_t p = 0; p < data_.points.size(); ++p)
             if (!mesh_.label_nodes_[p].is_valid()) number(p);
@@ -181,6 +195,8 @@ class MeshImport {
                                   static_cast<std::size_t>(f.face)] = 1;
         }
     }
+
+    bool has_carriers() const { return !data_.carriers.is_empty(); }
 
     static constexpr std::size_t max_pinches_listed = 5;
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <span>
 #include <sstream>
@@ -185,6 +186,23 @@ std::optional<std::string> coincidence_warning(const MeshData& data, const WeldA
     return text.str();
 }
 
+namespace {
+
+/// Moves the corners of carriers with the points at the same positions that are joined to others.
+void move_corners_of_carriers(MeshData& data, const std::vector<std::int64_t>& lowest) {
+    const auto key = [](const Vec3& x) { return std::array{x.x(), x.y(), x.z()}; };
+    std::map<std::array<double, 3>, Vec3> moved;
+    if (data.carriers.is_empty()) return;
+    for (std::size_t p = 0; p < lowest.size(); ++p)
+        if (const Vec3& to = position_of(data, lowest[p]); to != data.points[p])
+            moved.emplace(key(data.points[p]), to);
+    for (std::array<Vec3, 4>& corners : data.carriers.corners)
+        for (Vec3& x : corners)
+            if (const auto it = moved.find(key(x)); it != moved.end()) x = it->second;
+}
+
+}  // namespace
+
 // Welding is repeated, since it can change the shortest edge and the points that others are joined
 // to. At the end, a further call finds no points at one position.
 std::size_t weld(MeshData& data) {
@@ -194,6 +212,7 @@ std::size_t weld(MeshData& data) {
         const std::size_t num_found = doubles(lowest).size();
         if (num_found == 0) return num_joined;
         num_joined += num_found;
+        move_corners_of_carriers(data, lowest);
         for (std::int64_t& corner : data.corners) corner = lowest[static_cast<std::size_t>(corner)];
         if (data.welded_to.empty()) {
             data.welded_to = lowest;
@@ -246,6 +265,12 @@ std::size_t turn_inverted_cells(MeshData& data) {
         const auto& mirrored = traits(data.kinds[c]).mirrored;
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
             data.corners[data.offsets[c] + k] = old[static_cast<std::size_t>(mirrored[k])];
+    }
+    const auto& mirrored = traits(CellKind::tetrahedron).mirrored;
+    for (std::array<Vec3, 4>& corners : data.carriers.corners) {
+        const std::array<Vec3, 4> before = corners;
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            corners[k] = before[static_cast<std::size_t>(mirrored[k])];
     }
     return num_inverted;
 }

@@ -29,7 +29,8 @@ std::optional<std::string> coincidence_warning(const MeshData& data, const WeldA
 
 /// Joins points at one position: cells then use the one with the lowest number. Returns how many
 /// points were joined to a lower one. No point is removed or renumbered; MeshData::welded_to names
-/// the point that replaced each point. Welding can make cells invalid: use check() afterwards.
+/// the point that replaced each point. Corners of carriers move with the points at them. Welding
+/// can make cells invalid: use check() afterwards.
 /// @pre  corners are valid point numbers, and all coordinates are finite
 std::size_t weld(MeshData& data);
 
@@ -39,9 +40,9 @@ std::string weld_report(std::size_t num_joined);
 /// Removes the points that were welded to others. Later points get lower numbers.
 void drop_welded_points(MeshData& data);
 
-/// Reverses the corner order of all cells if every cell has negative volume. Cells whose volume is
-/// zero to rounding are ignored in this test. Returns how many cells had negative volume, or zero
-/// if no cell was reversed.
+/// Reverses the corner order of all cells, and of their carriers, if every cell has negative
+/// volume. Cells whose volume is zero to rounding are ignored in this test. Returns how many cells
+/// had negative volume, or zero if no cell was reversed.
 /// @pre  corners are valid point numbers, and all coordinates are finite
 std::size_t turn_inverted_cells(MeshData& data);
 

@@ -53,12 +53,13 @@ struct MeshFile {
 /// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h).
 ///
 /// Vertices, lines and surface cells are left out with a warning. A point array `rest_position` of
-/// a VTK file replaces its points. Regions are the cell array of the options, the physical groups
+/// a VTK file replaces its points. The arrays `carrier` and `carrier_corners` of a VTU file become
+/// MeshData::carriers. Regions are the cell array of the options, the physical groups
 /// of Gmsh, the references of MEDIT, the first attribute of TetGen, or the element sets of Abaqus.
 ///
 /// If all cells have negative volume, the order of their corners is reversed, with a warning.
-/// Points may coincide (MeshData::points_may_coincide) in frames of runs and in meshes that
-/// `incise cut` has written.
+/// Points may coincide (MeshData::points_may_coincide) in frames of runs, with carriers, and in
+/// meshes that `incise cut` has written.
 ///
 /// Every count, offset and index is checked before it is used. Memory is proportional to the size
 /// of the file, or of the unpacked blocks of a compressed file. The coordinates of the cells are

@@ -18,6 +18,7 @@ namespace {
 struct WrittenFormat {
     const char* suffix;
     std::string (*text)(const topology::MeshData&);
+    bool has_carriers = false;
 };
 
 std::string plain_vtu_text(const topology::MeshData& mesh) {
@@ -34,7 +35,7 @@ constexpr std::array<WrittenFormat, 5> written_formats = {{
     {".mesh", medit_text},
     {".msh", gmsh_text},
     {".vtk", legacy_vtk_text},
-    {".vtu", plain_vtu_text},
+    {".vtu", plain_vtu_text, true},
 }};
 
 const WrittenFormat& written_format_of(const std::filesystem::path& path) {
@@ -74,6 +75,14 @@ void append_point(std::string& text, const Vec3& point, char separator) {
 
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
     write_file(path, written_format_of(path).text(mesh));
+}
+
+std::optional<std::string> loss_in_format(const std::filesystem::path& path,
+                                          const topology::MeshData& mesh) {
+    if (mesh.carriers.is_empty() || written_format_of(path).has_carriers) return std::nullopt;
+    return path.string() +
+           ": the format has no place for the carriers of a body that was cut: each part of an "
+           "element will be read as an element of its own; write .vtu to keep them";
 }
 
 void check_writable(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ namespace incise::io {
 /// Throws InputError if the format is not known. Throws OutputError if the file cannot be written;
 /// its contents then do not change.
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);
+
+/// Returns a warning of what the format of the path cannot contain, and write_mesh() leaves out:
+/// the carriers of a cut body, unless the format is .vtu.
+/// @pre  check_writable() has passed
+std::optional<std::string> loss_in_format(const std::filesystem::path& path,
+                                          const topology::MeshData& mesh);
 
 /// Checks in advance whether write_mesh() can write the file. Throws InputError for an unknown
 /// suffix, and OutputError as require_writable() does.

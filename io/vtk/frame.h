@@ -29,11 +29,11 @@ struct Field {
 };
 
 /// A mesh with its fields. The regions of the mesh are written as the cell array "region" and need
-/// no field.
+/// no field. Carriers are written as the cell array "carrier" and the field data "carrier_corners".
 struct Frame {
     topology::MeshData mesh;          ///< its points are the current positions
     std::vector<Field> point_fields;  ///< with different names
-    std::vector<Field> cell_fields;   ///< with different names, none of which is "region"
+    std::vector<Field> cell_fields;   ///< with different names: not "region", not "carrier"
     std::optional<double> time;       ///< s
     std::string active_vectors;       ///< name of the point field for warping in viewers, or empty
 };

@@ -120,7 +120,8 @@ void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& 
 void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& file,
                   CellCollector& collector) {
     topology::MeshData& mesh = file.mesh;
-    mesh.points_may_coincide = mesh.points_may_coincide || piece.is_frame;
+    mesh.points_may_coincide =
+        mesh.points_may_coincide || piece.is_frame || !piece.carriers.empty();
     const auto first_point = static_cast<std::int64_t>(mesh.points.size());
     const auto num_points = static_cast<std::int64_t>(piece.coordinates.size() / 3);
     mesh.points.reserve(mesh.points.size() + piece.coordinates.size() / 3);
@@ -165,6 +166,7 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
                              "region array");
         collector.keep(*form, first_cell + static_cast<std::int64_t>(c),
                        std::span(nodes).first(size), *region, mesh);
+        if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }

@@ -14,6 +14,11 @@
 
 namespace incise::io {
 
+/// The arrays of .vtu files that contain topology::Carriers: a cell array of one whole number, and
+/// an array of the field data with four positions a tuple.
+inline constexpr const char* carrier_array = "carrier";
+inline constexpr const char* carrier_corners_array = "carrier_corners";
+
 /// The arrays of one piece of an unstructured grid. Their lengths are consistent. Their contents
 /// are not checked.
 struct VtkPiece {
@@ -22,6 +27,7 @@ struct VtkPiece {
     std::vector<std::int64_t> offsets;                   ///< #cells + 1, from 0
     std::vector<std::int64_t> connectivity;              ///< points of the cells
     std::vector<double> regions;                         ///< one a cell; if empty, all are 0
+    std::vector<std::int64_t> carriers;                  ///< one a cell; if empty, all are whole
     std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
     /// True for a frame of a run, in which the mesh may be cut. Its points have the arrays
     /// rest_position and node_id.

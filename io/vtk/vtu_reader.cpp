@@ -74,6 +74,9 @@ class VtuReader {
                              "; only UnstructuredGrid holds volume cells");
         }
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
+        const auto corners =
+            named(root.child("UnstructuredGrid").child("FieldData"), carrier_corners_array);
+        if (corners) read_carrier_corners(arrays, corners);
         const auto pieces = root.child("UnstructuredGrid").children("Piece");
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());
         std::size_t index = 0;
@@ -81,6 +84,7 @@ class VtuReader {
             auto location = file_.name();
             if (num_pieces > 1) location += ": piece " + std::to_string(index++);
             read_piece(arrays, piece, location);
+            require_both(arrays, piece, corners);
         }
         if (num_pieces > 1)
             result_.warnings.push_back(std::to_string(num_pieces) +
@@ -138,6 +142,35 @@ class VtuReader {
         return encoding;
     }
 
+    void read_carrier_corners(const VtkXmlArrays& arrays, pugi::xml_node array) {
+        constexpr std::size_t size = 12;  // four positions
+        if (arrays.num_components(array) != size)
+            arrays.fail(array, "carriers need 12 components, four positions; this array has " +
+                                   std::to_string(arrays.num_components(array)));
+        const auto num_rows = arrays.count_attribute(array, "NumberOfTuples");
+        const auto numbers = arrays.reals(array, size * num_rows);
+        for (std::size_t i = 0; i < numbers.size(); i += size) {
+            auto& row = result_.mesh.carriers.corners.emplace_back();
+            for (std::size_t k = 0; k < 4; ++k) row[k] = Vec3(numbers.data() + i + 3 * k);
+        }
+    }
+
+    /// Throws InputError if a piece has carriers and the file has no corners of them, or the other
+    /// way round.
+    static void require_both(const VtkXmlArrays& arrays, pugi::xml_node piece,
+                             pugi::xml_node corners) {
+        const auto of_cell = named(piece.child("CellData"), carrier_array);
+        constexpr const char* remedy =
+            "; write both, or leave out both to take each cell as an element of its own";
+        if (of_cell && !corners)
+            arrays.fail(of_cell, std::string("the field data has no array ") +
+                                     in_quotes(carrier_corners_array) + " with the corners" +
+                                     remedy);
+        if (corners && !of_cell && arrays.count_attribute(piece, "NumberOfCells") > 0)
+            arrays.fail(corners, std::string("the cell data has no array ") +
+                                     in_quotes(carrier_array) + " that names its rows" + remedy);
+    }
+
     void read_piece(const VtkXmlArrays& arrays, pugi::xml_node node, const std::string& location) {
         const auto num_points = arrays.count_attribute(node, "NumberOfPoints");
         const auto num_cells = arrays.count_attribute(node, "NumberOfCells");
@@ -170,6 +203,12 @@ class VtuReader {
             } else if (options_.must_have_regions()) {
                 refuse_missing_regions(location, options_.region_array,
                                        whole_number_arrays(arrays, node.child("CellData")));
+            }
+            if (const auto carriers = named(node.child("CellData"), carrier_array)) {
+                if (arrays.num_components(carriers) != 1)
+                    arrays.fail(carriers, "carriers need 1 component, this array has " +
+                                              std::to_string(arrays.num_components(carriers)));
+                piece.carriers = arrays.integers(carriers, num_cells);
             }
             for (const auto& name : options_.vector_arrays) {
                 const auto array = named(node.child("CellData"), name);

@@ -28,6 +28,7 @@
 
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/vtk/throwing_vtk.h"
+#include "incise/io/vtk/vtk_cells.h"
 
 namespace incise::io {
 
@@ -84,8 +85,8 @@ void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
 
 void add_fields(vtkFieldData& data, const std::vector<Field>& fields, std::size_t num_tuples,
                 const char* location) {
-    std::set<std::string> names = {"region"};
-    if (data.GetNumberOfArrays() == 0) names.clear();
+    std::set<std::string> names;
+    for (int i = 0; i < data.GetNumberOfArrays(); ++i) names.insert(data.GetArrayName(i));
     for (const auto& field : fields) {
         const auto fail = [&](const std::string& why) {
             throw std::invalid_argument(std::string(location) + " field '" + field.name + "' " +
@@ -117,6 +118,23 @@ void set_active_vectors(vtkPointData& data, const std::string& name) {
     data.SetActiveVectors(name.c_str());
 }
 
+void add_carriers(vtkUnstructuredGrid& grid, const MeshData& mesh) {
+    const topology::Carriers& carriers = mesh.carriers;
+    if (carriers.of_cell.size() != mesh.num_cells())
+        throw std::invalid_argument("there are carriers for " +
+                                    std::to_string(carriers.of_cell.size()) + " cells, not " +
+                                    std::to_string(mesh.num_cells()));
+    const auto of_cell = view_as_array<std::int64_t>(carriers.of_cell, 1);
+    of_cell->SetName(carrier_array);
+    grid.GetCellData()->AddArray(of_cell);
+    static_assert(sizeof(carriers.corners[0]) == 12 * sizeof(double));
+    const double* coordinates =
+        carriers.corners.empty() ? nullptr : carriers.corners.front().front().data();
+    const auto corners = view_as_array<double>({coordinates, 12 * carriers.corners.size()}, 12);
+    corners->SetName(carrier_corners_array);
+    grid.GetFieldData()->AddArray(corners);
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     const auto& mesh = frame.mesh;
     auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -141,6 +159,7 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     regions->SetName("region");
     grid->GetCellData()->AddArray(regions);
 
+    if (!mesh.carriers.is_empty()) add_carriers(*grid, mesh);
     add_fields(*grid->GetPointData(), frame.point_fields, mesh.points.size(), "point");
     add_fields(*grid->GetCellData(), frame.cell_fields, mesh.num_cells(), "cell");
     set_active_vectors(*grid->GetPointData(), frame.active_vectors);

@@ -97,7 +97,22 @@ std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentC
 
 Model::Model(const topology::Mesh& mesh, const MaterialTable& table,
              BoundaryConditions boundary_conditions)
-    : Model(mesh, FragmentMesh(mesh), table, std::move(boundary_conditions)) {}
+    : Model(mesh, Parts(mesh, table), std::move(boundary_conditions)) {}
+
+Model::Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundary_conditions)
+    : Model(mesh, std::move(parts.fragments), parts.table, std::move(boundary_conditions)) {}
+
+Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh)
+    : fragments(mesh), table(of_mesh) {
+    if (table.fibres.empty()) return;
+    table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
+    for (const ElementId e : fragments.elements())
+        for (const ElementId cell : fragments.cells_of(e))
+            if (fragments.is_at_home(cell)) {
+                table.fibres[e.index()] = of_mesh.fibres[cell.index()];
+                break;
+            }
+}
 
 Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialTable& table,
              BoundaryConditions boundary_conditions)

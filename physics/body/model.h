@@ -87,7 +87,9 @@ struct ModelChanges {
 /// undone.
 class Model {
   public:
-    /// Builds a body at rest in the rest positions, and computes the forces of this state.
+    /// Builds a body at rest in the rest positions, and computes the forces of this state. The
+    /// fragments are those of FragmentMesh, also of a mesh with carriers; the fibres of the table
+    /// are by element of the mesh.
     /// The model reads the mesh and never changes it.
     /// Throws InputError as ElementStore and Constraints do.
     /// @lifetime The mesh must outlive the model.
@@ -345,6 +347,15 @@ class Model {
     const EmbeddedNodes& embedded_nodes() const { return embedded_; }
 
   private:
+    /// The fragments of a mesh, and the materials with the fibres by fragment: a fragment has those
+    /// of its lowest cell.
+    struct Parts {
+        Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh);
+        topology::FragmentMesh fragments;
+        MaterialTable table;
+    };
+    Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundary_conditions);
+
     /// The motion of one node in a step.
     struct NodeStep {
         Vec3 x, v;    ///< at the end of the step, m and m/s

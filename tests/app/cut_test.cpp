@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "in_folder.h"
@@ -134,6 +135,39 @@ TEST_F(Cut, WritesAMeshThatReadsBackInComponents) {
         EXPECT_NEAR(info["volume"].get<double>(), 1.0, 1e-14) << out;
         EXPECT_EQ(info["bounding_box"]["max"], (std::vector{1.0, 1.0, 1.0})) << out;  // at rest
     }
+}
+
+TEST_F(Cut, GoesOnFromAMeshThatItWrote) {
+    const std::string first = " --plane 0.31,0.5,0.5,1,0.2,0.1",
+                      second = " --plane 0.5,0.4,0.5,0.1,1,0.3",
+                      third = " --remove-sphere 0.3,0.4,0.5,0.2";
+    for (const std::string snap : {"", " --snap 0"}) {
+        const auto at_once = cut(first + second + third + snap);
+        const std::string written = support::read_text(folder_ / "out.vtu");
+        const auto info = json::parse(run("info --json out.vtu").out);
+        cut(first + snap);
+        std::filesystem::rename(folder_ / "out.vtu", folder_ / "first.vtu");
+        cut(second + snap, "first.vtu");
+        std::filesystem::rename(folder_ / "out.vtu", folder_ / "second.vtu");
+        const auto report = cut(third + snap, "second.vtu");
+        for (const char* key : {"pieces", "ghost_nodes", "smallest_share"})
+            EXPECT_EQ(report[key], at_once[key]) << key;
+        for (const char* key : {"elements", "nodes", "volume", "fragments"})
+            EXPECT_EQ(report[key]["after"], at_once[key]["after"]) << key;
+        EXPECT_EQ(info["fragments"], at_once["fragments"]["after"]);
+        EXPECT_EQ(info["ghost_nodes"], at_once["ghost_nodes"]);
+        EXPECT_EQ(info["smallest_share"], at_once["smallest_share"]);
+        EXPECT_EQ(support::read_text(folder_ / "out.vtu"), written);
+    }
+    EXPECT_FALSE(json::parse(run("info --json box.vtu").out).contains("fragments"));
+    // Another format has no place for carriers, and says so.
+    const auto outcome = run("convert first.vtu first.msh");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("first.msh: the format has no place for the carriers"),
+              std::string::npos)
+        << outcome.err;
+    run("convert first.vtu copy.vtu");
+    EXPECT_EQ(support::read_text(folder_ / "copy.vtu"), support::read_text(folder_ / "first.vtu"));
 }
 
 TEST_F(Cut, GivesTheSameBitsAgain) {

@@ -124,7 +124,9 @@ TEST_F(FaultyMesh, IsNoneThatIsCutByIncise) {
         const auto figures = parsed(info.out);
         EXPECT_EQ(figures["components"], 2);
         EXPECT_EQ(figures["warnings"].size(), 0u) << figures["warnings"];
-        EXPECT_EQ(run("convert cut" + suffix + " copy.msh").err, "");
+        const std::string err = run("convert cut" + suffix + " copy.msh").err;
+        EXPECT_EQ(err.find("position"), std::string::npos) << err;
+        EXPECT_EQ(err.empty(), suffix != ".vtu") << err;  // only .vtu has carriers to lose
         EXPECT_EQ(run("info copy.msh").err, "");
         EXPECT_EQ(run("convert --weld cut" + suffix + " healed.vtu").status, 0);
         EXPECT_EQ(parsed(run("info --json healed.vtu").out)["components"], 1);

@@ -9,8 +9,10 @@
 #include "incise/io/mesh/tetgen_reader.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
+#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_repair.h"
+#include "incise/topology/validate.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/mesh_consistency.h"
@@ -21,7 +23,9 @@ namespace {
 
 void build(const topology::MeshData& mesh) {
     try {
-        topology::Mesh::build(mesh);
+        const topology::Mesh built = topology::Mesh::build(mesh).mesh;
+        for (const auto& fault : topology::validate(topology::FragmentMesh(built), built))
+            require_none(fault);
     } catch (const InputError&) {
         // Parts that fit one another may still make no mesh.
     }

@@ -17,6 +17,7 @@
 #include "incise/base/error.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_text.h"
+#include "incise/topology/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {
@@ -147,6 +148,17 @@ TEST(MeshWriter, OurReaderGivesBackTheSameMesh) {
         EXPECT_EQ(again.regions, mesh.regions);
         EXPECT_TRUE(warnings.empty());
     }
+}
+
+TEST(MeshWriter, WarnsOfCarriersThatAFormatCannotHold) {
+    topology::MeshData mesh =
+        topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
+    for (const std::string& suffix : writable_suffixes())
+        EXPECT_EQ(loss_in_format("a" + suffix, mesh), std::nullopt);
+    mesh.carriers.of_cell.assign(mesh.num_cells(), 0);
+    mesh.carriers.corners.emplace_back();
+    for (const std::string& suffix : writable_suffixes())
+        EXPECT_EQ(loss_in_format("a" + suffix, mesh).has_value(), suffix != ".vtu") << suffix;
 }
 
 TEST(MeshWriter, RefusesUnknownSuffixesAndNamesTheKnownOnes) {

@@ -136,6 +136,59 @@ TEST(VtuReader, StartsFromTheRestPositionsOfAFrame) {
     EXPECT_EQ(scalar.mesh.points[4], Vec3(1, 1, 1));
 }
 
+/// The same, of which the first cell is a part of a carrier.
+std::string cut_tetrahedra(std::string_view from = "", std::string_view to = "") {
+    const std::string text = replaced(
+        with("<CellData>\n",
+             "<CellData>\n<DataArray type=\"Int64\" Name=\"carrier\" format=\"ascii\">0 "
+             "-1</DataArray>\n"),
+        "<UnstructuredGrid>\n",
+        "<UnstructuredGrid>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"carrier_corners\" "
+        "NumberOfComponents=\"12\" NumberOfTuples=\"1\" format=\"ascii\">0 0 -1 1 0 0 0 1 0 0 0 1"
+        "</DataArray>\n</FieldData>\n");
+    return from.empty() ? text : replaced(text, from, to);
+}
+
+TEST(VtuReader, TakesTheCarriersOfACutBody) {
+    const auto mesh = read_bytes("a.vtu", cut_tetrahedra()).mesh;
+    EXPECT_THAT(mesh.carriers.of_cell, ElementsAre(0, -1));
+    EXPECT_TRUE(mesh.points_may_coincide);
+    EXPECT_THAT(mesh.carriers.corners,
+                ElementsAre(std::array<Vec3, 4>{Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0),
+                                                Vec3(0, 0, 1)}));
+    // Cells that are left out have no carrier.
+    const auto with_triangle =
+        read_bytes("a.vtu", replaced(replaced(cut_tetrahedra(), ">10 10<", ">5 10<"),
+                                     ">0 1 2 3 1 2 3 4</DataArray>\n<DataArray type=\"Int64\" "
+                                     "Name=\"offsets\" format=\"ascii\">4 8<",
+                                     ">0 1 2 1 2 3 4</DataArray>\n<DataArray type=\"Int64\" "
+                                     "Name=\"offsets\" format=\"ascii\">3 7<"))
+            .mesh;
+    EXPECT_THAT(with_triangle.carriers.of_cell, ElementsAre(-1));
+}
+
+TEST(VtuReader, RefusesCarriersWithoutCornersOrTheOtherWayRound) {
+    const auto refused = [&](std::string_view from, std::string_view to) {
+        return refusal("liver.vtu", cut_tetrahedra(from, to));
+    };
+    EXPECT_THAT(refused("\"carrier_corners\"", "\"corners\""),
+                AllOf(StartsWith("liver.vtu:"), HasSubstr("array 'carrier': the field data has no"),
+                      HasSubstr("leave out both")));
+    EXPECT_THAT(refused("\"carrier\"", "\"part\""),
+                AllOf(StartsWith("liver.vtu:"), HasSubstr("array 'carrier_corners': the cell data"),
+                      HasSubstr("leave out both")));
+    EXPECT_THAT(refused("NumberOfComponents=\"12\"", "NumberOfComponents=\"3\""),
+                HasSubstr("carriers need 12 components"));
+    EXPECT_THAT(refused("NumberOfTuples=\"1\"", "NumberOfTuples=\"2\""),
+                HasSubstr("array 'carrier_corners': holds 12 values, expected 24"));
+    EXPECT_THAT(refused("NumberOfTuples=\"1\"", ""), HasSubstr("NumberOfTuples should be"));
+    EXPECT_THAT(refused(">0 -1<", ">0<"), HasSubstr("array 'carrier': holds 1 values, expected 2"));
+    EXPECT_THAT(refused(">0 -1<", ">0 -1.5<"), HasSubstr("not a whole number"));
+    EXPECT_THAT(refused("Name=\"carrier\"", "Name=\"carrier\" NumberOfComponents=\"2\""),
+                HasSubstr("carriers need 1 component"));
+    EXPECT_THAT(refused(">0 0 -1 1 0 0", ">0 0 one 1 0 0"), HasSubstr("not a number"));
+}
+
 TEST(VtuReader, PutsPiecesOneBehindTheOther) {
     const auto begin = two_tetrahedra.find("<Piece");
     const auto end = two_tetrahedra.find("</UnstructuredGrid>");

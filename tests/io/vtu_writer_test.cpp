@@ -19,6 +19,7 @@
 #include <numbers>
 
 #include "incise/base/error.h"
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 
@@ -129,6 +130,37 @@ TEST(VtuWriter, VtkReadsBackTheSameValues) {
         ASSERT_NE(grid->GetPointData()->GetVectors(), nullptr);
         EXPECT_STREQ(grid->GetPointData()->GetVectors()->GetName(), "displacement");
     }
+}
+
+TEST(VtuWriter, KeepsTheCarriersOfACutBody) {
+    const TemporaryFolder folder;
+    Frame frame = make_frame();
+    auto& carriers = frame.mesh.carriers;
+    for (int row = 0; row < 400; ++row) {
+        auto& corners = carriers.corners.emplace_back();
+        for (std::size_t k = 0; k < 4; ++k)
+            corners[k] = Vec3(row + 0.1, std::sqrt(2.0 + row), 1e-300 * static_cast<double>(k));
+    }
+    for (std::size_t c = 0; c < frame.mesh.num_cells(); ++c)
+        carriers.of_cell.push_back(c % 3 == 0 ? topology::Carriers::whole
+                                              : static_cast<std::int64_t>(c % 400));
+    for (const auto compression : all_compressions) {
+        write_vtu(folder / "cut.vtu", frame, compression);
+        EXPECT_EQ(read_mesh(folder / "cut.vtu").mesh.carriers, carriers);
+        auto* field =
+            read_with_vtk(folder / "cut.vtu")->GetFieldData()->GetArray("carrier_corners");
+        ASSERT_NE(field, nullptr);
+        EXPECT_EQ(field->GetNumberOfComponents(), 12);
+        EXPECT_EQ(field->GetNumberOfTuples(), 400);
+    }
+    frame.mesh.carriers = {};
+    EXPECT_THAT(vtu_text(frame), Not(HasSubstr("carrier")));
+    frame.mesh.carriers.of_cell = {0};
+    EXPECT_THROW(vtu_text(frame), std::invalid_argument);
+    frame = make_frame();
+    frame.cell_fields.push_back(
+        {"region", 1, std::vector<std::int32_t>(frame.mesh.num_cells(), 1)});
+    EXPECT_THROW(vtu_text(frame), std::invalid_argument);
 }
 
 TEST(VtuWriter, GivesTheSameBytesForTheSameFrame) {

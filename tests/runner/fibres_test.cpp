@@ -107,8 +107,10 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
         expected[location(mesh, e)] =
             simulation.model().fibres()[fragments.fragment_of_cell(e).index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
-    for (std::size_t i = 0; i < again.mesh().element_capacity(); ++i)
-        EXPECT_EQ(again.model().fibres()[i], expected.at(location(again.mesh(), ElementId(i))));
+    const auto& read = again.model().fragments();
+    for (const ElementId e : again.mesh().elements())
+        EXPECT_EQ(again.model().fibres()[read.fragment_of_cell(e).index()],
+                  expected.at(location(again.mesh(), e)));
 }
 
 TEST(FibredBody, LeavesFramesOfOthersAlone) {

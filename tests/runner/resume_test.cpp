@@ -112,6 +112,26 @@ path = [{ time = 0.01, at = [-0.02, 0, 0] }, { time = 0.06, at = [0.06, 0, 0.01]
 
 const std::string output = "[output]\ninterval = 0.04\ncompression = \"none\"\n";
 
+TEST(ResumedRun, GoesOnWithABodyReadFromACutFrame) {
+    const RunFolder folder;
+    const std::string tools = R"(
+[[tool]]
+kind = "cut"
+time = 0.02
+plane = { point = [0.05, 0.045, 0.05], normal = [0.1, 1, 0.3] }
+[[tool]]
+kind = "blade"
+edge = [[0.047, -0.1, 0], [0.052, 0.2, 0.004]]
+path = [{ time = 0.01, at = [0, 0, 0.12] }, { time = 0.03, at = [0, 0, 0.041] }]
+)";
+    Simulation written(folder.scenario(soft_cube + tools + dynamics(0.03)));
+    run(written);
+    io::write_vtu(folder / "frame.vtu", build_frame(written.model(), written.time(), {}));
+    const std::string read =
+        "[mesh]\nfile = \"frame.vtu\"\n" + soft_cube.substr(soft_cube.find("[[material]]"));
+    expect_resumable(folder, read + splitting_blade + dynamics(0.1));
+}
+
 TEST(ResumedRun, EqualsOneNeverStoppedWithASplittingBlade) {
     const RunFolder folder;
     expect_resumable(folder,

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "incise/base/disjoint_set.h"
@@ -14,6 +13,7 @@
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_edit.h"
 #include "support/exact_plane.h"
+#include "support/fragment_shape.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
@@ -92,32 +92,6 @@ void expect_sound(const FragmentMesh& fragments, const Mesh& material) {
         EXPECT_NEAR(sum, 1.0, 1e-12);
         EXPECT_LT((x - material.rest_position(n)).norm(), 1e-12);
     }
-}
-
-/// What a fragment mesh is, whatever its ids: by cell, the cells of its fragment, its share, and
-/// which corners of fragments are the same node.
-struct Shape {
-    std::map<ElementId, std::pair<std::vector<ElementId>, double>> of_cell;
-    std::set<std::vector<std::pair<ElementId, int>>> nodes;  // by lowest cell, and corner
-    bool operator==(const Shape&) const = default;
-};
-
-Shape shape_of(const FragmentMesh& fragments) {
-    Shape shape;
-    std::map<NodeId, std::vector<std::pair<ElementId, int>>> corners;
-    for (const ElementId e : fragments.elements()) {
-        const auto listed = fragments.cells_of(e);
-        const std::vector<ElementId> cells(listed.begin(), listed.end());
-        for (const ElementId cell : cells) shape.of_cell[cell] = {cells, fragments.share(e)};
-        const auto nodes = fragments.corners(e);
-        for (std::size_t k = 0; k < nodes.size(); ++k)
-            corners[nodes[k]].emplace_back(cells.front(), static_cast<int>(k));
-    }
-    for (auto& [n, list] : corners) {
-        std::sort(list.begin(), list.end());
-        shape.nodes.insert(std::move(list));
-    }
-    return shape;
 }
 
 /// One edit with the effect of several.
@@ -208,7 +182,7 @@ TEST(FragmentMesh, FollowsPlanesAsIfBuiltInOneEdit) {
                 if (edits.empty()) continue;
                 at_once.apply(material, joined(edits));
                 expect_sound(at_once, material);
-                EXPECT_TRUE(shape_of(fragments) == shape_of(at_once));
+                EXPECT_TRUE(test::shape_of(fragments) == test::shape_of(at_once));
                 num_fragments += static_cast<int>(fragments.num_elements());
                 for (const ElementId cell : material.elements())
                     num_light += fragments.is_at_home(cell) ? 0 : 1;

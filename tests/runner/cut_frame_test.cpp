@@ -1,0 +1,166 @@
+// Frames of bodies that were cut, read as meshes: the same fragments, steps and further cuts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "incise/base/error.h"
+#include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/vtk/vtu_writer.h"
+#include "incise/runner/frame_builder.h"
+#include "incise/scenario/body.h"
+#include "incise/topology/validate.h"
+#include "run_folder.h"
+#include "support/fragment_shape.h"
+
+namespace incise::runner {
+namespace {
+
+using topology::FragmentMesh;
+using topology::Mesh;
+
+/// Through the whole cube at a slant, or down to its middle, where the mesh has no faces.
+const std::string blade_through = R"([[tool]]
+kind = "blade"
+name = "knife"
+edge = [[0, -0.1, 0.05], [0, 0.03, 0.053], [0, 0.2, 0.058]]
+path = [{ time = 0.01, at = [-0.05, 0, 0] }, { time = 0.03, at = [0.15, 0, 0.01] }]
+)";
+const std::string blade_halfway = R"([[tool]]
+kind = "blade"
+name = "knife"
+edge = [[0.047, -0.1, 0], [0.052, 0.2, 0.004]]
+path = [{ time = 0.01, at = [0, 0, 0.12] }, { time = 0.03, at = [0, 0, 0.041] }]
+)";
+const std::string plane_cut = R"([[tool]]
+kind = "cut"
+time = 0.015
+plane = { point = [0.05, 0.045, 0.05], normal = [0.1, 1, 0.3] }
+)";
+const std::string ball_carver = R"([[tool]]
+kind = "carver"
+shape = { sphere = { radius = 0.03 } }
+path = [{ time = 0.02, at = [0.05, 0.05, 0.13] }, { time = 0.03, at = [0.05, 0.05, 0.08] }]
+)";
+const std::string while_falling = dynamics(0.04, "gravity = [0, 0, -9.81]\ndamping = 5\n");
+
+const std::vector<scenario::Field> some_fields{scenario::Field::displacement, scenario::Field::mass,
+                                               scenario::Field::stress};
+
+std::string from_file(const std::string& text) {
+    const auto end = text.find("[[material]]");
+    return "[mesh]\nfile = \"frame.vtu\"\n" + text.substr(end);
+}
+
+/// Returns the fragments with the cells named by their rows in a file.
+test::FragmentShape shape_in_file(const Mesh& mesh, const FragmentMesh& fragments) {
+    std::vector<std::int64_t> row(mesh.element_capacity(), -1);
+    std::int64_t next = 0;
+    for (const ElementId e : mesh.elements()) row[e.index()] = next++;
+    return test::shape_of(fragments, [&](ElementId e) { return row[e.index()]; });
+}
+
+class CutFrame : public testing::TestWithParam<std::string> {};
+
+TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
+    const RunFolder folder;
+    Simulation written(folder.scenario(soft_cube + GetParam() + while_falling));
+    run(written);
+    ASSERT_GT(written.edits().size(), 0u);
+    const auto frame = build_frame(written.model(), written.time(), some_fields);
+    ASSERT_FALSE(frame.mesh.carriers.is_empty());
+    io::write_vtu(folder / "frame.vtu", frame);
+
+    const Scenario scenario = folder.scenario(from_file(soft_cube) + dynamics(0.02));
+    const Body body = build_body(scenario);
+    EXPECT_EQ(body.warnings, std::vector<std::string>{});
+    const FragmentMesh& before = written.model().fragments();
+    Simulation read(scenario);
+    const FragmentMesh& after = read.model().fragments();
+    EXPECT_EQ(topology::validate(after, read.mesh()), std::vector<std::string>{});
+    EXPECT_TRUE(shape_in_file(read.mesh(), after) == shape_in_file(written.mesh(), before));
+    EXPECT_EQ(after.num_nodes(), before.num_nodes());
+    // The order of sums differs with the ids.
+    constexpr double rounding = 1e-12;
+    EXPECT_NEAR(read.model().stable_step(), written.model().stable_step(),
+                rounding * written.model().stable_step());
+    EXPECT_NEAR(read.model().totals().mass, written.model().totals().mass,
+                rounding * written.model().totals().mass);
+    for (const ElementId e : after.elements())
+        for (const NodeId n : after.corners(e))
+            EXPECT_EQ(read.model().positions()[n.index()], after.rest_position(n));
+    EXPECT_LT(read.model().totals().elastic_energy, 1e-20);
+    run(read);
+    EXPECT_EQ(read.warnings(), std::vector<std::string>{});
+
+    // The frame of the body that was read is the frame that was written.
+    const auto again = build_frame(read.model(), 0.0, some_fields);
+    EXPECT_TRUE(again.mesh.carriers == frame.mesh.carriers);
+}
+
+TEST_P(CutFrame, IsScaledWithItsCarriers) {
+    const RunFolder folder;
+    Simulation written(folder.scenario(soft_cube + GetParam() + while_falling));
+    run(written);
+    io::write_vtu(folder / "frame.vtu", build_frame(written.model(), written.time(), {}));
+    std::string text = from_file(soft_cube);
+    text.insert(text.find("[[material]]"), "scale = 3.7\n");
+    const Body body = build_body(folder.scenario(text + dynamics(0.02)));
+    EXPECT_EQ(FragmentMesh(body.mesh).num_elements(), written.model().fragments().num_elements());
+}
+
+INSTANTIATE_TEST_SUITE_P(Tools, CutFrame,
+                         testing::Values(blade_through, blade_halfway, plane_cut,
+                                         blade_halfway + plane_cut,
+                                         blade_through + plane_cut + ball_carver));
+
+TEST(FrameOfACutBody, GivesFragmentsTheirFibres) {
+    const RunFolder folder;
+    const std::string material = R"([[material]]
+law = "holzapfel-gasser-ogden"
+density = 1000
+shear_modulus = 400
+bulk_modulus = 2000
+k1 = 1000
+k2 = 0.5
+)";
+    const std::string box = "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [3, 3, 3] }\n";
+    Simulation written(folder.scenario(box + material + "fibre = [0.6, 0, 0.8]\n" + plane_cut +
+                                       blade_through + dynamics(0.04)));
+    run(written);
+    io::write_vtu(folder / "frame.vtu", build_frame(written.model(), written.time(), {}));
+    Simulation read(
+        folder.scenario(from_file(box + material) + "fibre_array = \"fibre\"\n" + dynamics(0.04)));
+    const FragmentMesh& fragments = read.model().fragments();
+    ASSERT_GT(fragments.element_capacity(), read.mesh().element_capacity());
+    for (const ElementId e : fragments.elements())
+        EXPECT_EQ(read.model().fibres()[e.index()], Vec3(0.6, 0.0, 0.8));
+}
+
+TEST(FrameOfACutBody, OfABodyWithoutDivisionsHasNoCarriers) {
+    const RunFolder folder;
+    Simulation simulation(folder.scenario(soft_cube + two_tools + dynamics(0.16)));
+    run(simulation);
+    EXPECT_GT(simulation.edits().size(), 1u);
+    EXPECT_TRUE(build_frame(simulation.model(), 0.0, {}).mesh.carriers.is_empty());
+}
+
+TEST(FrameOfACutBody, ForgedIsRefusedWithTheFileAndARemedy) {
+    const RunFolder folder;
+    Simulation written(folder.scenario(soft_cube + plane_cut + while_falling));
+    run(written);
+    auto frame = build_frame(written.model(), written.time(), {});
+    frame.mesh.carriers.of_cell[3] = 1000;
+    io::write_vtu(folder / "frame.vtu", frame);
+    try {
+        build_body(folder.scenario(from_file(soft_cube) + dynamics(0.02)));
+        FAIL();
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("frame.vtu: cell 3"), std::string::npos) << text;
+        EXPECT_NE(text.find("1000"), std::string::npos) << text;
+        EXPECT_NE(text.find("leave out its cell array 'carrier'"), std::string::npos) << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace incise::runner
