@@ -52,7 +52,7 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
                       t.angular_momentum.z(),
                       body_totals.min_volume_ratio,
                       simulation.time_step(),
-                      body_totals.stable_step});
+                      simulation.world().stable_step()});
     for (std::size_t s = 0; s < model.num_constraints(); ++s) {
         const auto& [reaction, torque] = body_totals.reactions[s];
         append(row, scenario::reaction_quantities(model.constraint_name(s)),

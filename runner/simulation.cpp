@@ -59,7 +59,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
         paths_.push_back(std::move(tool.path));
     }
     // Refuses a fixed step that is too large before anything is written.
-    scenario::step_limit(scenario_, model(), num_steps());
+    scenario::step_limit(scenario_, model(), world_.stable_step(), num_steps());
 }
 
 void Simulation::start() {
@@ -204,7 +204,8 @@ Simulation::Interval Simulation::next_step() const {
             static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) * interval;
         if (frame < stop - rounding * interval) stop = frame;
     }
-    const double end = policy_({scenario_, model(), time(), stop, num_steps()});
+    const double end =
+        policy_({scenario_, model(), time(), stop, world_.stable_step(), num_steps()});
     if (!(end > time() && end <= stop))
         throw InputError("the policy of steps chose a step from " + io::format_number(time()) +
                          " s to " + io::format_number(end) +

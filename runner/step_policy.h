@@ -16,6 +16,7 @@ struct StepSituation {
     const physics::Model& model;
     double time;              ///< s
     double stop;              ///< s, the time of the next frame, or the end: no step goes beyond it
+    double stable_step;       ///< s, in the present strain: sim::World::stable_step
     std::uint64_t num_steps;  ///< made so far
 };
 

@@ -374,7 +374,8 @@ Parts build_parts(const Scenario& scenario) {
 void check_model(const Scenario& scenario, Parts& parts) {
     if (!parts.source || !parts.materials) return;
     parts.problems.try_to("", [&] {
-        step_limit(scenario, make_model(scenario, parts.source->mesh, *parts.materials, {}));
+        const auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
+        step_limit(scenario, model, model.rest_stable_step());
     });
 }
 

@@ -38,17 +38,18 @@ namespace {
 
 }  // namespace
 
-double step_limit(const Scenario& scenario, const physics::Model& model, std::uint64_t num_steps) {
+double step_limit(const Scenario& scenario, const physics::Model& model, double stable,
+                  std::uint64_t num_steps) {
     const DynamicsSpec& dynamics = scenario.dynamics;
     if (dynamics.mode == Mode::statics) {
         if (dynamics.steps) return dynamics.end_time / *dynamics.steps;
         return scenario.output.interval > 0.0 ? scenario.output.interval : dynamics.end_time;
     }
     const bool is_explicit = dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-    const double stable = model.stable_step();
+    const double at_rest = model.rest_stable_step();
     const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
-    if (is_explicit && dynamics.time_step && !(limit <= stable))
-        refuse_unstable(dynamics, stable, num_steps);
+    if (is_explicit && dynamics.time_step && !(limit <= at_rest))
+        refuse_unstable(dynamics, at_rest, num_steps);
     // More steps would take years. In the end, rounding would keep the time from increasing.
     constexpr double max_steps = 1e10;
     if (!(limit * max_steps >= dynamics.end_time))

@@ -70,7 +70,7 @@ BodyTotals Ledger::body_totals() const {
             counts_.elements,
             components_.value(),
             model_.totals(),
-            model_.stable_step(),
+            model_.rest_stable_step(),
             model_.external_work(),
             model_.dissipated_energy(),
             model_.min_volume_ratio(),

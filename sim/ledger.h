@@ -21,7 +21,7 @@ struct BodyTotals {
     std::size_t nodes = 0, elements = 0;
     int components = 0;
     physics::Totals totals;
-    double stable_step = 0.0;                             ///< s
+    double stable_step = 0.0;                             ///< bound at rest, s
     double external_work = 0.0, dissipated_energy = 0.0;  ///< J, since the start
     double min_volume_ratio = 0.0;                        ///< least current over rest volume
     std::vector<physics::Reaction> reactions;             ///< by constraint, in the last step

@@ -36,11 +36,17 @@ const StepReport& World::Parts::checked_step(double end, double dt) {
     if (!(end > time && std::isfinite(end)))
         throw InputError("a step from " + io::format_number(time) + " s to " +
                          io::format_number(end) + " s: it must go forward");
-    // A step that is an exact fraction of an interval may exceed the bound by rounding.
-    constexpr double rounding = 1e-8;
-    if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding) * model.stable_step()))
+    const double at_rest = model.rest_stable_step();
+    if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding_of_steps) * at_rest))
         throw InputError("a step of " + io::format_number(dt) + " s is above the stable step of " +
-                         io::format_number(model.stable_step()) + " s");
+                         io::format_number(at_rest) + " s");
+    constexpr std::size_t most_parts = 1000;
+    if (num_parts(dt) > most_parts)
+        throw InputError("a step of " + io::format_number(dt) + " s is far above " +
+                         io::format_number(stable_step) +
+                         " s, the stable step of the tissue in its present strain; something "
+                         "crushes or draws out an element: use smaller motions or loads, or "
+                         "shorter steps");
     has_failed = true;
     step_to(end);
     has_failed = false;
@@ -51,7 +57,8 @@ const StepReport& World::report() const { return parts_->report; }
 bool World::has_failed() const { return parts_->has_failed; }
 double World::time() const { return parts_->time; }
 std::uint64_t World::num_steps() const { return parts_->num_steps; }
-double World::stable_step() const { return parts_->model.stable_step(); }
+double World::stable_step() const { return parts_->stable_step; }
+double World::rest_stable_step() const { return parts_->model.rest_stable_step(); }
 
 topology::BoundarySurface& World::Parts::built_surface() {
     if (!surface) surface.emplace(mesh);
@@ -160,12 +167,14 @@ void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
     if (!term) throw InputError("a force term is given as null");
     parts_->model.add_force_term(std::move(term));
     parts_->loads_have_changed = true;
+    parts_->stable_step = parts_->present_bound();
 }
 
 void World::remove_force_term(const physics::ForceTerm* term) {
     if (!parts_->model.remove_force_term(term))
         throw InputError("the world does not have this force term");
     parts_->loads_have_changed = true;
+    parts_->stable_step = parts_->present_bound();
 }
 
 LoadId World::add_load(physics::Load load) {

@@ -98,6 +98,7 @@ struct ToolState {
 /// The report of one step.
 struct StepReport {
     double from = 0.0, to = 0.0;   ///< s
+    std::size_t num_parts = 1;     ///< explicit steps that the step was divided into
     std::vector<Edit> edits;       ///< in order of execution
     std::vector<ToolState> tools;  ///< those present at the end of the step
 };
@@ -136,8 +137,14 @@ class World {
     /// then moves to its new equilibrium, and tissue that crosses a tool during this motion is cut
     /// too.
     ///
-    /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above the stable
-    /// step of the explicit solver, or if the world has failed before.
+    /// With the explicit solver, a step above stable_step() moves the tissue in equal parts that
+    /// are not above it: StepReport::num_parts. A step of constant length therefore stays possible
+    /// when strain stiffens the tissue; it only takes longer. Tools cut once, at the end of the
+    /// step.
+    ///
+    /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above
+    /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, or if the
+    /// world has failed before.
     /// Throws physics::MotionFailure if the solver fails, and ToolError if a tool meets something
     /// that it cannot cut. In both cases the world has failed: it can be read and restored, but not
     /// stepped.
@@ -151,8 +158,14 @@ class World {
 
     double time() const;  ///< s
     std::uint64_t num_steps() const;
-    /// Returns the upper bound on steps of the explicit solver, s, for the body at rest.
+    /// Returns the upper bound on steps of the explicit solver for the present strain and motion,
+    /// s. It is at most rest_stable_step(), and equal to it at small strain. It is computed anew
+    /// every 96 steps, and earlier in fast motion. An edit lowers it at once where the nodes near
+    /// the edit need that. Steps of 0.8 of it leave room for what changes in between. Source:
+    /// docs/theory.md, Stable step.
     double stable_step() const;
+    /// Returns the same bound for the body at rest, s. Only edits and force terms change it.
+    double rest_stable_step() const;
 
     /// Adds a tool. The tool is present in the world only after a pose has been set.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
@@ -239,7 +252,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 8;
+    static constexpr std::uint32_t state_format = 9;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, tools and cuts in progress. The materials and the solver are not

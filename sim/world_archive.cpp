@@ -1,5 +1,6 @@
 // Conversion of a world to bytes and back.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -35,8 +36,10 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
       cutter(mesh, model.mesh_positions()) {
     integrator->restore(ar, model);
     ledger.restore(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
+       has_failed);
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of the world");
+    if (!(stable_step > 0.0)) throw InputError("its stable step is not above 0");
     prepare_tools();
     require_sound_grasps();
     model.set_num_threads(former.model.num_threads());
@@ -59,7 +62,8 @@ void World::Parts::save(ArchiveWriter& ar) const {
     model.save(ar);
     integrator->save(ar);
     ledger.save(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, has_moved, has_failed);
+    ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
+       has_failed);
 }
 
 /// Checks the tools that an archive contained, and computes the members that it does not contain.
@@ -133,6 +137,8 @@ void World::restore(std::string_view bytes) {
         throw InputError("the world that was saved has other materials");
     auto restored = std::make_unique<Parts>(*parts_, ar);
     restored->model.take_force_terms(parts_->model, restored->time);
+    // The saved world may have had other force terms.
+    restored->stable_step = std::min(restored->stable_step, restored->model.rest_stable_step());
     parts_ = std::move(restored);
 }
 

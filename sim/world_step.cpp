@@ -1,11 +1,14 @@
 // Construction of a world, and its main loop.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
 #include "incise/cutting/exact/undividable.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::sim {
 
@@ -31,6 +34,19 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     return table;
 }
 
+/// Returns the edge of a cube of which the elements would be sixths, if they are tetrahedra, m.
+double mean_element_length(const Mesh& mesh) {
+    double volume = 0.0, num_sixths = 0.0;
+    std::vector<Vec3> x;
+    for (const ElementId e : mesh.elements()) {
+        x.clear();
+        for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+        volume += topology::signed_volume(mesh.kind(e), x);
+        num_sixths += mesh.kind(e) == topology::CellKind::tetrahedron ? 1.0 : 6.0;
+    }
+    return std::cbrt(6.0 * volume / num_sixths);
+}
+
 }  // namespace
 
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver) {
@@ -50,7 +66,9 @@ World::Parts::Parts(WorldDef def)
       ledger(model),
       cutter(mesh, model.mesh_positions()),
       constraints("constraint", model.num_constraints()),
-      loads("load", model.loads().all().size()) {
+      loads("load", model.loads().all().size()),
+      stable_step(model.stable_step()),
+      bound_interval{mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
 }
 
@@ -59,12 +77,13 @@ void World::Parts::step_to(double end) {
     report.to = end;
     report.edits.clear();
     report.tools.clear();
+    double largest_move = 0.0;
     const auto begin_motion = [&] {
         if (is_any_tool_present()) cutter.begin_motion(model.mesh_positions());
     };
     const auto end_motion = [&] {
         has_moved = true;
-        cutter.end_motion(mesh, model.mesh_positions(), model.largest_mesh_move());
+        cutter.end_motion(mesh, model.mesh_positions(), largest_move);
     };
 
     if (loads_have_changed) model.compute_forces(time);
@@ -75,7 +94,7 @@ void World::Parts::step_to(double end) {
         grasp.pose = grasp.target;
     }
     begin_motion();
-    integrator->step(model, time, end - time);
+    largest_move = move_to(end);
     time = end;
     ++num_steps;
     end_motion();
@@ -86,13 +105,77 @@ void World::Parts::step_to(double end) {
         num_followed = report.edits.size();
         begin_motion();
         if (!integrator->equilibrate(model, end)) break;
+        largest_move = model.largest_mesh_move();
         end_motion();
         for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
     }
     model.compute_forces(end);
+    update_stable_step();
     for (std::size_t i = 0; i < tools.size(); ++i)
         if (const Tool& tool = tools[i]; tool.is_present)
             report.tools.push_back({{i}, tool.pose, tool.cut && cutter.is_in_tissue(*tool.cut)});
+}
+
+double World::Parts::present_bound() const {
+    // A step in which nodes cross much of an element changes the stiffness by more than is known.
+    constexpr double largest_motion = 0.15;
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0.0, fastest = 0.0;
+    for (std::size_t n = 0; n < model.masses().size(); ++n) {
+        mass += model.masses()[n];
+        momentum += model.masses()[n] * model.velocities()[n];
+    }
+    const Vec3 mean = momentum / mass;
+    for (std::size_t n = 0; n < model.masses().size(); ++n)
+        if (model.masses()[n] > 0.0)
+            fastest = std::max(fastest, (model.velocities()[n] - mean).squaredNorm());
+    const double motion = largest_motion * bound_interval.element_length;
+    return std::min(model.stable_step(), motion / std::sqrt(fastest));
+}
+
+void World::Parts::update_stable_step() {
+    BoundInterval& interval = bound_interval;
+    ++interval.num_steps;
+    ++interval.num_held;
+    double bound = stable_step;
+    if (interval.is_over()) {
+        bound = present_bound();
+        interval.least = std::min(interval.least, bound);
+        interval.num_steps = 0;
+        interval.moved = 0.0;
+    } else {
+        for (const Edit& edit : report.edits)
+            bound = std::min(bound, model.stable_step(edit.of_model.touched));
+    }
+    if (interval.num_held >= BoundInterval::held_steps && interval.num_steps == 0)
+        bound = interval.least;
+    else
+        bound = std::min(bound, stable_step);
+    if (bound == stable_step) return;
+    stable_step = bound;
+    interval.num_held = 0;
+    interval.least = std::numeric_limits<double>::infinity();
+}
+
+std::size_t World::Parts::num_parts(double dt) const {
+    if (solver != Solver::semi_implicit_euler) return 1;
+    return static_cast<std::size_t>(std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0));
+}
+
+double World::Parts::move_to(double end) {
+    const double from = time, dt = end - time;
+    const std::size_t n = report.num_parts = num_parts(dt);
+    double largest_move = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double next =
+            i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
+        if (i > 0) model.compute_forces(time);
+        integrator->step(model, time, next - time);
+        largest_move += model.largest_mesh_move();
+        bound_interval.moved += model.largest_move();
+        time = next;
+    }
+    return largest_move;
 }
 
 /// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.

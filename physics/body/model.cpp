@@ -2,6 +2,7 @@
 #include "incise/physics/body/model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -223,9 +224,10 @@ ModelChanges Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) 
         throw InputError("model: this edit takes back another one; call undo() for it");
     topology::FollowedEpoch(fragments_.epoch()).advance(mesh, changes, "model");
     const Momenta removed = momenta_of_removed(changes);
-    ModelChanges done{fragments_.apply(mesh, changes), {}};
+    ModelChanges done{fragments_.apply(mesh, changes), {}, {}};
     const auto touched_of_mesh = touched_nodes(mesh, changes);
-    const auto touched = touched_nodes(fragments_, done.fragments, done.fragments.mesh);
+    done.touched = touched_nodes(fragments_, done.fragments, done.fragments.mesh);
+    const auto& touched = done.touched;
     const bool keeps_momenta = done.fragments.has_joins();
     const Momenta before = keeps_momenta ? momenta_of(touched) - removed : Momenta();
     follow({changes, done.fragments.mesh, touched_of_mesh, touched}, done.fragments);
@@ -411,6 +413,44 @@ void Model::restore_state(ArchiveReader& ar, double time) {
         throw InputError("the reactions are those of another body");
     reactions_ = std::move(reactions);
     compute_forces(time);
+}
+
+double Model::stable_step() const {
+    double highest = stable_step_.highest();
+    if (!elements_.compute_excess_stiffness(state_, workers_)) return StableStep::step_of(highest);
+    std::vector<double>& of_ranges = highest_of_ranges_;
+    of_ranges.assign(num_node_ranges(masses_.size()), 0.0);
+    workers_.for_each_range(masses_.size(), [&](NodeRange range) {
+        std::array<double, nodes_per_range> excess{};
+        elements_.gather_excess_stiffness(range, excess);
+        for (std::size_t n = range.begin; n < range.end; ++n)
+            if (const double more = excess[n - range.begin]; more > 0.0)
+                of_ranges[range.number] =
+                    std::max(of_ranges[range.number], stable_step_.quotient(n) + more / masses_[n]);
+    });
+    for (const double of_range : of_ranges) highest = std::max(highest, of_range);
+    return StableStep::step_of(highest);
+}
+
+double Model::stable_step(std::span<const NodeId> nodes) const {
+    std::map<ElementId, double> factors;
+    std::vector<ElementId> star;
+    double highest = 0.0;
+    for (const NodeId n : nodes) {
+        if (n.index() >= masses_.size() || masses_[n.index()] == 0.0) continue;
+        double excess = 0.0;
+        fragments_.star(n, star);
+        for (const ElementId e : star) {
+            const ElementBlock& block = elements_.block_of(fragments_, e);
+            const auto [it, is_new] = factors.try_emplace(e, 1.0);
+            if (is_new) it->second = block.stiffening(e, positions());
+            excess += (it->second - 1.0) *
+                      block.contributions(e)
+                          .stiffness[static_cast<std::size_t>(fragments_.corner_of(e, n))];
+        }
+        highest = std::max(highest, stable_step_.quotient(n.index()) + excess / masses_[n.index()]);
+    }
+    return StableStep::step_of(highest);
 }
 
 double Model::element_stable_step(ElementId e) const {

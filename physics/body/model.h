@@ -74,6 +74,8 @@ struct ModelChanges {
         bool operator==(const Velocity&) const = default;
     };
     std::vector<Velocity> velocities;
+    /// The nodes of the fragments whose mass or stiffness it may have changed, in ascending order.
+    std::vector<NodeId> touched;
 };
 
 /// A body with lumped masses at nodes, and elastic elements between them.
@@ -285,7 +287,16 @@ class Model {
 
     /// Returns the bound on explicit steps at rest, s; see StableStep. The bound ignores damping,
     /// which only increases the stable step.
-    double stable_step() const { return stable_step_.value(); }
+    double rest_stable_step() const { return stable_step_.value(); }
+    /// Returns the bound on explicit steps in the present positions, s. It is at most that at rest,
+    /// and equal to it at small strain. It depends on nothing but the positions and the body.
+    /// Source: docs/theory.md, Stable step.
+    /// Cost: O(n), about that of the forces.
+    /// @thread One thread at a time.
+    double stable_step() const;
+    /// Returns the same bound if only the given nodes counted, s. Dead nodes do not count.
+    /// Cost: proportional to the stars of the nodes.
+    double stable_step(std::span<const NodeId> nodes) const;
 
     /// Returns the bound on the stiffness of a living node at rest, N/m, from which the stable step
     /// is computed.
@@ -431,9 +442,10 @@ class Model {
     std::vector<StepSums> step_sums_;        // scratch, by range of nodes
     std::vector<Reaction> range_reactions_;  // scratch, by range of nodes, then by constraint
     std::vector<ElementId> star_;            // scratch
-    std::vector<Vec3> previous_positions_;   // scratch, of viscous bodies only
-    std::vector<Vec3> previous_velocities_;  // from kick to drift, by node id
-    std::vector<Vec3> impulses_;             // from kick to drift, by node id, N s; empty: none
+    mutable std::vector<double> highest_of_ranges_;  // scratch of stable_step(), by range of nodes
+    std::vector<Vec3> previous_positions_;           // scratch, of viscous bodies only
+    std::vector<Vec3> previous_velocities_;          // from kick to drift, by node id
+    std::vector<Vec3> impulses_;  // from kick to drift, by node id, N s; empty: none
 };
 
 }  // namespace incise::physics

@@ -49,7 +49,7 @@ Lost lost_node(const Model& model) {
 
 /// Returns the likely cause and appends it to the text.
 FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& text) {
-    const double stable_step = model.stable_step();
+    const double stable_step = model.rest_stable_step();
     const Vec3 &outer = model.outer_forces()[n.index()],
                &elastic = model.elastic_forces()[n.index()];
     if (dt > stable_step) {

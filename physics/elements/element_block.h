@@ -123,6 +123,15 @@ class ElementBlock {
     virtual double advance(std::span<const LocalVector> before,
                            std::span<const LocalVector> positions, double dt,
                            ViscousHistory& history) = 0;
+    /// Sets `excess`, by local number, to what the bounds on the stiffness of the nodes are above
+    /// those at rest, N/m. They are positive only where elements are stiffer than at rest. Returns
+    /// false, and may leave `excess` as it is, if no element is.
+    /// @param positions  m, by local number, with one spare entry
+    virtual bool set_excess_stiffness(std::span<const LocalVector> positions,
+                                      std::span<double> excess) const = 0;
+    /// Returns the factor by which the bounds of one element are above those at rest, 1 or more.
+    /// @param positions  m, by node id
+    virtual double stiffening(ElementId e, std::span<const Vec3> positions) const = 0;
     /// Returns the totals of the elements at `positions`, m, by node id.
     virtual BlockState state(std::span<const Vec3> positions) const = 0;
     /// Returns the sum of the rest volumes, m3.

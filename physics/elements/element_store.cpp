@@ -242,6 +242,31 @@ void ElementStore::gather_forces(NodeRange range, std::span<Vec3> forces) const 
     }
 }
 
+bool ElementStore::compute_excess_stiffness(const State& state, const Workers& workers) const {
+    assert(changed_blocks_.empty());
+    take_note_of(state);
+    excess_.resize(blocks_.size());
+    workers.for_each(blocks_.size(), [&](std::size_t b) {
+        if (!blocks_[b] || known_[b].has_stiffness) return;
+        excess_[b].resize(blocks_[b]->nodes().size());
+        if (!blocks_[b]->set_excess_stiffness(blocks_[b]->local_positions(state.positions()),
+                                              excess_[b]))
+            excess_[b].clear();
+        known_[b].has_stiffness = true;
+    });
+    return std::ranges::any_of(excess_, [](const auto& excess) { return !excess.empty(); });
+}
+
+void ElementStore::gather_excess_stiffness(NodeRange range, std::span<double> excess) const {
+    for (const Piece& piece : ranges_[range.number]) {
+        const std::vector<double>& part = excess_[piece.block];
+        if (part.empty()) continue;
+        const std::uint32_t* const nodes = blocks_[piece.block]->nodes().data();
+        for (std::size_t i = piece.begin; i < piece.end; ++i)
+            excess[nodes[i] - range.begin] += part[i];
+    }
+}
+
 BlockState ElementStore::totals(const State& state, const Workers& workers) const {
     take_note_of(state);
     workers.for_each(blocks_.size(), [&](std::size_t b) {

@@ -132,6 +132,17 @@ class ElementStore {
         for_each_block([&](const ElementBlock& block) { block.add_forces(end, forces); });
     }
 
+    /// Computes for each block what the bounds on the stiffness of its nodes are above those at
+    /// rest. Values of the same state are kept where no edit has changed the block. Returns false
+    /// if no element is stiffer than at rest.
+    /// @thread One thread at a time.
+    bool compute_excess_stiffness(const State& state, const Workers& workers) const;
+    /// Adds the values of compute_excess_stiffness() to `excess`, N/m, for one range of nodes. Its
+    /// first entry belongs to the first node of the range. The sums are in ascending order of
+    /// blocks.
+    /// @thread Several threads may call it at the same time.
+    void gather_excess_stiffness(NodeRange range, std::span<double> excess) const;
+
     /// Returns the totals of all elements. The totals of a block are stored until an edit changes
     /// the block or the state changes. After an edit, only touched blocks are computed again.
     /// @thread One thread at a time.
@@ -176,6 +187,7 @@ class ElementStore {
     struct Known {
         std::optional<BlockState> totals;
         bool has_forces = false;  ///< the forces were computed, and compute_forces() not called yet
+        bool has_stiffness = false;  ///< excess_ of the block is that of the state
     };
 
     void note_change(std::size_t block);
@@ -199,11 +211,13 @@ class ElementStore {
     std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by range of ids, then by material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;  // by range of nodes; in ascending order of blocks
-    std::vector<std::vector<LocalVector>> parts_;  // the forces of each block
-    std::vector<std::uint16_t> local_numbers_;     // scratch, by node id
-    std::vector<double> energies_taken_;           // scratch, by block, J
-    mutable std::vector<Known> known_;             // by block
-    mutable std::uint64_t known_version_ = 0;      // of the state to which known_ belongs
+    std::vector<std::vector<LocalVector>> parts_;      // the forces of each block
+    std::vector<std::uint16_t> local_numbers_;         // scratch, by node id
+    std::vector<double> energies_taken_;               // scratch, by block, J
+    mutable std::vector<Known> known_;                 // by block
+    mutable std::vector<std::vector<double>> excess_;  // stiffness, by block and local number; or
+                                                       // empty, if all elements are as at rest
+    mutable std::uint64_t known_version_ = 0;          // of the state to which known_ belongs
 };
 
 }  // namespace incise::physics

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include "incise/physics/laws/stiffening.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::physics {
@@ -87,6 +88,10 @@ Mat3 HemlKernel::first_piola_kirchhoff(const Element& e, const Corners& x) const
 
 std::array<Vec3, 4> HemlKernel::forces(const Element& e, const Corners& x) const {
     return forces_of_first_stress(e, first_piola_kirchhoff(e, x));
+}
+
+double HemlKernel::stiffening(const Element& e, const Corners& x) const {
+    return physics::stiffening(law, deformation(e, x).strain, inversion_threshold);
 }
 
 std::array<double, 4> HemlKernel::stiffness_bounds(const Element& e, const Corners& X) const {

@@ -99,6 +99,11 @@ struct HemlKernel {
     /// Fibres under tension add c V |H g_i| sum_j |H g_j|. Here g_i is the gradient of the shape
     /// function of corner i, of length 1/h_i; for c and H see HasFibres.
     std::array<double, 4> stiffness_bounds(const Element& e, const Corners& X) const;
+
+    /// Returns the factor by which the bounds grow from rest to the corners x, m: the stiffness at
+    /// x is at most stiffness_bounds() times this factor, which is 1 at rest. Viscosity does not
+    /// count. Source: docs/theory.md, Stable step.
+    double stiffening(const Element& e, const Corners& x) const;
 };
 
 }  // namespace incise::physics

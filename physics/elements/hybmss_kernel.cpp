@@ -151,4 +151,59 @@ std::array<double, 8> HybmssKernel::stiffness_bounds(const Element& e, const Cor
     return s;
 }
 
+namespace {
+
+/// Returns the largest eigenvalue, at most, of a symmetric matrix with non-negative eigenvalues
+/// from the first two invariants of it. It is exact if the two other eigenvalues are equal.
+double largest_eigenvalue(double first, double second) {
+    return (first + 2.0 * std::sqrt(std::max(first * first - 3.0 * second, 0.0))) / 3.0;
+}
+
+/// Returns the factor by which the highest frequency of the springs of a cube grows, squared, if
+/// each spring had its stiffness in all directions. No strain exceeds it. The modes alternate along
+/// one, two or three axes.
+double largest_stiffening_of_springs(const SpringContributions& springs, double modulus_length) {
+    const double edge = springs.stiffnesses[0], face = springs.stiffnesses[3],
+                 inner = springs.stiffnesses[6];
+    const double highest = std::max(
+        {2.0 * edge + 4.0 * face + 2.0 * inner, 4.0 * (edge + face), 6.0 * edge + 2.0 * inner});
+    return std::max(highest / (1.5 * modulus_length), 1.0);
+}
+
+}  // namespace
+
+// The volume term is kappa/V (grad V' grad V'^T + (V' - V) grad grad V'). The mean edges give the
+// deformation gradient F of the cell, by which grad V' grows like cof F, and the second derivative
+// like F.
+double HybmssKernel::stiffening(const Element& e, const Corners& x) const {
+    const BoxFrame now(x);
+    const auto& lengths = e.springs.lengths;
+    const Vec3 a = now.a / lengths[0], b = now.b / lengths[1], c = now.c / lengths[2];
+    const double J = a.dot(b.cross(c));
+    const double first = a.squaredNorm() + b.squaredNorm() + c.squaredNorm();
+    const double second =
+        a.cross(b).squaredNorm() + b.cross(c).squaredNorm() + c.cross(a).squaredNorm();
+    const double largest_square = largest_eigenvalue(first, second),
+                 largest_of_areas = largest_eigenvalue(second, first * J * J);
+    const double kappa = material.volume_modulus, positive = std::max(kappa, 0.0);
+    const double of_volume =
+        positive * largest_of_areas + std::abs(kappa * (J - 1.0)) * std::sqrt(largest_square);
+    const double of_springs = 5.0 / 3.0 * material.shear_modulus;
+    double factor = 1.0;
+    if (is_cube({lengths[0], lengths[1], lengths[2]})) {
+        // What remains of the positions without the mean deformation also strains the springs.
+        Vec3 centre = Vec3::Zero();
+        for (const Vec3& corner : x) centre += 0.125 * corner;
+        double remainder = -2.0 * (now.a.squaredNorm() + now.b.squaredNorm() + now.c.squaredNorm());
+        for (const Vec3& corner : x) remainder += (corner - centre).squaredNorm();
+        const double strain = std::abs(largest_square - 1.0) + std::abs(first - 3.0) +
+                              std::sqrt(std::max(remainder, 0.0)) / lengths[0];
+        const double most = largest_stiffening_of_springs(
+            e.springs, of_springs * e.volume / (lengths[0] * lengths[0]));
+        constexpr double factor_of_strain = 2.0;
+        factor = std::min(1.0 + factor_of_strain * strain, most);
+    }
+    return (of_volume + of_springs * factor) / (positive + of_springs);
+}
+
 }  // namespace incise::physics

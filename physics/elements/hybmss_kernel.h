@@ -167,6 +167,10 @@ struct HybmssKernel {
     /// Returns the contribution of the cell to the bound on the stiffness of each corner at rest
     /// (stable_step.h), N/m.
     std::array<double, 8> stiffness_bounds(const Element& e, const Corners& X) const;
+
+    /// Returns the factor by which the bounds grow from rest to the corners x, m; it is 1 at rest.
+    /// Source: docs/theory.md, Stable step.
+    double stiffening(const Element& e, const Corners& x) const;
 };
 
 }  // namespace incise::physics

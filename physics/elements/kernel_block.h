@@ -46,6 +46,13 @@ concept HasMemoryLanes = requires {
     typename Kernel::MemoryLanes;
 };
 
+/// A kernel whose SIMD version also computes the stiffening of all elements.
+template <class Kernel>
+concept HasLanesOfStiffening = HasLanes<Kernel> &&
+    requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
+    lanes.set_stiffening(kernel, x, std::span<double>());
+};
+
 /// A block whose elements all use one kernel. A kernel must have the members of MassSpringKernel,
 /// and an overload of element_tangent(). ViscousKernel shows the further members of a kernel with
 /// history. docs/architecture.md, A kernel, lists the places to change for a new one.
@@ -152,6 +159,29 @@ class KernelBlock final : public ElementBlock {
         return energy;
     }
 
+    bool set_excess_stiffness(std::span<const LocalVector> positions,
+                              std::span<double> excess) const override {
+        assert(is_numbered_ && excess.size() >= nodes_.size());
+        const std::span<double> factors = room_for<double>(elements_.size());
+        if constexpr (HasLanesOfStiffening<Kernel>)
+            lanes_.set_stiffening(kernel_, positions.data(), factors);
+        else
+            for (std::size_t s = 0; s < elements_.size(); ++s)
+                factors[s] = kernel_.stiffening(row(s).rest, gather(s, positions));
+        // Rounding of the factors at rest, in floats.
+        constexpr double rounding = 1e-3;
+        if (std::ranges::all_of(factors, [](double f) { return f <= 1.0 + rounding; }))
+            return false;
+        std::ranges::fill(excess, 0.0);
+        for (std::size_t s = 0; s < elements_.size(); ++s) {
+            if (factors[s] <= 1.0 + rounding) continue;
+            const auto corners = local_corners(s);
+            for (std::size_t k = 0; k < num_corners; ++k)
+                excess[corners[k]] += (factors[s] - 1.0) * double{rest_stiffness_[s][k]};
+        }
+        return true;
+    }
+
     BlockState state(std::span<const Vec3> positions) const override {
         assert(is_numbered_);
         if constexpr (HasLanesOfResults<Kernel>) {
@@ -207,6 +237,11 @@ class KernelBlock final : public ElementBlock {
             results[s] = result_of(s, positions, history);
     }
 
+    double stiffening(ElementId e, std::span<const Vec3> positions) const override {
+        const std::size_t s = slot_of(e);
+        return std::max(kernel_.stiffening(row(s).rest, gather(s, positions)), 1.0);
+    }
+
     const NodalContributions& contributions(ElementId e) const override {
         return row(slot_of(e)).contributions;
     }
@@ -218,12 +253,14 @@ class KernelBlock final : public ElementBlock {
         row_of_.insert(row_of_.begin() + offset, static_cast<std::uint32_t>(rows_.size()));
         rows_.push_back(make_row(input));
         rest_volumes_.insert(rest_volumes_.begin() + offset, volume_of(s));
+        rest_stiffness_.insert(rest_stiffness_.begin() + offset, stiffness_of(s));
     }
 
     void replace(ElementId e, const ElementInput& input) override {
         const std::size_t s = slot_of(e);
         rows_[row_of_[s]] = make_row(input);
         rest_volumes_[s] = volume_of(s);
+        rest_stiffness_[s] = stiffness_of(s);
         change_slot(s);
     }
 
@@ -236,6 +273,7 @@ class KernelBlock final : public ElementBlock {
         rows_.pop_back();
         row_of_.erase(row_of_.begin() + static_cast<std::ptrdiff_t>(s));
         rest_volumes_.erase(rest_volumes_.begin() + static_cast<std::ptrdiff_t>(s));
+        rest_stiffness_.erase(rest_stiffness_.begin() + static_cast<std::ptrdiff_t>(s));
         remove_slot(s);
     }
 
@@ -309,6 +347,12 @@ class KernelBlock final : public ElementBlock {
         return use(lanes);
     }
 
+    std::array<float, num_corners> stiffness_of(std::size_t s) const {
+        std::array<float, num_corners> of_corners;
+        for (std::size_t k = 0; k < num_corners; ++k)
+            of_corners[k] = static_cast<float>(row(s).contributions.stiffness[k]);
+        return of_corners;
+    }
     double volume_of(std::size_t s) const { return row(s).share * row(s).rest.volume; }
 
     Row make_row(const ElementInput& input) const {
@@ -385,6 +429,8 @@ class KernelBlock final : public ElementBlock {
     std::vector<Row> rows_;              // in no order
     std::vector<std::uint32_t> row_of_;  // by slot
     std::vector<double> rest_volumes_;   // by slot, m3
+    // By slot and corner, N/m: the contributions again, in fewer bytes for the loop over all.
+    std::vector<std::array<float, num_corners>> rest_stiffness_;
     typename LanesOf<Kernel>::Type lanes_;
     typename MemoryLanesOf<Kernel>::Type memory_lanes_;
     Sum rest_volume_;

@@ -14,18 +14,24 @@ AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
+HemlStiffening<double> heml_stiffening;
+HemlStiffening<float> heml_stiffening;
 }  // namespace plain
 namespace avx2 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
+HemlStiffening<double> heml_stiffening;
+HemlStiffening<float> heml_stiffening;
 }  // namespace avx2
 namespace avx512 {
 AddHemlForces<double> add_heml_forces;
 AddHemlForces<float> add_heml_forces;
 HemlEnergies heml_energies;
 HemlStates heml_states;
+HemlStiffening<double> heml_stiffening;
+HemlStiffening<float> heml_stiffening;
 }  // namespace avx512
 
 template <class Number>
@@ -34,6 +40,13 @@ AddHemlForces<Number>* heml_forces_for(Processor processor) {
 }
 template AddHemlForces<double>* heml_forces_for(Processor processor);
 template AddHemlForces<float>* heml_forces_for(Processor processor);
+
+template <class Number>
+HemlStiffening<Number>* heml_stiffening_for(Processor processor) {
+    return INCISE_CHOOSE(processor, HemlStiffening<Number>, heml_stiffening);
+}
+template HemlStiffening<double>* heml_stiffening_for(Processor processor);
+template HemlStiffening<float>* heml_stiffening_for(Processor processor);
 
 HemlEnergies* heml_energies_for(Processor processor) {
     return INCISE_CHOOSE(processor, HemlEnergies, heml_energies);
@@ -130,6 +143,21 @@ void SimdHemlElements::set_results(const HemlKernel& kernel, const LocalVector* 
     const auto states = room_for<ElementStates>(groups.links.size());
     compute(kernel.law, kernel.inversion_threshold, groups, positions, states.data());
     physics::set_results(states, results);
+}
+
+void SimdHemlElements::set_stiffening(const HemlKernel& kernel, const LocalVector* positions,
+                                      std::span<double> factors) const {
+    std::visit(
+        [&]<class Number>(const LinkGroups<Number>& groups) {
+            static HemlStiffening<Number>* const compute = heml_stiffening_for<Number>(processor());
+            const auto of_groups = room_for<ElementFactors<Number>>(groups.links.size());
+            compute(kernel.law, kernel.inversion_threshold, groups, positions, of_groups.data());
+            std::size_t i = 0;
+            for (std::size_t lane = 0; i < factors.size(); ++lane)
+                for (std::size_t g = 0; g < of_groups.size() && i < factors.size(); ++g)
+                    factors[i++] = static_cast<double>(of_groups[g].factor[lane]);
+        },
+        groups_);
 }
 
 }  // namespace incise::physics

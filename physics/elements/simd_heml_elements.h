@@ -61,6 +61,12 @@ void set_share(std::vector<ShareGroup<Number>>& shares, std::size_t num_groups, 
     shares[group].share[lane] = static_cast<Number>(share);
 }
 
+/// The factors of a group of elements, by which their stiffness grows with strain.
+template <class Number>
+struct alignas(64) ElementFactors {
+    Number factor[LinkGroup<Number>::size];
+};
+
 /// The groups of a block.
 template <class Number>
 struct LinkGroups {
@@ -106,6 +112,12 @@ class SimdHemlElements {
     /// @pre  double precision
     void set_results(const HemlKernel& kernel, const LocalVector* positions,
                      std::span<ElementResult> results) const;
+    /// Sets the factors of HemlKernel::stiffening of all elements, in their order. They equal those
+    /// of the reference within rounding.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    void set_stiffening(const HemlKernel& kernel, const LocalVector* positions,
+                        std::span<double> factors) const;
     /// Returns the groups.
     /// @pre  `Number` is that of the precision of the kernel: double or float
     template <class Number>
@@ -126,6 +138,14 @@ using AddHemlForces = void(const Law& law, double inversion_threshold,
 /// float.
 template <class Number>
 AddHemlForces<Number>* heml_forces_for(Processor processor);
+
+template <class Number>
+using HemlStiffening = void(const Law& law, double inversion_threshold,
+                            const LinkGroups<Number>& groups, const LocalVector* positions,
+                            ElementFactors<Number>* factors);
+/// Returns the function that SimdHemlElements::set_stiffening calls on a processor.
+template <class Number>
+HemlStiffening<Number>* heml_stiffening_for(Processor processor);
 
 /// Functions that set the results of each group.
 using HemlEnergies = void(const Law& law, double inversion_threshold,

@@ -21,7 +21,7 @@ void StableStep::truncate(std::size_t num_nodes) {
     if (!block_max_.empty()) block_max_.back() = -1.0;
 }
 
-double StableStep::value() const {
+double StableStep::highest() const {
     double highest = 0.0;
     for (std::size_t b = 0; b < block_max_.size(); ++b) {
         if (block_max_[b] < 0.0) {
@@ -32,6 +32,10 @@ double StableStep::value() const {
         }
         highest = std::max(highest, block_max_[b]);
     }
+    return highest;
+}
+
+double StableStep::step_of(double highest) {
     return highest > 0.0 ? 2.0 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 

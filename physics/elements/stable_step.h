@@ -12,7 +12,7 @@ namespace incise::physics {
 ///
 /// m_i is the mass of node i. s_i is a bound of the stiffness at the node: a sum over its elements,
 /// by Gershgorin's theorem. At rest the bound is never above 2 / omega_max, and in practice 0.5 to
-/// 0.85 of it. Large strain changes the stiffness, which the safety of the step has to cover.
+/// 0.85 of it. Model::stable_step() is the bound with the present stiffness.
 /// @thread One thread at a time.
 class StableStep {
   public:
@@ -25,7 +25,11 @@ class StableStep {
     /// Returns the bound, s; infinite without nodes. It does not depend on the order of the calls
     /// of set(). Cost: proportional to the number of nodes / 256, and to the blocks of 256 nodes
     /// that have changed since the last call.
-    double value() const;
+    double value() const { return step_of(highest()); }
+    /// Returns the largest quotient, 1/s2; 0 without nodes. Cost as for value().
+    double highest() const;
+    /// Returns the bound for a largest quotient.
+    static double step_of(double highest);
 
     /// Returns the quotient s/m of a node, 1/s2.
     /// @pre  it was set

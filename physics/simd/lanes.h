@@ -174,6 +174,9 @@ struct Lanes {
     // As std::max(a, b) and std::min(a, b), also for NaN.
     friend Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }
     friend Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }
+    friend Bits is_less(Lanes a, Lanes b) { return a.v < b.v; }
+    /// Returns the numbers of a in the lanes where a comparison holds, and else those of b.
+    friend Lanes choose(Bits holds, Lanes a, Lanes b) { return holds ? a.v : b.v; }
 
     /// Returns 1/sqrt(a) for normal numbers above zero, with a relative error below 4e-16 (floats
     /// 3e-7), and a finite number for zero. It is several times faster than a division by a root,

@@ -100,7 +100,7 @@ TEST(FreeMotion, KeepsMomentaUpToRandomRoundOff) {
             set_state(model, swinging_state(mesh, 0.01, seed));
             const Totals start = model.totals();
             const MomentumScales scale(model);
-            const double dt = 0.5 * model.stable_step();
+            const double dt = 0.5 * model.rest_stable_step();
             double time = 0.0;
             for (int i = 0; i < num_steps; ++i) step(model, time, dt);
             const Totals end = model.totals();
@@ -131,7 +131,7 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
         set_state(model, swinging_state(mesh, 0.01));
         const Totals start = model.totals();
         const MomentumScales scale(model);
-        const EnergyRecord record = run(model, 0.5 * model.stable_step(), free.num_steps);
+        const EnergyRecord record = run(model, 0.5 * model.rest_stable_step(), free.num_steps);
         const Totals end = model.totals();
         // One draw of the random walk of round-off: three of the deviations that are held below.
         const double round_off = 3.0 * deviation_per_step * std::sqrt(free.num_steps);
@@ -169,7 +169,7 @@ TEST(FreeMotion, OfHybridSpringsKeepsMomentaWithoutEnergyDrift) {
             for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
                 scale += model.masses()[n] * model.velocities()[n].norm();
             const int num_steps = 40000;
-            const auto record = run(model, 0.5 * model.stable_step(), num_steps);
+            const auto record = run(model, 0.5 * model.rest_stable_step(), num_steps);
             const Totals after = model.totals();
             EXPECT_LE((after.momentum - before.momentum).norm(), 1e-12 * scale);
             EXPECT_LE((after.angular_momentum - before.angular_momentum).norm(), 1e-12 * scale);
@@ -188,7 +188,7 @@ TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
     const auto relative_swing = [&](double amplitude) {
         set_state(model, swinging_state(mesh, amplitude));
-        const EnergyRecord record = run(model, 0.5 * model.stable_step(), 2000);
+        const EnergyRecord record = run(model, 0.5 * model.rest_stable_step(), 2000);
         return swing(record.staggered) / average(record.staggered);
     };
     const double moderate = relative_swing(1e-3), small = relative_swing(1e-4);
@@ -199,7 +199,7 @@ TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
 TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
-    const double dt = 0.25 * model.stable_step();
+    const double dt = 0.25 * model.rest_stable_step();
     const auto swings = [&](double step_size, int num_steps) {
         set_state(model, swinging_state(mesh, 0.05));
         const EnergyRecord record = run(model, step_size, num_steps);
@@ -220,7 +220,7 @@ TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
     const double start = model.totals().gravity_energy;
     const Vec3 momentum = model.totals().momentum;
     double time = 0.0;
-    const double dt = 0.5 * model.stable_step();
+    const double dt = 0.5 * model.rest_stable_step();
     double path = 0.0;  // of work, up and down
     for (int i = 0; i < 500; ++i) {
         const double before = model.external_work();
@@ -257,7 +257,7 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
         Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
         double time = 0.0, largest = 0.0;
         const double dt = end_time / num_steps;
-        EXPECT_LT(dt, 0.25 * model.stable_step());
+        EXPECT_LT(dt, 0.25 * model.rest_stable_step());
         for (int i = 0; i < num_steps; ++i) {
             step(model, time, dt);
             const Totals now = model.totals();
@@ -284,7 +284,7 @@ TEST(DampedMotion, LosesMomentumAtItsRate) {
     set_state(model, state);
     const Vec3 start = model.totals().momentum;
     double time = 0.0;
-    const double dt = 0.5 * model.stable_step();
+    const double dt = 0.5 * model.rest_stable_step();
     for (int i = 0; i < 100; ++i) step(model, time, dt);
     // Implicitly damped: each step divides by 1 + c dt.
     const Vec3 expected = start * std::pow(1.0 + s.damping * dt, -100);

@@ -449,5 +449,27 @@ TEST(SimdHemlElements, SpareTermsThatAreZero) {
             named.law);
 }
 
+TYPED_TEST(SimdHemlElementsOf, StiffeningEqualsThatOfTheReference) {
+    this->for_each_kernel_of_it([](const auto& kernel) {
+        test::Random random(7);
+        std::vector<Tetrahedron> rest, now;
+        for (int i = 0; i < 37; ++i) {
+            rest.push_back(random_tetrahedron(random));
+            const auto stretch = [&] { return random.uniform(i % 5 == 0 ? -0.5 : 0.7, 1.6); };
+            const Mat3 F = random_deformation(random, {stretch(), stretch(), stretch()});
+            now.push_back(deformed(rest.back(), F));
+        }
+        const Elements<TypeParam> elements(kernel, rest, now);
+        std::vector<double> factors(rest.size());
+        elements.lanes.set_stiffening(kernel, elements.positions.data(), factors);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            const double expected = kernel.stiffening(kernel.precompute(rest[i]), now[i]);
+            // Floats keep stretches apart that are nearer than 3e-4.
+            EXPECT_NEAR(factors[i], expected,
+                        (sizeof(TypeParam) == sizeof(float) ? 2e-3 : 1e-7) * expected);
+        }
+    });
+}
+
 }  // namespace
 }  // namespace incise::physics

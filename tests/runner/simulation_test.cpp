@@ -141,13 +141,13 @@ TEST(Simulation, AutomaticStepsFollowEditsBelowTheBound) {
     for (const double safety : {0.8, 0.3}) {
         scenario.dynamics.safety = safety;
         Simulation simulation(scenario);
-        EXPECT_LE(simulation.time_step(), safety * simulation.model().stable_step());
+        EXPECT_LE(simulation.time_step(), safety * simulation.world().stable_step());
         Recorder recorder;
         simulation.add_observer(recorder);
         simulation.start();
         double lowest = 1.0, highest = 0.0;
         while (!simulation.is_finished()) {
-            const double stable = simulation.model().stable_step();
+            const double stable = simulation.world().stable_step();
             lowest = std::min(lowest, stable);
             highest = std::max(highest, stable);
             const double next_frame = static_cast<double>(recorder.frame_times.size()) * 0.01;
@@ -165,7 +165,7 @@ TEST(Simulation, AutomaticStepsFollowEditsBelowTheBound) {
 
 TEST(Simulation, RefusesAFixedStepAboveTheBound) {
     const Scenario automatic = scenario_of(soft_cube + dynamics(0.1, "safety = 1"));
-    const double stable = Simulation(automatic).model().stable_step();
+    const double stable = Simulation(automatic).model().rest_stable_step();
     Scenario scenario = automatic;
     scenario.dynamics.time_step = stable;
     EXPECT_NO_THROW(Simulation{scenario});
@@ -219,9 +219,9 @@ TEST(Simulation, RefusesFixedStepsThatEditsMakeTooLarge) {
         Scenario automatic = scenario;
         automatic.dynamics.time_step.reset();
         Simulation simulation(automatic);
-        before = simulation.model().stable_step();
+        before = simulation.model().rest_stable_step();
         run(simulation);
-        after = simulation.model().stable_step();
+        after = simulation.model().rest_stable_step();
     }
     ASSERT_LT(after, 0.8 * before);
     scenario.dynamics.time_step = 0.5 * (before + after);
@@ -339,8 +339,9 @@ TEST(Simulation, InSinglePrecisionEndsNearDoublePrecision) {
 }
 
 TEST(Ledger, AccountsForEveryEdit) {
-    const Scenario scenario =
-        scenario_of(soft_cube + two_tools + dynamics(0.2, "gravity = [0, 0, -9.81]"));
+    const Scenario scenario = scenario_of(
+        soft_cube + two_tools +
+        dynamics(0.2, "gravity = [0, 0, -9.81]\ntime_step = 0.0055"));  // both cut in some steps
     Simulation simulation(scenario);
     Recorder recorder;
     simulation.add_observer(recorder);
@@ -401,7 +402,7 @@ TEST(Ledger, AccountsForEveryEdit) {
         mass_removed += edit.mass_removed;
     }
     EXPECT_EQ(removed + simulation.mesh().num_elements(), 162u);
-    EXPECT_GT(removed, 5u);
+    EXPECT_GT(removed, 3u);
     EXPECT_GT(opened, 5u);
     EXPECT_GT(num_in_same_step, 0u);
     EXPECT_NEAR(mass_removed + simulation.model().totals().mass, 1.0, 1e-12);

@@ -16,7 +16,7 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     session.run(0, 20);
     World& world = session.world();
     const std::string before = world.save();
-    const double nan = std::nan(""), bound = world.stable_step();
+    const double nan = std::nan(""), bound = world.rest_stable_step();
     const physics::NodeSet floor(nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }));
     const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
         {[&] { world.step(0.0); }, "it must be above 0"},

@@ -376,16 +376,16 @@ TEST(World, RefusesForceTermsThatCannotBe) {
     Session session(held_world());
     World& world = session.world();
     const std::string before = world.save();
-    const double bound = world.stable_step();
+    const double bound = world.rest_stable_step();
     EXPECT_NE(input_error_of([&] { world.add_force_term(nullptr); }), "");
     for (const double odd : {-1e9, std::nan(""), std::numeric_limits<double>::infinity()}) {
         EXPECT_NE(input_error_of([&] { world.add_force_term(std::make_unique<Odd>(odd)); }), "");
-        EXPECT_EQ(world.stable_step(), bound);
+        EXPECT_EQ(world.rest_stable_step(), bound);
     }
     auto owned = std::make_unique<Odd>(2.0);
     Odd* term = owned.get();
     world.add_force_term(std::move(owned));
-    EXPECT_LT(world.stable_step(), bound);
+    EXPECT_LT(world.rest_stable_step(), bound);
     // A restore that the term refuses leaves the term with the world.
     term->has_to_throw = true;
     EXPECT_EQ(input_error_of([&] { world.restore(before); }), "not this body");
@@ -394,7 +394,7 @@ TEST(World, RefusesForceTermsThatCannotBe) {
     const physics::ForceTerm* stranger = nullptr;
     EXPECT_NE(input_error_of([&] { world.remove_force_term(stranger); }), "");
     world.remove_force_term(term);
-    EXPECT_EQ(world.stable_step(), bound);
+    EXPECT_EQ(world.rest_stable_step(), bound);
     world.restore(before);
     session.run(0, 10);
     Session undisturbed(held_world());
