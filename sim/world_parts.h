@@ -27,9 +27,9 @@ struct BoundInterval {
     static constexpr double motion = 0.25;
     static constexpr int least_steps = 4;  ///< but not before so many steps
 
-    /// The stable step rises only after so many steps, and then to its least value in them. Steps
-    /// that fell and rose with each oscillation would change the energy, always in one direction.
-    static constexpr int held_steps = 384;
+    /// The stable step rises only after so many steps, and then to its least value in them. Each
+    /// change of the step changes the energy that the method keeps by a little.
+    static constexpr int held_steps = 2048;
 
     double element_length = 0.0;  ///< m
     int num_steps = 0;            ///< since the stable step was computed

@@ -163,6 +163,9 @@ class Model {
     /// Throws MotionFailure if the state is no longer finite, or if a node has moved by more than
     /// size() in this step. The message names an element, the time and the likely cause.
     void integrate(double time, double dt);
+    /// Changes the velocities of free components by those that the forces last computed bring about
+    /// in a time, s, which may be below 0.
+    void shift_velocities(double time);
     /// Makes the first of two stages that together equal integrate(): sets the velocities to those
     /// of the end of the step. The velocities may be changed before the second stage, drift().
     /// Without such changes, the results are those of integrate() bit for bit.

@@ -115,6 +115,20 @@ void Model::add_reaction(int constraint, int component, double force, const Vec3
     reactions[s].moment += (x - constraints_.point(s)).cross(force * Vec3::Unit(component));
 }
 
+void Model::shift_velocities(double time) {
+    const State::Values values = state_.change();
+    workers_.for_each_range(masses_.size(), [&](NodeRange range) {
+        for (std::size_t n = range.begin; n < range.end; ++n) {
+            if (masses_[n] == 0.0) continue;  // dead
+            const Vec3 change = time / masses_[n] * (elastic_forces_[n] + outer_forces_[n]);
+            const auto* constraint_of = constraints_.of_node(n);
+            for (int c = 0; c < 3; ++c)
+                if (!constraint_of || (*constraint_of)[static_cast<std::size_t>(c)] < 0)
+                    values.velocities[n][c] += change[c];
+        }
+    });
+}
+
 void Model::kick(double time, double dt) {
     const State::Values values = state_.change();
     previous_velocities_.assign(values.velocities.begin(), values.velocities.end());

@@ -41,9 +41,15 @@ class VelocityProjection {
 
 /// Symplectic Euler, for steps below the stable step. A step has the stages kick, project and
 /// drift. Without projections it is one pass over the nodes: Model::integrate.
+///
+/// Velocities are those in the middle of the step before. So where a step differs in length from
+/// the one before, the forces act over the mean of both. Source: docs/theory.md, Masses and time
+/// steps.
 class SemiImplicitEuler final : public Integrator {
   public:
     void step(Model& model, double time, double dt) override;
+    void save(ArchiveWriter& ar) const override;
+    void restore(ArchiveReader& ar, const Model& model) override;
     /// Adds a projection. Projections act in the order in which they are added.
     void add_projection(std::unique_ptr<VelocityProjection> projection) {
         projections_.push_back(std::move(projection));
@@ -51,6 +57,7 @@ class SemiImplicitEuler final : public Integrator {
 
   private:
     std::vector<std::unique_ptr<VelocityProjection>> projections_;
+    double dt_ = 0.0;  // of the step before, s; 0: none
 };
 
 /// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'). The forces f are those of

@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
 #include "incise/physics/solve/integrator.h"
 
 namespace incise::physics {
 
 void SemiImplicitEuler::step(Model& model, double time, double dt) {
+    // Steps that divide an interval equally differ by rounding.
+    constexpr double rounding = 1e-8;
+    if (dt_ == 0.0) dt_ = dt;
+    if (std::abs(dt - dt_) > rounding * dt) {
+        model.shift_velocities(0.5 * (dt_ - dt));
+        dt_ = dt;
+    }
     if (projections_.empty()) {
         model.integrate(time, dt);
         return;
@@ -11,6 +22,13 @@ void SemiImplicitEuler::step(Model& model, double time, double dt) {
     model.kick(time, dt);
     for (const auto& projection : projections_) projection->project(model, time, dt);
     model.drift(time, dt);
+}
+
+void SemiImplicitEuler::save(ArchiveWriter& ar) const { ar(dt_); }
+
+void SemiImplicitEuler::restore(ArchiveReader& ar, const Model&) {
+    ar(dt_);
+    if (!(dt_ >= 0.0 && std::isfinite(dt_))) throw InputError("its last step is not 0 or more");
 }
 
 }  // namespace incise::physics

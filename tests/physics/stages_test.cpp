@@ -88,6 +88,34 @@ TEST(Stages, WithoutProjectionAreTheFusedStep) {
     }
 }
 
+TEST(VariableSteps, LetTheForceActOverTheMeanOfTwoSteps) {
+    const Mesh mesh = bar();
+    const Constraint held = holding("left", left_end(mesh), {true, false, true});
+    Model model(
+        mesh, table_of_one_law(soft_law),
+        {.gravity = Vec3(1.0, 2.0, -9.0), .damping = 0.0, .constraints = {held}, .loads = {}});
+    SemiImplicitEuler integrator;
+    const double bound = 0.5 * model.rest_stable_step();
+    double time = 0.0, last = 0.0;
+    for (const double dt : {0.5 * bound, bound, bound, 0.3 * bound, 0.31 * bound}) {
+        const std::vector<Vec3> before(model.velocities().begin(), model.velocities().end());
+        const std::vector<Vec3> elastic(model.elastic_forces().begin(),
+                                        model.elastic_forces().end()),
+            outer(model.outer_forces().begin(), model.outer_forces().end());
+        integrator.step(model, time, dt);
+        const double acting = last == 0.0 ? dt : 0.5 * (last + dt);
+        for (const NodeId n : mesh.nodes()) {
+            Vec3 expected = before[n.index()] + acting / model.masses()[n.index()] *
+                                                    (elastic[n.index()] + outer[n.index()]);
+            if (model.constraints().of_node(n.index())) expected.x() = expected.z() = 0.0;
+            EXPECT_LE((model.velocities()[n.index()] - expected).norm(), 1e-12 * expected.norm());
+        }
+        time += dt;
+        last = dt;
+        model.compute_forces(time);
+    }
+}
+
 /// Gives the same impulse to all nodes of a set.
 struct Push final : VelocityProjection {
     NodeId node;
