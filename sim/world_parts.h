@@ -30,6 +30,9 @@ struct BoundInterval {
     /// The stable step rises only after so many steps, and then to its least value in them. Each
     /// change of the step changes the energy that the method keeps by a little.
     static constexpr int held_steps = 2048;
+    /// It rises earlier if it can rise by this factor: tissue has come to rest.
+    static constexpr int least_held_steps = 384;
+    static constexpr double large_rise = 1.5;
 
     double element_length = 0.0;  ///< m
     int num_steps = 0;            ///< since the stable step was computed
@@ -40,6 +43,11 @@ struct BoundInterval {
     bool is_over() const {
         return num_steps >= most_steps ||
                (num_steps >= least_steps && moved > motion * element_length);
+    }
+    /// True if the stable step, s, may rise to `least`.
+    bool may_rise(double stable_step) const {
+        return num_steps == 0 && (num_held >= held_steps || (num_held >= least_held_steps &&
+                                                             least > large_rise * stable_step));
     }
     static void archive(auto& ar, auto& self) {
         ar(self.element_length, self.num_steps, self.moved, self.num_held, self.least);

@@ -147,10 +147,7 @@ void World::Parts::update_stable_step() {
         for (const Edit& edit : report.edits)
             bound = std::min(bound, model.stable_step(edit.of_model.touched));
     }
-    if (interval.num_held >= BoundInterval::held_steps && interval.num_steps == 0)
-        bound = interval.least;
-    else
-        bound = std::min(bound, stable_step);
+    bound = interval.may_rise(stable_step) ? interval.least : std::min(bound, stable_step);
     if (bound == stable_step) return;
     stable_step = bound;
     interval.num_held = 0;

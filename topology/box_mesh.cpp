@@ -3,6 +3,16 @@
 
 namespace incise::topology {
 
+namespace {
+
+/// Returns the i-th of n + 1 equidistant coordinates from 0 to `size`. The last is exactly `size`,
+/// so that a selection up to the far face selects it.
+double coordinate(std::int64_t i, std::int64_t n, double size) {
+    return i == n ? size : static_cast<double>(i) * size / static_cast<double>(n);
+}
+
+}  // namespace
+
 MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::array<int, 3> cells) {
     const std::int64_t nx = cells[0], ny = cells[1], nz = cells[2];
     MeshData mesh;
@@ -10,10 +20,8 @@ MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::arra
     for (std::int64_t k = 0; k <= nz; ++k)
         for (std::int64_t j = 0; j <= ny; ++j)
             for (std::int64_t i = 0; i <= nx; ++i) {
-                // The division comes last, so that the far faces lie exactly at origin + size.
-                const Vec3 step(static_cast<double>(i) * size.x() / static_cast<double>(nx),
-                                static_cast<double>(j) * size.y() / static_cast<double>(ny),
-                                static_cast<double>(k) * size.z() / static_cast<double>(nz));
+                const Vec3 step(coordinate(i, nx, size.x()), coordinate(j, ny, size.y()),
+                                coordinate(k, nz, size.z()));
                 mesh.points.push_back(origin + step);
             }
 

@@ -14,22 +14,36 @@ EmbeddedNodes::EmbeddedNodes(const Mesh& mesh, const FragmentMesh& fragments)
     for (const NodeId n : mesh.nodes()) find(mesh, fragments, n);
 }
 
-void EmbeddedNodes::find(const Mesh& mesh, const FragmentMesh& fragments, NodeId n) {
-    num_embedded_ -= is_embedded(n.index()) ? 1 : 0;
-    topology::Embedding& at = of_node_[n.index()];
-    at = mesh.is_alive(n) ? fragments.embedding(mesh, n) : topology::Embedding();
-    double gain = 0.0;
+namespace {
+
+/// Returns how far a point moves at most for each metre that its nodes move.
+double gain(const topology::Embedding& at) {
+    double sum = 0.0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-        gain += std::abs(at.weights[k]);
-    largest_gain_ = std::max(largest_gain_, gain);
+        sum += std::abs(at.weights[k]);
+    constexpr double rounding = 1e-12;  // of weights that sum to 1
+    return sum > 1.0 + rounding ? sum : 1.0;
+}
+
+}  // namespace
+
+void EmbeddedNodes::set(NodeId n, const topology::Embedding& at) {
+    topology::Embedding& known = of_node_[n.index()];
+    num_embedded_ -= is_embedded(n.index()) ? 1 : 0;
+    if (const double before = gain(known); before > 1.0) gains_.erase(gains_.find(before));
+    known = at;
+    if (const double now = gain(known); now > 1.0) gains_.insert(now);
     num_embedded_ += is_embedded(n.index()) ? 1 : 0;
+}
+
+void EmbeddedNodes::find(const Mesh& mesh, const FragmentMesh& fragments, NodeId n) {
+    set(n, mesh.is_alive(n) ? fragments.embedding(mesh, n) : topology::Embedding());
 }
 
 void EmbeddedNodes::apply(const Mesh& mesh, const FragmentMesh& fragments, const BodyEdit& edit,
                           const topology::FragmentChanges& changes) {
     positions_.version = velocities_.version = 0;
-    for (std::size_t n = mesh.node_capacity(); n < of_node_.size(); ++n)
-        num_embedded_ -= is_embedded(n) ? 1 : 0;
+    for (std::size_t n = mesh.node_capacity(); n < of_node_.size(); ++n) set(NodeId(n), {});
     of_node_.resize(mesh.node_capacity());
     std::vector<NodeId> touched(edit.touched_of_mesh.begin(), edit.touched_of_mesh.end());
     const auto touch = [&](ElementId cell) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,7 @@ class EmbeddedNodes {
     bool is_trivial() const { return num_embedded_ == 0; }
     /// Returns a bound on how far a node of the mesh moves for each metre that the nodes of the
     /// fragments move: the largest sum of the absolute values of its weights.
-    double largest_gain() const { return largest_gain_; }
+    double largest_gain() const { return gains_.empty() ? 1.0 : *gains_.rbegin(); }
 
     /// Returns the values of all nodes of the mesh, by id, from those of the nodes of the
     /// fragments. Dead nodes have zero.
@@ -50,6 +51,7 @@ class EmbeddedNodes {
         std::uint64_t version = 0;  // of the state; 0: not known
         std::vector<Vec3> values;
     };
+    void set(NodeId n, const topology::Embedding& at);
     void find(const topology::Mesh& mesh, const topology::FragmentMesh& fragments, NodeId n);
     bool is_embedded(std::size_t n) const {
         const topology::Embedding& at = of_node_[n];
@@ -60,7 +62,7 @@ class EmbeddedNodes {
 
     std::vector<topology::Embedding> of_node_;
     std::size_t num_embedded_ = 0;  // nodes that are not the node with the same id
-    double largest_gain_ = 1.0;     // of all nodes so far
+    std::multiset<double> gains_;   // of the present nodes, those above 1
     mutable Values positions_, velocities_;
 };
 

@@ -103,8 +103,10 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
             test::Random random(seed);
             std::vector<FollowedEdit> edits;
             std::vector<ModelSnapshot> before;
+            std::vector<double> gains;
             for (int i = 0; i < 3; ++i) {
                 before.emplace_back(body.model, body.time);
+                gains.push_back(body.model.embedded_nodes().largest_gain());
                 edits.push_back(follow(body.model, random_cut(body.mesh, random)));
                 const ModelSnapshot now(body.model, body.time);
                 MaterialTable table = body.table;
@@ -122,12 +124,15 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
                 Model restored(body.mesh, without_fibres, reader, body.time);
                 EXPECT_TRUE(reader.is_at_end());
                 EXPECT_TRUE(restored.fragments() == body.model.fragments());
+                EXPECT_EQ(restored.embedded_nodes().largest_gain(),
+                          body.model.embedded_nodes().largest_gain());
                 expect_equal(ModelSnapshot(restored, body.time), now);
                 EXPECT_TRUE(
                     std::ranges::equal(restored.mesh_positions(), body.model.mesh_positions()));
             }
-            for (; !edits.empty(); edits.pop_back(), before.pop_back()) {
+            for (; !edits.empty(); edits.pop_back(), before.pop_back(), gains.pop_back()) {
                 take_back(body.mesh, body.model, edits.back());
+                EXPECT_EQ(body.model.embedded_nodes().largest_gain(), gains.back());
                 expect_equal(ModelSnapshot(body.model, body.time), before.back());
             }
         }

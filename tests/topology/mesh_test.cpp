@@ -72,6 +72,15 @@ TEST(BoxMesh, FillsTheBoxAndFitsTogether) {
     }
 }
 
+TEST(BoxMesh, EndsExactlyAtItsSize) {
+    for (const double size : {0.1, 0.3, 1.0 / 3.0, 0.7})
+        for (int n = 1; n < 50; ++n) {
+            const MeshData data =
+                box_mesh(CellKind::hexahedron, {0, 0, 0}, {size, 1, 2 * size}, {n, 1, n});
+            EXPECT_EQ(data.points.back(), Vec3(size, 1, 2 * size)) << n;
+        }
+}
+
 TEST(Mesh, IsValidForEveryFamily) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
