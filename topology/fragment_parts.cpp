@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "incise/base/disjoint_set.h"
 
@@ -126,11 +127,21 @@ std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementI
     const auto add_beside = [&](std::size_t part) {
         for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
     };
+    // keep_bridges() looks at parts two faces from a light part and its neighbour.
+    std::vector<std::size_t> near;
     for (const ElementId carrier : touched)
         for (auto [part, end] = of(carrier); part < end; ++part) {
-            add(part);
-            add_beside(part);
+            near.push_back(part);
+            parts_[part].is_near_edit = true;
         }
+    for (std::size_t begin = 0, ring = 0; ring < 3; ++ring)
+        for (const std::size_t end = near.size(); begin < end; ++begin)
+            for (const Neighbor& neighbor : neighbors(near[begin]))
+                if (!parts_[neighbor.part].is_near_edit) {
+                    parts_[neighbor.part].is_near_edit = true;
+                    near.push_back(neighbor.part);
+                }
+    for (const std::size_t part : near) add(part);
     // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
     for (std::size_t next = 0; next < cluster.size(); ++next) {
         add_beside(cluster[next]);
@@ -144,15 +155,17 @@ std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementI
 // Light parts join, across faces and within their region, the part behind the largest area. First
 // those do that have a neighbour which is an element; then those beside these, and so on. Those
 // that reach none join their largest light neighbour if it is larger. The largest of all becomes an
-// element although it is light.
+// element although it is light. So does a part without which the material would come apart.
 std::vector<ElementId> FragmentParts::join_light(const std::vector<ElementId>& touched) {
     std::vector<std::size_t> lights = light_cluster(touched);
     std::vector<ElementId> open = touched;
     for (const std::size_t part : lights) open.push_back(parts_[part].carrier);
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
+    const std::vector<std::size_t> cluster = lights;
     join_in_rounds(lights);
     join_larger_lights(lights);
+    keep_bridges(cluster);
     return open;
 }
 
@@ -193,6 +206,75 @@ void FragmentParts::join_larger_lights(const std::vector<std::size_t>& lights) {
     for (const std::size_t part : lights)
         while (parts_[part].master != parts_[parts_[part].master].master)
             parts_[part].master = parts_[parts_[part].master].master;
+}
+
+// A bridge of light parts may be carried in halves by elements on either side that have no common
+// node. Then parts of it become elements, until the material hangs together as the mesh does.
+void FragmentParts::keep_bridges(const std::vector<std::size_t>& cluster) {
+    const auto is_larger = [&](std::size_t a, std::size_t b) {
+        if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
+        return parts_[a].head() < parts_[b].head();
+    };
+    for (;;) {
+        std::vector<std::size_t> bridges;
+        for (const std::size_t part : cluster)
+            for (const Neighbor& neighbor : neighbors(part)) {
+                if (hang_together(part, neighbor.part)) continue;
+                const bool is_first = is_element(neighbor.part) ||
+                                      (!is_element(part) && is_larger(part, neighbor.part));
+                bridges.push_back(is_first ? part : neighbor.part);
+            }
+        if (bridges.empty()) return;
+        for (const std::size_t part : bridges) parts_[part].master = part;
+    }
+}
+
+/// True if the elements that carry two neighbours hang together near them. Only parts at most two
+/// faces from the two count, so that an edit elsewhere changes nothing.
+bool FragmentParts::hang_together(std::size_t part, std::size_t neighbor) {
+    const std::size_t a = parts_[part].master, b = parts_[neighbor].master;
+    const auto are_neighbors = [&](std::size_t i, std::size_t j) {
+        return std::ranges::find(neighbors(i), j, &Neighbor::part) != neighbors(i).end();
+    };
+    if (a == b || are_neighbors(a, b)) return true;
+    for (const Neighbor& between : neighbors(a))
+        if (is_element(between.part) && are_neighbors(between.part, b)) return true;
+
+    std::vector<std::size_t> near{part, neighbor};
+    for (std::size_t begin = 0, ring = 0; ring < 2; ++ring)
+        for (const std::size_t end = near.size(); begin < end; ++begin)
+            for (const Neighbor& next : neighbors(near[begin]))
+                if (std::ranges::find(near, next.part) == near.end()) near.push_back(next.part);
+    for (const std::size_t master : {a, b})
+        if (std::ranges::find(near, master) == near.end()) near.push_back(master);
+    for (std::size_t i = 0; i < near.size(); ++i)
+        parts_[near[i]].local = static_cast<std::int32_t>(i);
+
+    // Elements hang together if they are in one group of parts at a node.
+    DisjointSet elements(near.size());
+    std::map<NodeId, std::vector<std::int32_t>> at_node;
+    for (const std::size_t i : near)
+        for (const NodeId origin : fragments_.origins_of(parts_[i].carrier))
+            at_node[origin].push_back(parts_[i].local);
+    std::vector<char> is_here(near.size(), 0);
+    for (const auto& [origin, here] : at_node) {
+        DisjointSet groups(near.size());
+        for (const std::int32_t i : here) is_here[static_cast<std::size_t>(i)] = 1;
+        for (const std::int32_t i : here)
+            for (const Neighbor& next : neighbors(near[static_cast<std::size_t>(i)]))
+                if (const std::int32_t j = parts_[next.part].local;
+                    j >= 0 && is_here[static_cast<std::size_t>(j)] != 0)
+                    groups.join(i, j);
+        std::map<std::int32_t, std::int32_t> first;
+        for (const std::int32_t i : here) {
+            is_here[static_cast<std::size_t>(i)] = 0;
+            if (is_element(near[static_cast<std::size_t>(i)]))
+                elements.join(first.try_emplace(groups.find(i), i).first->second, i);
+        }
+    }
+    const bool do_hang = elements.find(parts_[a].local) == elements.find(parts_[b].local);
+    for (const std::size_t i : near) parts_[i].local = -1;
+    return do_hang;
 }
 
 }  // namespace incise::topology

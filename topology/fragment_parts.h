@@ -32,6 +32,7 @@ class FragmentParts {
         bool is_element = false;     // carried by a fragment of its own carrier
         bool has_neighbors = false;  // found
         bool is_in_cluster = false;  // see light_cluster()
+        bool is_near_edit = false;   // likewise
         bool is_waiting = false;     // see join_in_rounds()
         ElementId head() const { return cells.front(); }
     };
@@ -73,6 +74,12 @@ class FragmentParts {
     }
     void join_in_rounds(std::vector<std::size_t>& lights);
     void join_larger_lights(const std::vector<std::size_t>& lights);
+    void keep_bridges(const std::vector<std::size_t>& cluster);
+    bool hang_together(std::size_t part, std::size_t neighbor);
+    bool is_element(std::size_t part) const {
+        const Part& of = parts_[part];
+        return of.is_in_cluster ? of.master == part : of.is_element || !of.is_light;
+    }
 
     FragmentMesh& fragments_;
     const Mesh& material_;
