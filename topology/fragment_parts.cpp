@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "incise/base/disjoint_set.h"
 
@@ -127,21 +126,11 @@ std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementI
     const auto add_beside = [&](std::size_t part) {
         for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
     };
-    // keep_bridges() looks at parts two faces from a light part and its neighbour.
-    std::vector<std::size_t> near;
     for (const ElementId carrier : touched)
         for (auto [part, end] = of(carrier); part < end; ++part) {
-            near.push_back(part);
-            parts_[part].is_near_edit = true;
+            add(part);
+            add_beside(part);
         }
-    for (std::size_t begin = 0, ring = 0; ring < 3; ++ring)
-        for (const std::size_t end = near.size(); begin < end; ++begin)
-            for (const Neighbor& neighbor : neighbors(near[begin]))
-                if (!parts_[neighbor.part].is_near_edit) {
-                    parts_[neighbor.part].is_near_edit = true;
-                    near.push_back(neighbor.part);
-                }
-    for (const std::size_t part : near) add(part);
     // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
     for (std::size_t next = 0; next < cluster.size(); ++next) {
         add_beside(cluster[next]);
@@ -209,72 +198,92 @@ void FragmentParts::join_larger_lights(const std::vector<std::size_t>& lights) {
 }
 
 // A bridge of light parts may be carried in halves by elements on either side that have no common
-// node. Then parts of it become elements, until the material hangs together as the mesh does.
-void FragmentParts::keep_bridges(const std::vector<std::size_t>& cluster) {
+// node. Then parts of it become elements, until the material hangs together as the mesh does. Each
+// set of light parts that hang together is decided alone, whatever else the edit touches.
+void FragmentParts::keep_bridges(const std::vector<std::size_t>& lights) {
+    for (const std::size_t first : lights) {
+        if (parts_[first].is_kept_together) continue;
+        std::vector<std::size_t> near{first};
+        const auto add = [&](std::size_t part) {
+            if (parts_[part].is_kept_together || !parts_[part].is_in_cluster) return;
+            parts_[part].is_kept_together = true;
+            near.push_back(part);
+        };
+        parts_[first].is_kept_together = true;
+        // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
+        for (std::size_t next = 0; next < near.size(); ++next) {
+            for (const Neighbor& neighbor : neighbors(near[next])) add(neighbor.part);
+            for (auto [part, end] = of(parts_[near[next]].carrier); part < end; ++part) add(part);
+        }
+        keep_together(near);
+    }
+}
+
+/// Makes light parts elements where the elements that carry two neighbours are not connected.
+void FragmentParts::keep_together(const std::vector<std::size_t>& lights) {
     const auto is_larger = [&](std::size_t a, std::size_t b) {
         if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
         return parts_[a].head() < parts_[b].head();
     };
+    std::vector<std::size_t> near = lights;
+    for (const std::size_t part : lights)
+        for (const Neighbor& neighbor : neighbors(part)) near.push_back(neighbor.part);
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    for (std::size_t i = 0; i < near.size(); ++i)
+        parts_[near[i]].local = static_cast<std::int32_t>(i);
     for (;;) {
+        DisjointSet connected = connected_elements(near);
         std::vector<std::size_t> bridges;
-        for (const std::size_t part : cluster)
+        for (const std::size_t part : lights)
             for (const Neighbor& neighbor : neighbors(part)) {
-                if (hang_together(part, neighbor.part)) continue;
+                const auto a = parts_[parts_[part].master].local,
+                           b = parts_[parts_[neighbor.part].master].local;
+                if (connected.find(a) == connected.find(b)) continue;
                 const bool is_first = is_element(neighbor.part) ||
                                       (!is_element(part) && is_larger(part, neighbor.part));
                 bridges.push_back(is_first ? part : neighbor.part);
             }
-        if (bridges.empty()) return;
+        if (bridges.empty()) break;
         for (const std::size_t part : bridges) parts_[part].master = part;
     }
+    for (const std::size_t part : near) parts_[part].local = -1;
 }
 
-/// True if the elements that carry two neighbours hang together near them. Only parts at most two
-/// faces from the two count, so that an edit elsewhere changes nothing.
-bool FragmentParts::hang_together(std::size_t part, std::size_t neighbor) {
-    const std::size_t a = parts_[part].master, b = parts_[neighbor].master;
-    const auto are_neighbors = [&](std::size_t i, std::size_t j) {
-        return std::ranges::find(neighbors(i), j, &Neighbor::part) != neighbors(i).end();
-    };
-    if (a == b || are_neighbors(a, b)) return true;
-    for (const Neighbor& between : neighbors(a))
-        if (is_element(between.part) && are_neighbors(between.part, b)) return true;
-
-    std::vector<std::size_t> near{part, neighbor};
-    for (std::size_t begin = 0, ring = 0; ring < 2; ++ring)
-        for (const std::size_t end = near.size(); begin < end; ++begin)
-            for (const Neighbor& next : neighbors(near[begin]))
-                if (std::ranges::find(near, next.part) == near.end()) near.push_back(next.part);
-    for (const std::size_t master : {a, b})
-        if (std::ranges::find(near, master) == near.end()) near.push_back(master);
-    for (std::size_t i = 0; i < near.size(); ++i)
-        parts_[near[i]].local = static_cast<std::int32_t>(i);
-
-    // Elements hang together if they are in one group of parts at a node.
-    DisjointSet elements(near.size());
-    std::map<NodeId, std::vector<std::int32_t>> at_node;
-    for (const std::size_t i : near)
-        for (const NodeId origin : fragments_.origins_of(parts_[i].carrier))
-            at_node[origin].push_back(parts_[i].local);
-    std::vector<char> is_here(near.size(), 0);
-    for (const auto& [origin, here] : at_node) {
-        DisjointSet groups(near.size());
-        for (const std::int32_t i : here) is_here[static_cast<std::size_t>(i)] = 1;
-        for (const std::int32_t i : here)
-            for (const Neighbor& next : neighbors(near[static_cast<std::size_t>(i)]))
-                if (const std::int32_t j = parts_[next.part].local;
-                    j >= 0 && is_here[static_cast<std::size_t>(j)] != 0)
-                    groups.join(i, j);
-        std::map<std::int32_t, std::int32_t> first;
-        for (const std::int32_t i : here) {
-            is_here[static_cast<std::size_t>(i)] = 0;
-            if (is_element(near[static_cast<std::size_t>(i)]))
-                elements.join(first.try_emplace(groups.find(i), i).first->second, i);
+/// Joins the elements among some parts that have common nodes: at a node before any cut, they are
+/// in one group of parts that share faces. `near` has the part of each number `local`.
+DisjointSet FragmentParts::connected_elements(const std::vector<std::size_t>& near) {
+    std::vector<std::pair<NodeId, std::int32_t>> places;
+    for (const std::size_t part : near)
+        for (const NodeId origin : fragments_.origins_of(parts_[part].carrier))
+            places.emplace_back(origin, parts_[part].local);
+    std::ranges::sort(places);
+    DisjointSet connected(near.size());
+    std::vector<std::int32_t> place_of(near.size(), -1);  // by local number, at the present node
+    for (auto begin = places.begin(); begin != places.end();) {
+        auto end = begin;
+        for (; end != places.end() && end->first == begin->first; ++end)
+            place_of[static_cast<std::size_t>(end->second)] =
+                static_cast<std::int32_t>(end - begin);
+        DisjointSet groups(static_cast<std::size_t>(end - begin));
+        for (auto it = begin; it != end; ++it)
+            for (const Neighbor& next : neighbors(near[static_cast<std::size_t>(it->second)]))
+                if (const std::int32_t local = parts_[next.part].local; local >= 0)
+                    if (const std::int32_t place = place_of[static_cast<std::size_t>(local)];
+                        place >= 0)
+                        groups.join(static_cast<std::int32_t>(it - begin), place);
+        std::vector<std::int32_t> first(static_cast<std::size_t>(end - begin), -1);
+        for (auto it = begin; it != end; ++it) {
+            place_of[static_cast<std::size_t>(it->second)] = -1;
+            if (!is_element(near[static_cast<std::size_t>(it->second)])) continue;
+            std::int32_t& element =
+                first[static_cast<std::size_t>(groups.find(static_cast<std::int32_t>(it - begin)))];
+            if (element < 0) element = it->second;
+            connected.join(element, it->second);
         }
+        begin = end;
     }
-    const bool do_hang = elements.find(parts_[a].local) == elements.find(parts_[b].local);
-    for (const std::size_t i : near) parts_[i].local = -1;
-    return do_hang;
+    return connected;
 }
 
 }  // namespace incise::topology

@@ -7,6 +7,7 @@
 #include <deque>
 #include <vector>
 
+#include "incise/base/disjoint_set.h"
 #include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
@@ -29,11 +30,11 @@ class FragmentParts {
         ElementId fragment;               // that carries it
         std::int32_t local = -1;          // scratch of users
         bool is_light = false;
-        bool is_element = false;     // carried by a fragment of its own carrier
-        bool has_neighbors = false;  // found
-        bool is_in_cluster = false;  // see light_cluster()
-        bool is_near_edit = false;   // likewise
-        bool is_waiting = false;     // see join_in_rounds()
+        bool is_element = false;        // carried by a fragment of its own carrier
+        bool has_neighbors = false;     // found
+        bool is_in_cluster = false;     // see light_cluster()
+        bool is_kept_together = false;  // see keep_bridges()
+        bool is_waiting = false;        // see join_in_rounds()
         ElementId head() const { return cells.front(); }
     };
     /// The parts from `begin` to before `end`.
@@ -74,8 +75,9 @@ class FragmentParts {
     }
     void join_in_rounds(std::vector<std::size_t>& lights);
     void join_larger_lights(const std::vector<std::size_t>& lights);
-    void keep_bridges(const std::vector<std::size_t>& cluster);
-    bool hang_together(std::size_t part, std::size_t neighbor);
+    void keep_bridges(const std::vector<std::size_t>& lights);
+    void keep_together(const std::vector<std::size_t>& lights);
+    DisjointSet connected_elements(const std::vector<std::size_t>& near);
     bool is_element(std::size_t part) const {
         const Part& of = parts_[part];
         return of.is_in_cluster ? of.master == part : of.is_element || !of.is_light;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/base/disjoint_set.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::topology {
@@ -107,6 +108,7 @@ class FragmentCheck {
         }
         if (num_nodes != fragments_.num_nodes())
             report("there are ", num_nodes, " nodes, counted as ", fragments_.num_nodes());
+        check_connections();
         return found_;
     }
 
@@ -115,6 +117,23 @@ class FragmentCheck {
         std::ostringstream text;
         (text << ... << parts);
         found_.push_back(text.str());
+    }
+
+    void check_connections() {
+        DisjointSet connected(fragments_.node_capacity());
+        for (const ElementId e : fragments_.elements())
+            for (const NodeId n : fragments_.corners(e))
+                connected.join(fragments_.corners(e)[0].value, n.value);
+        const auto root = [&](ElementId cell) {
+            return connected.find(fragments_.corners(fragments_.fragment_of_cell(cell))[0].value);
+        };
+        for (const ElementId cell : mesh_.elements())
+            for (int f = 0; f < mesh_.num_faces(cell); ++f) {
+                const ElementId other = mesh_.neighbor({cell, f}).element;
+                if (other.is_valid() && cell < other && root(cell) != root(other))
+                    report("elements ", cell.value, " and ", other.value,
+                           " hang together, but their fragments do not");
+            }
     }
 
     void check_cell(ElementId cell) {

@@ -33,6 +33,7 @@ std::vector<std::string> validate(const Mesh& mesh);
 /// - cells that share a face inside a carrier are in one fragment
 /// - fragments of cells that share a face between carriers share the nodes of this face, if both
 ///   carry these cells at home
+/// - fragments whose cells hang together are connected through common nodes
 /// - the counts of nodes and elements are right, and each node has a fragment
 std::vector<std::string> validate(const FragmentMesh& fragments, const Mesh& mesh);
 

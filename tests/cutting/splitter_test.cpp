@@ -359,5 +359,26 @@ TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
             }
 }
 
+// Where all fragments of a slice are light, elements on its two sides carry it. Validation finds
+// parts that hang together in the mesh and come apart in the motion.
+TEST(FragmentsOfCuts, OfThinSlicesHangTogether) {
+    constexpr int num_bricks = 6;
+    for (const double jitter : {0.0, 0.2})
+        for (const double thickness : {0.02, 0.05, 0.1, 0.2})
+            for (std::uint64_t seed = 0; seed < num_seeds / 2; ++seed) {
+                SCOPED_TRACE(testing::Message() << "jitter " << jitter << ", thickness "
+                                                << thickness << ", seed " << seed);
+                Random random(seed);
+                SplitBody body(test::jittered_cube(num_bricks, jitter, seed));
+                const Vec3 point = Vec3::Constant(0.5) + random.vector(0.3);
+                const Vec3 normal = random.vector(1.0).normalized();
+                for (const double offset : {0.0, thickness}) {
+                    body.cut(Plane(point + offset / num_bricks * normal, normal));
+                    EXPECT_EQ(topology::validate(body.fragments, body.mesh),
+                              std::vector<std::string>{});
+                }
+            }
+}
+
 }  // namespace
 }  // namespace incise::cutting
