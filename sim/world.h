@@ -161,8 +161,9 @@ class World {
     /// Returns the upper bound on steps of the explicit solver for the present strain and motion,
     /// s. It is at most rest_stable_step(), and equal to it at small strain. It is computed anew
     /// every 96 steps, and earlier in fast motion. An edit lowers it at once where the nodes near
-    /// the edit need that. Steps of 0.8 of it leave room for what changes in between. Source:
-    /// docs/theory.md, Stable step.
+    /// the edit need that. It rises only after 2048 steps, or after 384 if it can rise by half, so
+    /// that most steps are alike. Steps of 0.8 of it leave room for what changes in between.
+    /// Source: docs/theory.md, Stable step.
     double stable_step() const;
     /// Returns the same bound for the body at rest, s. Only edits and force terms change it.
     double rest_stable_step() const;

@@ -147,8 +147,8 @@ TEST(VtuWriter, KeepsTheCarriersOfACutBody) {
     for (const auto compression : all_compressions) {
         write_vtu(folder / "cut.vtu", frame, compression);
         EXPECT_EQ(read_mesh(folder / "cut.vtu").mesh.carriers, carriers);
-        auto* field =
-            read_with_vtk(folder / "cut.vtu")->GetFieldData()->GetArray("carrier_corners");
+        const auto grid = read_with_vtk(folder / "cut.vtu");
+        auto* field = grid->GetFieldData()->GetArray("carrier_corners");
         ASSERT_NE(field, nullptr);
         EXPECT_EQ(field->GetNumberOfComponents(), 12);
         EXPECT_EQ(field->GetNumberOfTuples(), 400);

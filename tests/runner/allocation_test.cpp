@@ -136,8 +136,8 @@ TEST(SteadyState, AllocatesNothing) {
 }
 
 // A thread has a buffer for positions, two for the stable step, and one more for positions before
-// if the body is viscous. It takes them when it first gets work: it may come to that in any step. TBB takes memory of its own,
-// not by operator new, for tasks that go to the other thread.
+// if the body is viscous. It takes them when it first gets work: it may come to that in any step.
+// TBB takes memory of its own, not by operator new, for tasks that go to the other thread.
 TEST(SteadyState, AllocatesOnlyTheSecondThreadsBuffers) {
     for (const auto& [name, body] : bodies) {
         SCOPED_TRACE(name);

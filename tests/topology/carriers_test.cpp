@@ -102,7 +102,7 @@ TEST(Carriers, GiveTheFragmentsOfPlanesAgain) {
                 expect_round_trip(material, fragments);
             }
         }
-    EXPECT_GT(num_away, 100);
+    EXPECT_GT(num_away, test::num_cases(100));
 }
 
 TEST(Carriers, GiveTheFragmentsOfAnyEditsAgain) {
@@ -122,7 +122,7 @@ TEST(Carriers, GiveTheFragmentsOfAnyEditsAgain) {
                 ++num_cases;
             }
         }
-    EXPECT_GT(num_cases, 100);
+    EXPECT_GT(num_cases, test::num_cases(100));
 }
 
 TEST(Carriers, LetTheBodyBeCutAgain) {
@@ -151,7 +151,7 @@ TEST(Carriers, LetTheBodyBeCutAgain) {
             read.undo(built.mesh, done);
             EXPECT_TRUE(read == before.front());
         }
-    EXPECT_GT(num_added, 100);
+    EXPECT_GT(num_added, test::num_cases(100));
 }
 
 /// A cube that is cut twice, as a file contains it.
