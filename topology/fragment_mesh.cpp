@@ -33,8 +33,10 @@ std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions
 
 }  // namespace
 
-FragmentMesh::FragmentMesh(const Mesh& material, double light_share)
+FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<const NodeId> held)
     : FragmentMesh(light_share, FollowedEpoch(material)) {
+    is_held_.assign(material.node_capacity(), 0);
+    hold(held);
     const Carriers& source = material.source_carriers();
     const std::vector<NodeId> corners_of_source = add_nodes(material);
     std::vector<ElementId> carrier_of_row(source.corners.size());
@@ -123,7 +125,24 @@ void FragmentMesh::complete() {
 FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& changes) {
     if (changes.is_empty()) return {};
     epoch_.advance(material, changes, "fragment mesh");
+    hold_new_nodes(changes);
     return FragmentUpdate(*this, material, changes).run();
+}
+
+void FragmentMesh::hold(std::span<const NodeId> nodes) {
+    std::ranges::fill(is_held_, 0);
+    for (const NodeId n : nodes) is_held_[n.index()] = 1;
+}
+
+void FragmentMesh::hold_new_nodes(const ChangeSet& changes) {
+    is_held_.resize(changes.node_capacity_after, 0);
+    for (const NodeRecord& record : changes.nodes_added) {
+        if (record.id.index() < changes.node_capacity_before) continue;  // an undo brings it back
+        const auto sources =
+            std::span(record.sources).first(static_cast<std::size_t>(record.num_sources));
+        is_held_[record.id.index()] = std::ranges::all_of(
+            sources, [&](const NodeSource& source) { return is_held(source.node); });
+    }
 }
 
 void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
@@ -170,6 +189,7 @@ void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
     num_nodes_ += edit.nodes_removed.size();
     num_nodes_ -= edit.nodes_added.size();
     truncate(edit.node_capacity_before, edit.element_capacity_before, material.element_capacity());
+    is_held_.resize(material.node_capacity());
 }
 
 void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,

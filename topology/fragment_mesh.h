@@ -75,7 +75,8 @@ struct Embedding {
 ///
 /// A node of the carrier has as many copies as its fragments have connected groups. Two fragments
 /// are connected at a node if cells of theirs share a face in a face of their carriers at the node.
-/// A *light* fragment is no element of its own: another fragment carries its cells.
+/// A *light* fragment is no element of its own: another fragment carries its cells. It has little
+/// volume, and nothing holds it: see default_light_share and hold().
 ///
 /// A body without cuts has one fragment for each element, with the same ids, and the same nodes.
 /// Ids of fragments and nodes are numbers of their own: those of the material after cuts differ.
@@ -86,8 +87,14 @@ class FragmentMesh {
     /// was written. Their ids, and those of their nodes, can be others. Cost: O(n log n).
     /// @param material     the body as it was built, before its first edit
     /// @param light_share  see default_light_share; with 0 no fragment is light
-    explicit FragmentMesh(const Mesh& material, double light_share = default_light_share);
+    /// @param held         see hold()
+    explicit FragmentMesh(const Mesh& material, double light_share = default_light_share,
+                          std::span<const NodeId> held = {});
 
+    /// Sets the nodes of the material whose positions are prescribed. No fragment with material at
+    /// one of them is light, so that it stays where it is held. A node that an edit makes of held
+    /// ones only is held as well. Fragments that exist stay as they are until an edit beside them.
+    void hold(std::span<const NodeId> nodes);
     /// Follows an edit of the material, and returns what it did to the fragments.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
@@ -120,6 +127,8 @@ class FragmentMesh {
     }
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(ElementId e, NodeId n) const;
+    /// True if the position of a node of the material is prescribed; see hold().
+    bool is_held(NodeId n) const { return is_held_[n.index()] != 0; }
     /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
@@ -186,6 +195,8 @@ class FragmentMesh {
                (!is_alive(carrier) && fragment_of_cell_[carrier.index()] == carrier);
     }
 
+    /// Follows the nodes that an edit of the material adds: see is_held().
+    void hold_new_nodes(const ChangeSet& changes);
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
     void move_cell(ElementId cell, ElementId from, ElementId to);
@@ -228,6 +239,7 @@ class FragmentMesh {
     std::vector<std::uint8_t> is_node_alive_;
     // By cell of the material.
     std::vector<ElementId> carrier_of_cell_, fragment_of_cell_;
+    std::vector<std::uint8_t> is_held_;  // by node of the material, also if it is dead
     // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
     std::vector<std::int32_t> part_of_cell_, first_part_;
 

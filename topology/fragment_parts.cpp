@@ -46,6 +46,13 @@ double FragmentParts::share_of(std::size_t part) {
     return count == 1 ? 1.0 : parts_[part].volume / all;
 }
 
+bool FragmentParts::is_held(std::span<const ElementId> cells) const {
+    for (const ElementId cell : cells)
+        for (const NodeId n : material_.corners(cell))
+            if (fragments_.is_held(n)) return true;
+    return false;
+}
+
 void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double volume) {
     const std::size_t index = parts_.size();
     for (const ElementId cell : cells)
@@ -55,6 +62,7 @@ void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double 
     part.volume = volume;
     part.master = index;
     part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
+    part.is_held = is_held(cells);
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());
     part.is_element = fragments_.carrier(part.fragment) == carrier;
@@ -144,7 +152,8 @@ std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementI
 // Light parts join, across faces and within their region, the part behind the largest area. First
 // those do that have a neighbour which is an element; then those beside these, and so on. Those
 // that reach none join their largest light neighbour if it is larger. The largest of all becomes an
-// element although it is light. So does a part without which the material would come apart.
+// element although it is light. So does a part without which the material would come apart, and one
+// that is held.
 std::vector<ElementId> FragmentParts::join_light(const std::vector<ElementId>& touched) {
     std::vector<std::size_t> lights = light_cluster(touched);
     std::vector<ElementId> open = touched;
@@ -152,6 +161,7 @@ std::vector<ElementId> FragmentParts::join_light(const std::vector<ElementId>& t
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
     const std::vector<std::size_t> cluster = lights;
+    std::erase_if(lights, [&](std::size_t part) { return parts_[part].is_held; });
     join_in_rounds(lights);
     join_larger_lights(lights);
     keep_bridges(cluster);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "incise/base/disjoint_set.h"
@@ -30,6 +31,7 @@ class FragmentParts {
         ElementId fragment;               // that carries it
         std::int32_t local = -1;          // scratch of users
         bool is_light = false;
+        bool is_held = false;           // has material at a node that is held
         bool is_element = false;        // carried by a fragment of its own carrier
         bool has_neighbors = false;     // found
         bool is_in_cluster = false;     // see light_cluster()
@@ -67,6 +69,7 @@ class FragmentParts {
 
   private:
     void find(ElementId carrier);
+    bool is_held(std::span<const ElementId> cells) const;
     void add(ElementId carrier, std::vector<ElementId> cells, double volume);
     std::vector<std::size_t> light_cluster(const std::vector<ElementId>& touched);
     bool are_in_one_region(std::size_t a, std::size_t b) const {

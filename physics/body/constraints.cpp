@@ -72,7 +72,15 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
 Constraints::Constraints(const Body& body, std::vector<Constraint> constraints,
                          std::span<const Vec3> positions)
     : constraints_(std::move(constraints)) {
+    require_disjoint(body.mesh);
     index_all(body, positions);
+}
+
+void Constraints::require_disjoint(const topology::Mesh& mesh) const {
+    const auto conflicts = find_conflicts(mesh, constraints_);
+    if (conflicts.empty()) return;
+    const ConstraintConflict& first = conflicts.front();
+    throw ConflictingConstraints(describe(first, mesh, constraints_), first);
 }
 
 template <class Visit>
@@ -139,12 +147,12 @@ void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
 void Constraints::add(const Body& body, Constraint constraint, std::span<const Vec3> positions) {
     constraints_.push_back(std::move(constraint));
     try {
-        index_all(body, positions);
+        require_disjoint(body.mesh);
     } catch (const InputError&) {
         constraints_.pop_back();
-        index_all(body, positions);
         throw;
     }
+    index_all(body, positions);
 }
 
 void Constraints::remove(const Body& body, std::size_t i, std::span<const Vec3> positions) {
@@ -155,17 +163,10 @@ void Constraints::remove(const Body& body, std::size_t i, std::span<const Vec3> 
 void Constraints::index(const Body& body, NodeId n) {
     constexpr std::array<int, 3> free{-1, -1, -1};
     std::array<int, 3> row = free;
-    const auto refuse = [&](std::size_t first, std::size_t second, std::size_t component) {
-        const ConstraintConflict conflict{body.fragments.origin(n), component, first, second};
-        throw ConflictingConstraints(describe(conflict, body.mesh, constraints_), conflict);
-    };
     for (std::size_t s = 0; s < constraints_.size() && body.fragments.is_alive(n); ++s) {
         if (!does_prescribe(s, body, n)) continue;
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!constraints_[s].components[c]) continue;
-            if (row[c] >= 0) refuse(static_cast<std::size_t>(row[c]), s, c);
-            row[c] = static_cast<int>(s);
-        }
+        for (std::size_t c = 0; c < 3; ++c)
+            if (constraints_[s].components[c] && row[c] < 0) row[c] = static_cast<int>(s);
     }
     row_of_node_[n.index()] = -1;
     if (row == free) return;

@@ -88,7 +88,8 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
 /// of fragments that its material is between. A corner is prescribed if a fragment at it has a node
 /// of the constraint, and if the position of this node depends on the corner. So the copies of a
 /// node of a clamped face are prescribed as long as their fragments touch the face; a copy with no
-/// material at the face is free.
+/// material at the face is free. Two constraints with different nodes may want the same corner.
+/// The earlier one gets it.
 class Constraints {
   public:
     /// The mesh and its fragments, both after the edit that is followed.
@@ -143,6 +144,7 @@ class Constraints {
                std::span<const Vec3> positions);
 
   private:
+    void require_disjoint(const topology::Mesh& mesh) const;
     /// Calls visit(n) for each node of the fragments on which a node of the mesh depends; some of
     /// them more than once.
     template <class Visit>

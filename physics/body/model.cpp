@@ -42,6 +42,18 @@ BoundaryConditions read_boundary_conditions(const topology::Mesh& mesh, ArchiveR
     return boundary_conditions;
 }
 
+/// Returns the nodes of all constraints but grasps, which come and go.
+std::vector<NodeId> held_by(const topology::Mesh& mesh, std::span<const Constraint> constraints) {
+    std::vector<NodeId> nodes;
+    for (const Constraint& constraint : constraints) {
+        constraint.require_fit(mesh);
+        if (!constraint.grip.is_empty()) continue;
+        for (const NodeSet::Member& member : constraint.nodes.members())
+            nodes.push_back(member.node);
+    }
+    return nodes;
+}
+
 void make_sorted_set(std::vector<NodeId>& nodes) {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -97,14 +109,15 @@ std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentC
 }  // namespace
 
 Model::Model(const topology::Mesh& mesh, const MaterialTable& table,
-             BoundaryConditions boundary_conditions)
-    : Model(mesh, Parts(mesh, table), std::move(boundary_conditions)) {}
+             const BoundaryConditions& boundary_conditions)
+    : Model(mesh, Parts(mesh, table, boundary_conditions.constraints), boundary_conditions) {}
 
 Model::Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundary_conditions)
     : Model(mesh, std::move(parts.fragments), parts.table, std::move(boundary_conditions)) {}
 
-Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh)
-    : fragments(mesh), table(of_mesh) {
+Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
+                    std::span<const Constraint> constraints)
+    : fragments(mesh, topology::default_light_share, held_by(mesh, constraints)), table(of_mesh) {
     if (table.fibres.empty()) return;
     table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
     for (const ElementId e : fragments.elements())
@@ -128,6 +141,7 @@ Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialT
       constraints_(bodies(), std::move(boundary_conditions.constraints), state_.positions()),
       loads_(boundary_conditions.gravity, {}, view()),
       reactions_(constraints_.size()) {
+    fragments_.hold(held_by(mesh, constraints_.all()));
     resize(fragments_.node_capacity());
     for (std::size_t n = 0; n < fragments_.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
@@ -332,12 +346,14 @@ std::vector<ModelChanges::Velocity> Model::change_momenta(std::span<const NodeId
 
 void Model::add_constraint(Constraint constraint) {
     constraints_.add(bodies(), std::move(constraint), positions());
+    fragments_.hold(held_by(mesh_, constraints_.all()));
     reactions_.emplace_back();
     ++structure_version_;
 }
 
 void Model::remove_constraint(std::size_t i) {
     constraints_.remove(bodies(), i, positions());
+    fragments_.hold(held_by(mesh_, constraints_.all()));
     reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
     ++structure_version_;
 }

@@ -90,13 +90,13 @@ struct ModelChanges {
 class Model {
   public:
     /// Builds a body at rest in the rest positions, and computes the forces of this state. The
-    /// fragments are those of FragmentMesh, also of a mesh with carriers; the fibres of the table
-    /// are by element of the mesh.
-    /// The model reads the mesh and never changes it.
-    /// Throws InputError as ElementStore and Constraints do.
+    /// fragments are those of FragmentMesh, also of a mesh with carriers. The constraints hold
+    /// their nodes: no fragment at them is light. The fibres of the table are by element of the
+    /// mesh. The model reads the mesh and never changes it. Throws InputError as ElementStore and
+    /// Constraints do.
     /// @lifetime The mesh must outlive the model.
     Model(const topology::Mesh& mesh, const MaterialTable& table,
-          BoundaryConditions boundary_conditions = {});
+          const BoundaryConditions& boundary_conditions = {});
     /// Builds the same of a body that was cut.
     /// @param fragments  of the mesh; the fibres of the table are by id of fragments
     Model(const topology::Mesh& mesh, topology::FragmentMesh fragments, const MaterialTable& table,
@@ -364,7 +364,8 @@ class Model {
     /// The fragments of a mesh, and the materials with the fibres by fragment: a fragment has those
     /// of its lowest cell.
     struct Parts {
-        Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh);
+        Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
+              std::span<const Constraint> constraints);
         topology::FragmentMesh fragments;
         MaterialTable table;
     };

@@ -131,5 +131,77 @@ TEST(SmoothCut, AlongEightPlanesKeepsTheStep) {
     }
 }
 
+/// A sheet through the middle of a box, with waves of a twentieth of its size.
+SurfaceCut waved_sheet(const Eigen::AlignedBox3d& box, test::Random& random) {
+    const double size = box.sizes().norm(), phase = random.uniform(0.0, 6.0);
+    constexpr std::int64_t n = 60;
+    SurfaceCut cut;
+    for (std::int64_t i = 0; i <= n; ++i)
+        for (std::int64_t j = 0; j <= n; ++j) {
+            const double s = double(i) / n - 0.5, t = double(j) / n - 0.5;
+            const double height = 0.05 * std::sin(8.0 * s + phase) * std::cos(6.0 * t);
+            cut.surface.points.push_back(box.center() + 1.2 * size * Vec3(s, height, t));
+        }
+    for (std::int64_t i = 0; i < n; ++i)
+        for (std::int64_t j = 0; j < n; ++j) {
+            const std::int64_t a = i * (n + 1) + j, b = a + n + 1;
+            cut.surface.triangles.push_back({a, b, b + 1});
+            cut.surface.triangles.push_back({a, b + 1, a + 1});
+        }
+    return cut;
+}
+
+/// A sphere of triangles between circles of latitude.
+SurfaceCut sphere(const Vec3& centre, double radius) {
+    constexpr std::int64_t rows = 24, columns = 48;
+    SurfaceCut cut;
+    cut.surface.points = {centre + radius * Vec3::UnitZ(), centre - radius * Vec3::UnitZ()};
+    const auto at = [](std::int64_t i, std::int64_t j) { return 2 + i * columns + j % columns; };
+    for (std::int64_t i = 1; i < rows; ++i)
+        for (std::int64_t j = 0; j < columns; ++j) {
+            const double polar = double(i) / rows * std::numbers::pi,
+                         azimuth = 2.0 * double(j) / columns * std::numbers::pi;
+            cut.surface.points.push_back(centre + radius * Vec3(std::sin(polar) * std::cos(azimuth),
+                                                                std::sin(polar) * std::sin(azimuth),
+                                                                std::cos(polar)));
+        }
+    auto& triangles = cut.surface.triangles;
+    for (std::int64_t j = 0; j < columns; ++j) {
+        triangles.push_back({0, at(0, j), at(0, j + 1)});
+        triangles.push_back({1, at(rows - 2, j + 1), at(rows - 2, j)});
+        for (std::int64_t i = 0; i + 2 < rows; ++i) {
+            triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    return cut;
+}
+
+// Faces are chords of the surface, so that only nodes are on it.
+TEST(SmoothCut, AlongCurvedSurfacesKeepsTheStep) {
+    for (const Body& body : bodies()) {
+        test::Random random(3);
+        for (std::size_t trial = 0; trial < test::num_cases(10); ++trial) {
+            SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
+            Mesh mesh = Mesh::build(body.data).mesh;
+            const auto box = box_of(mesh);
+            const bool is_sphere = trial % 2 == 0;
+            const CutTool tool =
+                is_sphere
+                    ? CutTool{"sphere",
+                              sphere(box.center() + random.vector(0.1).cwiseProduct(box.sizes()),
+                                     0.3 * box.sizes().minCoeff())}
+                    : CutTool{"sheet", waved_sheet(box, random)};
+            const GeometricCutReport report = geometric_cut(mesh, {&tool, 1}, {});
+            EXPECT_GE(report.pieces.size(), 2u);
+            EXPECT_LE(report.volume_error(), 1e-12);
+            ASSERT_TRUE(report.total.surface_distance);
+            EXPECT_LE(report.total.surface_distance->nodes,
+                      farthest * report.before.mean_edge_length);
+            EXPECT_GE(*report.stable_step_ratio(), body.step_after_one);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace incise::app

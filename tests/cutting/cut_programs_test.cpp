@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <string_view>
 
@@ -33,7 +34,10 @@ class Patient {
           table_(all_materials(data.num_cells())),
           mesh_(Mesh::build(with_all_materials(data)).mesh),
           model_(mesh_, table_),
-          rest_volume_(rest_volume(mesh_)) {
+          rest_volume_(rest_volume(mesh_)),
+          least_step_(std::numeric_limits<double>::infinity()) {
+        for (const ElementId e : model_.fragments().elements())
+            least_step_ = std::min(least_step_, model_.element_stable_step(e));
         constexpr std::array<double, 3> snaps = {0.0, default_snap, 0.1};
         const double snap = snaps[random_.below(3)];
         options_ = SplitOptions{snap};
@@ -133,6 +137,7 @@ class Patient {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
         ASSERT_EQ(topology::validate(model_.fragments(), mesh_), std::vector<std::string>{});
+        EXPECT_GE(model_.rest_stable_step(), least_step_ * (1.0 - 1e-12));
         expect_kept(before, model_, done);
         expect_equal_to_a_fresh_one(model_, table_);
     }
@@ -175,6 +180,7 @@ class Patient {
     Mesh mesh_;
     Model model_;
     double rest_volume_, size_;
+    double least_step_;  // that an element of the uncut body has alone, s
     SplitOptions options_;
     SnapHistory snap_history_;
     bool is_at_rest_ = true;

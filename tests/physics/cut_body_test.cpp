@@ -326,6 +326,41 @@ TEST(CutBodies, AreHeldByTheConstraintsThatTheirMaterialTouches) {
     }
 }
 
+// Cuts through a clamped face leave thin parts at it. Those stay where the clamp holds them.
+TEST(CutBodies, KeepTheirClampedFaceBetweenCutsNearEachOther) {
+    int num_small = 0;
+    for (const double distance : {0.02, 0.1, 0.3})  // of the cuts, in edges
+        for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
+            SCOPED_TRACE(std::to_string(distance) + ", seed " + std::to_string(seed));
+            test::Random random(seed);
+            const int n = 4;
+            Mesh mesh = Mesh::build(test::jittered_cube(n, 0.1, seed)).mesh;
+            BoundaryConditions s;
+            s.gravity = {0.0, 0.0, -9.81};
+            s.constraints = {holding("left", left_end(mesh))};
+            Model model(mesh, table_of_one_law(soft_law), s);
+            Vec3 normal = random.vector(1.0);
+            normal.x() *= 0.1;
+            normal.normalize();
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+            follow(model, test::cut_along_plane(mesh, point, normal));
+            follow(model, test::cut_along_plane(mesh, point + distance / n * normal,
+                                                normal + random.vector(0.02)));
+            for (const ElementId e : model.fragments().elements())
+                num_small += model.fragments().share(e) < topology::default_light_share ? 1 : 0;
+            double time = 0.0;
+            for (int i = 0; i < 20; ++i) step(model, time, 0.5 * model.stable_step());
+            const auto positions = model.mesh_positions();
+            for (const NodeId k : mesh.nodes()) {
+                const Vec3& X = mesh.rest_position(k);
+                if (X.x() == 0.0) {
+                    EXPECT_LE((positions[k.index()] - X).norm(), 1e-12) << "node " << k.value;
+                }
+            }
+        }
+    EXPECT_GT(num_small, 0);
+}
+
 TEST(CutBodies, MoveInImplicitStepsAsInExplicitOnes) {
     const auto data = test::jittered_cube(3, 0.1, 2);
     std::vector<std::vector<Vec3>> ends;

@@ -288,6 +288,28 @@ TEST(World, GraspHoldsDeformedTissueAndCarriesIt) {
               std::string::npos);
 }
 
+// Nodes of a cut near a clamp depend on corners that the clamp holds. The clamp keeps these.
+TEST(World, GraspHoldsTissueBesideAClamp) {
+    World world = held_world();
+    const ToolId plane =
+        world.add_tool({"plane", cutting::PlaneCut{{0.05, 0.05, 0.012}, {0.02, 0.01, 1}}});
+    world.set_tool_pose(plane, Pose());
+    world.withdraw_tool(plane);
+    world.step(0.5 * world.stable_step());
+    const auto grasped =
+        nodes_where(world, [](const Vec3& x) { return x.z() > 0.005 && x.z() < 0.02; });
+    ASSERT_FALSE(grasped.empty());
+    const ConstraintId hand = world.grasp("hand", grasped, Pose());
+    for (int i = 0; i < 5; ++i) {
+        world.set_grasp_pose(hand, at({0, 0, 1e-4 * i}));
+        world.step(0.5 * world.stable_step());
+    }
+    const auto positions = world.positions();
+    for (const NodeId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
+        EXPECT_EQ(positions[n.index()], world.mesh().rest_position(n));
+    EXPECT_GT(world.reaction(hand).force.norm(), 0.0);
+}
+
 TEST(World, LoadsActFromTheirFirstStep) {
     WorldDef def = soft_body();
     def.gravity = Vec3::Zero();
