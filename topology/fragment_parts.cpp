@@ -10,8 +10,8 @@ namespace incise::topology {
 
 FragmentParts::~FragmentParts() {
     for (const ElementId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
-    for (const Part& part : parts_)
-        for (const ElementId cell : part.cells) fragments_.part_of_cell_[cell.index()] = -1;
+    for (const Part* part : parts_)
+        for (const ElementId cell : part->cells) fragments_.part_of_cell_[cell.index()] = -1;
 }
 
 FragmentParts::Range FragmentParts::of(ElementId carrier) {
@@ -23,7 +23,7 @@ FragmentParts::Range FragmentParts::of(ElementId carrier) {
     }
     const auto begin = static_cast<std::size_t>(first);
     std::size_t end = begin;
-    while (end < parts_.size() && parts_[end].carrier == carrier) ++end;
+    while (end < parts_.size() && parts_[end]->carrier == carrier) ++end;
     return {begin, end};
 }
 
@@ -34,16 +34,16 @@ std::size_t FragmentParts::of_cell(ElementId cell) {
 }
 
 double FragmentParts::share_of(std::size_t part) {
-    const ElementId carrier = parts_[part].carrier;
+    const ElementId carrier = parts_[part]->carrier;
     const double whole = fragments_.volumes_[carrier.index()];
     double all = 0.0;
     std::size_t count = 0;
-    for (auto [i, end] = of(carrier); i < end; ++i, ++count) all += parts_[i].volume;
+    for (auto [i, end] = of(carrier); i < end; ++i, ++count) all += parts_[i]->volume;
     // If the parts fill the carrier to rounding, their shares add up to exactly 1. A removed part
     // that is smaller than that does not count.
     constexpr double rounding = 1e-10;
-    if (std::abs(all - whole) > rounding * whole) return parts_[part].volume / whole;
-    return count == 1 ? 1.0 : parts_[part].volume / all;
+    if (std::abs(all - whole) > rounding * whole) return parts_[part]->volume / whole;
+    return count == 1 ? 1.0 : parts_[part]->volume / all;
 }
 
 bool FragmentParts::is_held(std::span<const ElementId> cells) const {
@@ -53,11 +53,12 @@ bool FragmentParts::is_held(std::span<const ElementId> cells) const {
     return false;
 }
 
-void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double volume) {
+void FragmentParts::add(ElementId carrier, std::span<const ElementId> cells, double volume) {
     const std::size_t index = parts_.size();
     for (const ElementId cell : cells)
         fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
-    Part part;
+    // Nothing frees a part: its lists are in the same memory.
+    Part& part = *new (memory_.allocate(sizeof(Part), alignof(Part))) Part(memory_);
     part.carrier = carrier;
     part.volume = volume;
     part.master = index;
@@ -66,13 +67,14 @@ void FragmentParts::add(ElementId carrier, std::vector<ElementId> cells, double 
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());
     part.is_element = fragments_.carrier(part.fragment) == carrier;
-    part.cells = std::move(cells);
-    parts_.push_back(std::move(part));
+    part.cells.assign(cells.begin(), cells.end());
+    parts_.push_back(&part);
 }
 
 void FragmentParts::find(ElementId carrier) {
     if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole, or what is left of it
-        if (material_.is_alive(carrier)) add(carrier, {carrier}, rest_volume(material_, carrier));
+        if (material_.is_alive(carrier))
+            add(carrier, {&carrier, 1}, rest_volume(material_, carrier));
         return;
     }
     std::vector<ElementId> cells;
@@ -97,12 +99,11 @@ void FragmentParts::find(ElementId carrier) {
         volumes[first] += rest_volume(material_, cells[i]);
     }
     for (std::size_t i = 0; i < cells.size(); ++i)
-        if (!members[i].empty()) add(carrier, std::move(members[i]), volumes[i]);
+        if (!members[i].empty()) add(carrier, members[i], volumes[i]);
 }
 
-/// Returns the parts of other carriers that share faces with a part, in the order of their heads.
-const std::vector<FragmentParts::Neighbor>& FragmentParts::neighbors(std::size_t index) {
-    Part& part = parts_[index];
+std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t index) {
+    Part& part = *parts_[index];
     if (part.has_neighbors) return part.neighbors;
     part.has_neighbors = true;
     for (const ElementId cell : part.cells)
@@ -117,35 +118,46 @@ const std::vector<FragmentParts::Neighbor>& FragmentParts::neighbors(std::size_t
             else
                 known->area += area;
         }
-    std::ranges::sort(part.neighbors, {}, [&](const Neighbor& n) { return parts_[n.part].head(); });
+    if (part.is_light)
+        std::ranges::sort(part.neighbors, {},
+                          [&](const Neighbor& n) { return parts_[n.part]->head(); });
     return part.neighbors;
+}
+
+bool FragmentParts::is_undivided(ElementId carrier, std::span<const ElementId> parted) {
+    if (std::ranges::binary_search(parted, carrier)) return false;
+    const auto [first, end] = of(carrier);
+    return end - first == 1 && parts_[first]->is_element && !parts_[first]->is_light;
 }
 
 /// Returns the light parts whose masters the edit may change, in the order of their heads: those of
 /// touched carriers and beside them, and all that are connected with these through light parts or
 /// carriers.
-std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementId>& touched) {
+std::vector<std::size_t> FragmentParts::light_cluster(std::span<const ElementId> touched,
+                                                      std::span<const ElementId> parted) {
     std::vector<std::size_t> cluster;
     const auto add = [&](std::size_t part) {
-        if (!parts_[part].is_light || parts_[part].is_in_cluster) return;
-        parts_[part].is_in_cluster = true;
+        if (!parts_[part]->is_light || parts_[part]->is_in_cluster) return;
+        parts_[part]->is_in_cluster = true;
         cluster.push_back(part);
     };
     const auto add_beside = [&](std::size_t part) {
         for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
     };
-    for (const ElementId carrier : touched)
+    for (const ElementId carrier : touched) {
+        if (is_undivided(carrier, parted)) continue;
         for (auto [part, end] = of(carrier); part < end; ++part) {
             add(part);
             add_beside(part);
         }
+    }
     // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
     for (std::size_t next = 0; next < cluster.size(); ++next) {
         add_beside(cluster[next]);
         // All parts of a carrier are assigned together.
-        for (auto [part, end] = of(parts_[cluster[next]].carrier); part < end; ++part) add(part);
+        for (auto [part, end] = of(parts_[cluster[next]]->carrier); part < end; ++part) add(part);
     }
-    std::ranges::sort(cluster, {}, [&](std::size_t part) { return parts_[part].head(); });
+    std::ranges::sort(cluster, {}, [&](std::size_t part) { return parts_[part]->head(); });
     return cluster;
 }
 
@@ -154,14 +166,15 @@ std::vector<std::size_t> FragmentParts::light_cluster(const std::vector<ElementI
 // that reach none join their largest light neighbour if it is larger. The largest of all becomes an
 // element although it is light. So does a part without which the material would come apart, and one
 // that is held.
-std::vector<ElementId> FragmentParts::join_light(const std::vector<ElementId>& touched) {
-    std::vector<std::size_t> lights = light_cluster(touched);
-    std::vector<ElementId> open = touched;
-    for (const std::size_t part : lights) open.push_back(parts_[part].carrier);
+std::vector<ElementId> FragmentParts::join_light(std::span<const ElementId> touched,
+                                                 std::span<const ElementId> parted) {
+    std::vector<std::size_t> lights = light_cluster(touched, parted);
+    std::vector<ElementId> open(touched.begin(), touched.end());
+    for (const std::size_t part : lights) open.push_back(parts_[part]->carrier);
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
     const std::vector<std::size_t> cluster = lights;
-    std::erase_if(lights, [&](std::size_t part) { return parts_[part].is_held; });
+    std::erase_if(lights, [&](std::size_t part) { return parts_[part]->is_held; });
     join_in_rounds(lights);
     join_larger_lights(lights);
     keep_bridges(cluster);
@@ -169,42 +182,43 @@ std::vector<ElementId> FragmentParts::join_light(const std::vector<ElementId>& t
 }
 
 void FragmentParts::join_in_rounds(std::vector<std::size_t>& lights) {
-    for (const std::size_t part : lights) parts_[part].is_waiting = true;
+    for (const std::size_t part : lights) parts_[part]->is_waiting = true;
     while (!lights.empty()) {
         std::vector<std::pair<std::size_t, std::size_t>> joined;  // part, master
         for (const std::size_t part : lights) {
             const Neighbor* best = nullptr;
             for (const Neighbor& neighbor : neighbors(part))
-                if (!parts_[neighbor.part].is_waiting && are_in_one_region(neighbor.part, part) &&
+                if (!parts_[neighbor.part]->is_waiting && are_in_one_region(neighbor.part, part) &&
                     (!best || neighbor.area > best->area))
                     best = &neighbor;
-            if (best) joined.emplace_back(part, parts_[best->part].master);
+            if (best) joined.emplace_back(part, parts_[best->part]->master);
         }
         if (joined.empty()) break;
         for (const auto& [part, master] : joined) {
-            parts_[part].master = master;
-            parts_[part].is_waiting = false;
+            parts_[part]->master = master;
+            parts_[part]->is_waiting = false;
         }
-        std::erase_if(lights, [&](std::size_t part) { return !parts_[part].is_waiting; });
+        std::erase_if(lights, [&](std::size_t part) { return !parts_[part]->is_waiting; });
     }
 }
 
+bool FragmentParts::is_larger(std::size_t a, std::size_t b) const {
+    if (parts_[a]->volume != parts_[b]->volume) return parts_[a]->volume > parts_[b]->volume;
+    return parts_[a]->head() < parts_[b]->head();
+}
+
 void FragmentParts::join_larger_lights(const std::vector<std::size_t>& lights) {
-    const auto is_larger = [&](std::size_t a, std::size_t b) {
-        if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
-        return parts_[a].head() < parts_[b].head();
-    };
     for (const std::size_t part : lights) {
         std::size_t largest = part;
         for (const Neighbor& neighbor : neighbors(part))
             if (are_in_one_region(neighbor.part, part) && is_larger(neighbor.part, largest))
                 largest = neighbor.part;
-        parts_[part].master = largest;
+        parts_[part]->master = largest;
     }
     // Along masters the volume rises, so that each chain ends at a part that is its own master.
     for (const std::size_t part : lights)
-        while (parts_[part].master != parts_[parts_[part].master].master)
-            parts_[part].master = parts_[parts_[part].master].master;
+        while (parts_[part]->master != parts_[parts_[part]->master]->master)
+            parts_[part]->master = parts_[parts_[part]->master]->master;
 }
 
 // A bridge of light parts may be carried in halves by elements on either side that have no common
@@ -212,18 +226,18 @@ void FragmentParts::join_larger_lights(const std::vector<std::size_t>& lights) {
 // set of light parts that hang together is decided alone, whatever else the edit touches.
 void FragmentParts::keep_bridges(const std::vector<std::size_t>& lights) {
     for (const std::size_t first : lights) {
-        if (parts_[first].is_kept_together) continue;
+        if (parts_[first]->is_kept_together) continue;
         std::vector<std::size_t> near{first};
         const auto add = [&](std::size_t part) {
-            if (parts_[part].is_kept_together || !parts_[part].is_in_cluster) return;
-            parts_[part].is_kept_together = true;
+            if (parts_[part]->is_kept_together || !parts_[part]->is_in_cluster) return;
+            parts_[part]->is_kept_together = true;
             near.push_back(part);
         };
-        parts_[first].is_kept_together = true;
+        parts_[first]->is_kept_together = true;
         // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
         for (std::size_t next = 0; next < near.size(); ++next) {
             for (const Neighbor& neighbor : neighbors(near[next])) add(neighbor.part);
-            for (auto [part, end] = of(parts_[near[next]].carrier); part < end; ++part) add(part);
+            for (auto [part, end] = of(parts_[near[next]]->carrier); part < end; ++part) add(part);
         }
         keep_together(near);
     }
@@ -231,33 +245,29 @@ void FragmentParts::keep_bridges(const std::vector<std::size_t>& lights) {
 
 /// Makes light parts elements where the elements that carry two neighbours are not connected.
 void FragmentParts::keep_together(const std::vector<std::size_t>& lights) {
-    const auto is_larger = [&](std::size_t a, std::size_t b) {
-        if (parts_[a].volume != parts_[b].volume) return parts_[a].volume > parts_[b].volume;
-        return parts_[a].head() < parts_[b].head();
-    };
     std::vector<std::size_t> near = lights;
     for (const std::size_t part : lights)
         for (const Neighbor& neighbor : neighbors(part)) near.push_back(neighbor.part);
     std::ranges::sort(near);
     near.erase(std::ranges::unique(near).begin(), near.end());
     for (std::size_t i = 0; i < near.size(); ++i)
-        parts_[near[i]].local = static_cast<std::int32_t>(i);
+        parts_[near[i]]->local = static_cast<std::int32_t>(i);
     for (;;) {
         DisjointSet connected = connected_elements(near);
         std::vector<std::size_t> bridges;
         for (const std::size_t part : lights)
             for (const Neighbor& neighbor : neighbors(part)) {
-                const auto a = parts_[parts_[part].master].local,
-                           b = parts_[parts_[neighbor.part].master].local;
+                const auto a = parts_[parts_[part]->master]->local,
+                           b = parts_[parts_[neighbor.part]->master]->local;
                 if (connected.find(a) == connected.find(b)) continue;
                 const bool is_first = is_element(neighbor.part) ||
                                       (!is_element(part) && is_larger(part, neighbor.part));
                 bridges.push_back(is_first ? part : neighbor.part);
             }
         if (bridges.empty()) break;
-        for (const std::size_t part : bridges) parts_[part].master = part;
+        for (const std::size_t part : bridges) parts_[part]->master = part;
     }
-    for (const std::size_t part : near) parts_[part].local = -1;
+    for (const std::size_t part : near) parts_[part]->local = -1;
 }
 
 /// Joins the elements among some parts that have common nodes: at a node before any cut, they are
@@ -265,8 +275,8 @@ void FragmentParts::keep_together(const std::vector<std::size_t>& lights) {
 DisjointSet FragmentParts::connected_elements(const std::vector<std::size_t>& near) {
     std::vector<std::pair<NodeId, std::int32_t>> places;
     for (const std::size_t part : near)
-        for (const NodeId origin : fragments_.origins_of(parts_[part].carrier))
-            places.emplace_back(origin, parts_[part].local);
+        for (const NodeId origin : fragments_.origins_of(parts_[part]->carrier))
+            places.emplace_back(origin, parts_[part]->local);
     std::ranges::sort(places);
     DisjointSet connected(near.size());
     std::vector<std::int32_t> place_of(near.size(), -1);  // by local number, at the present node
@@ -278,7 +288,7 @@ DisjointSet FragmentParts::connected_elements(const std::vector<std::size_t>& ne
         DisjointSet groups(static_cast<std::size_t>(end - begin));
         for (auto it = begin; it != end; ++it)
             for (const Neighbor& next : neighbors(near[static_cast<std::size_t>(it->second)]))
-                if (const std::int32_t local = parts_[next.part].local; local >= 0)
+                if (const std::int32_t local = parts_[next.part]->local; local >= 0)
                     if (const std::int32_t place = place_of[static_cast<std::size_t>(local)];
                         place >= 0)
                         groups.join(static_cast<std::int32_t>(it - begin), place);

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -24,12 +24,12 @@ class FragmentParts {
     };
     struct Part {
         ElementId carrier;
-        std::vector<ElementId> cells;     // in ascending order
-        std::vector<Neighbor> neighbors;  // see neighbors()
-        double volume = 0.0;              // at rest, m3
-        std::size_t master = 0;           // the part whose fragment carries it; see join_light()
-        ElementId fragment;               // that carries it
-        std::int32_t local = -1;          // scratch of users
+        std::pmr::vector<ElementId> cells;     // in ascending order
+        std::pmr::vector<Neighbor> neighbors;  // see neighbors()
+        double volume = 0.0;                   // at rest, m3
+        std::size_t master = 0;   // the part whose fragment carries it; see join_light()
+        ElementId fragment;       // that carries it
+        std::int32_t local = -1;  // scratch of users
         bool is_light = false;
         bool is_held = false;           // has material at a node that is held
         bool is_element = false;        // carried by a fragment of its own carrier
@@ -38,6 +38,8 @@ class FragmentParts {
         bool is_kept_together = false;  // see keep_bridges()
         bool is_waiting = false;        // see join_in_rounds()
         ElementId head() const { return cells.front(); }
+
+        explicit Part(std::pmr::memory_resource& memory) : cells(&memory), neighbors(&memory) {}
     };
     /// The parts from `begin` to before `end`.
     struct Range {
@@ -51,7 +53,7 @@ class FragmentParts {
     FragmentParts(const FragmentParts&) = delete;
     FragmentParts& operator=(const FragmentParts&) = delete;
 
-    Part& operator[](std::size_t part) { return parts_[part]; }
+    Part& operator[](std::size_t part) { return *parts_[part]; }
     /// Returns the parts of a carrier. References to parts stay valid.
     Range of(ElementId carrier);
     /// Returns the part of a living cell.
@@ -59,37 +61,45 @@ class FragmentParts {
     /// Returns the volume of a part over that of its carrier. The shares of all parts of a carrier
     /// that no edit has taken anything from add up to 1.
     double share_of(std::size_t part);
-    /// Returns the parts of other carriers that share faces with a part, in the order of their
-    /// heads.
-    const std::vector<Neighbor>& neighbors(std::size_t index);
+    /// Returns the parts of other carriers that share faces with a part; those of a light part in
+    /// the order of their heads.
+    std::span<const Neighbor> neighbors(std::size_t index);
 
     /// Sets the masters of all parts of touched carriers, and of the light parts whose masters the
     /// edit may change. Returns the carriers of these parts, in ascending order.
-    std::vector<ElementId> join_light(const std::vector<ElementId>& touched);
+    /// @param parted  in ascending order, those of which an edit removed, parted or joined
+    /// something
+    std::vector<ElementId> join_light(std::span<const ElementId> touched,
+                                      std::span<const ElementId> parted);
+    /// True if all of a carrier is one part that is an element, and was so before the edit.
+    bool is_undivided(ElementId carrier, std::span<const ElementId> parted);
 
   private:
     void find(ElementId carrier);
     bool is_held(std::span<const ElementId> cells) const;
-    void add(ElementId carrier, std::vector<ElementId> cells, double volume);
-    std::vector<std::size_t> light_cluster(const std::vector<ElementId>& touched);
+    void add(ElementId carrier, std::span<const ElementId> cells, double volume);
+    std::vector<std::size_t> light_cluster(std::span<const ElementId> touched,
+                                           std::span<const ElementId> parted);
     bool are_in_one_region(std::size_t a, std::size_t b) const {
-        return fragments_.region_of_carrier(parts_[a].carrier) ==
-               fragments_.region_of_carrier(parts_[b].carrier);
+        return fragments_.region_of_carrier(parts_[a]->carrier) ==
+               fragments_.region_of_carrier(parts_[b]->carrier);
     }
+    bool is_larger(std::size_t a, std::size_t b) const;
     void join_in_rounds(std::vector<std::size_t>& lights);
     void join_larger_lights(const std::vector<std::size_t>& lights);
     void keep_bridges(const std::vector<std::size_t>& lights);
     void keep_together(const std::vector<std::size_t>& lights);
     DisjointSet connected_elements(const std::vector<std::size_t>& near);
     bool is_element(std::size_t part) const {
-        const Part& of = parts_[part];
+        const Part& of = *parts_[part];
         return of.is_in_cluster ? of.master == part : of.is_element || !of.is_light;
     }
 
     FragmentMesh& fragments_;
     const Mesh& material_;
-    std::vector<ElementId> carriers_found_;  // whose parts are known
-    std::deque<Part> parts_;                 // those of a carrier follow each other
+    std::vector<ElementId> carriers_found_;       // whose parts are known
+    std::pmr::monotonic_buffer_resource memory_;  // of the parts
+    std::vector<Part*> parts_;                    // those of a carrier follow each other
 };
 
 }  // namespace incise::topology

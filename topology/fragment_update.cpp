@@ -40,6 +40,7 @@ void FragmentUpdate::divide(FragmentMesh& fragments, const Mesh& material,
     FragmentUpdate update(fragments, material, no_edit);
     update.begin();
     make_sorted_set(carriers);
+    update.parted_carriers_ = carriers;
     update.touched_carriers_ = std::move(carriers);
     update.find_fragments();
 }
@@ -50,7 +51,7 @@ void FragmentUpdate::begin() {
 }
 
 void FragmentUpdate::find_fragments() {
-    open_carriers_ = parts_.join_light(touched_carriers_);
+    open_carriers_ = parts_.join_light(touched_carriers_, parted_carriers_);
     assign_fragments();
     assign_nodes();
 }
@@ -66,12 +67,10 @@ void FragmentUpdate::follow_cells() {
     const auto list_of = [&](ElementId carrier) -> std::vector<ElementId>& {
         return fragments_.cells_of_carrier_.try_emplace(carrier, 1, carrier).first->second;
     };
-    const auto touch = [&](ElementId cell) {
-        touched_carriers_.push_back(carrier_of[cell.index()]);
-    };
+    const auto part = [&](ElementId cell) { parted_carriers_.push_back(carrier_of[cell.index()]); };
     for (const ElementRecord& record : changes_.elements_removed) {
         std::erase(list_of(carrier_of[record.id.index()]), record.id);
-        touch(record.id);
+        part(record.id);
     }
     for (const ElementRecord& record : changes_.elements_added) {  // parents before their parts
         const ElementId cell = record.id;
@@ -80,13 +79,17 @@ void FragmentUpdate::follow_cells() {
             fragment_of[cell.index()] = fragment_of[record.parent.index()];
         }
         insert_sorted(list_of(carrier_of[cell.index()]), cell);
-        touch(cell);
+        touched_carriers_.push_back(carrier_of[cell.index()]);
+        if (!record.parent.is_valid()) part(cell);  // an undo brings it back
     }
     for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
         for (const FacePair& pair : *pairs) {
-            touch(pair.a.element);
-            touch(pair.b.element);
+            part(pair.a.element);
+            part(pair.b.element);
         }
+    make_sorted_set(parted_carriers_);
+    touched_carriers_.insert(touched_carriers_.end(), parted_carriers_.begin(),
+                             parted_carriers_.end());
     make_sorted_set(touched_carriers_);
     for (const ElementId carrier : touched_carriers_)
         FragmentMesh::drop_if_trivial(fragments_.cells_of_carrier_, carrier);
@@ -244,6 +247,10 @@ void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
         for (const Neighbor& neighbor : parts_.neighbors(part))
             if (const std::int32_t local = parts_[neighbor.part].local; local >= 0)
                 connected.join(parts_[part].local, local);
+    if (is_settled(origin, parts, connected)) {
+        for (const std::size_t part : parts) parts_[part].local = -1;
+        return;
+    }
     std::vector<Group> found(parts.size());
     for (const std::size_t part : parts) {
         Group& group = found[static_cast<std::size_t>(connected.find(parts_[part].local))];
@@ -258,6 +265,21 @@ void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
     for (const std::size_t part : parts) parts_[part].local = -1;
     for (Group& group : found)
         if (!group.fragments.empty()) groups.push_back(std::move(group));
+}
+
+/// True if all parts at a node before any cut are connected, and have the same node already.
+bool FragmentUpdate::is_settled(NodeId origin, std::span<const std::size_t> parts,
+                                DisjointSet& connected) {
+    NodeId common;
+    for (const std::size_t part : parts) {
+        if (connected.find(parts_[part].local) != connected.find(0)) return false;
+        if (!parts_[part].is_element) continue;
+        const NodeId before = node_before(parts_[part].fragment, origin);
+        if (!before.is_valid() || (common.is_valid() && before != common)) return false;
+        if (parent_of(parts_[part].fragment).is_valid()) return false;
+        common = before;
+    }
+    return true;
 }
 
 NodeId FragmentUpdate::add_node(const Group& group) {
@@ -307,7 +329,8 @@ void FragmentUpdate::merge(NodeId a, NodeId b) {
 void FragmentUpdate::assign_nodes() {
     std::vector<NodeId> origins, touched;
     for (const ElementId carrier : open_carriers_)
-        for (const NodeId origin : fragments_.origins_of(carrier)) origins.push_back(origin);
+        if (!parts_.is_undivided(carrier, parted_carriers_))
+            for (const NodeId origin : fragments_.origins_of(carrier)) origins.push_back(origin);
     make_sorted_set(origins);
     std::vector<Group> groups;
     for (const NodeId origin : origins) find_groups(origin, groups);

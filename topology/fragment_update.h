@@ -51,6 +51,7 @@ class FragmentUpdate {
     ElementId add_fragment(ElementId carrier, ElementId parent);
 
     void assign_nodes();
+    bool is_settled(NodeId origin, std::span<const std::size_t> parts, DisjointSet& connected);
     void find_groups(NodeId origin, std::vector<Group>& groups);
     ElementId parent_of(ElementId fragment) const {
         return fragment.index() < element_capacity_before_
@@ -75,6 +76,7 @@ class FragmentUpdate {
     const ChangeSet& changes_;
 
     std::vector<ElementId> touched_carriers_;  // in ascending order
+    std::vector<ElementId> parted_carriers_;   // those of them that were not only divided
     std::vector<ElementId> open_carriers_;     // these, and those whose parts are joined anew
     FragmentParts parts_{fragments_, material_};
 
