@@ -31,6 +31,7 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals) {
     const physics::Model& model = simulation.model();
     const physics::Totals& t = body_totals.totals;
+    const sim::ContactState& contact = simulation.world().report().contact;
     Quantities row;
     append(row, scenario::history_quantities,
            std::array{simulation.time(),
@@ -52,12 +53,27 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
                       t.angular_momentum.z(),
                       body_totals.min_volume_ratio,
                       simulation.time_step(),
-                      simulation.world().stable_step()});
+                      simulation.world().stable_step(),
+                      static_cast<double>(contact.num_points),
+                      contact.max_penetration,
+                      contact.dissipation});
     for (std::size_t s = 0; s < model.num_constraints(); ++s) {
         const auto& [reaction, torque] = body_totals.reactions[s];
         append(row, scenario::reaction_quantities(model.constraint_name(s)),
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
+    }
+    const sim::World& world = simulation.world();
+    for (std::size_t i = 0; i < world.num_tools(); ++i) {
+        if (!std::holds_alternative<cutting::Probe>(world.tool({i}).shape)) continue;
+        Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+        for (const sim::ToolState& tool : world.report().tools)
+            if (tool.tool.index == i) {
+                force = tool.force;
+                torque = tool.torque;
+            }
+        append(row, scenario::force_quantities(world.tool({i}).name),
+               std::array{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()});
     }
     return row;
 }

@@ -321,7 +321,7 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
                 if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
                     warnings.push_back(located(spec.location, *near));
             }
-            if (mesh && !spec.path.empty() && !may_meet(tools.back(), body))
+            if (mesh && !spec.path.empty() && !spec.is_obstacle && !may_meet(tools.back(), body))
                 idle.push_back(located(spec.location, out_of_reach(tools.back(), body)));
         });
     }
@@ -403,6 +403,7 @@ sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
     def.damping = boundary_conditions.damping;
     def.constraints = std::move(boundary_conditions.constraints);
     def.loads = std::move(boundary_conditions.loads);
+    def.contact = scenario.contact;
     if (dynamics.mode == Mode::statics)
         def.solver = sim::Solver::statics;
     else if (dynamics.integrator == TimeIntegrator::implicit_euler)

@@ -12,7 +12,7 @@
 namespace incise::scenario {
 
 /// The first columns of history.csv, in order. The reactions of the constraints follow them.
-inline constexpr std::array<std::string_view, 20> history_quantities = {"time",
+inline constexpr std::array<std::string_view, 23> history_quantities = {"time",
                                                                         "step",
                                                                         "nodes",
                                                                         "elements",
@@ -31,7 +31,10 @@ inline constexpr std::array<std::string_view, 20> history_quantities = {"time",
                                                                         "angular_momentum_z",
                                                                         "min_J",
                                                                         "time_step",
-                                                                        "stable_step"};
+                                                                        "stable_step",
+                                                                        "contacts",
+                                                                        "max_penetration",
+                                                                        "contact_dissipation"};
 
 /// The quantities of summary.json that are not columns of history.csv.
 inline constexpr std::array<std::string_view, 12> run_quantities = {
@@ -43,9 +46,15 @@ inline constexpr std::array<std::string_view, 12> run_quantities = {
 /// moment about x, y and z.
 std::array<std::string, 6> reaction_quantities(std::string_view constraint);
 
+/// Returns the names of the columns for what the tissue exerts on a probe: force along x, y and z,
+/// then torque about x, y and z.
+std::array<std::string, 6> force_quantities(std::string_view probe);
+
 /// Returns all quantities that [expect] can name: those of history.csv, the reactions of the
-/// constraints, and those of the run, in this order.
+/// constraints, the forces on the probes, and those of the run, in this order.
 /// @param constraints  the names of the constraints
-std::vector<std::string> all_quantities(std::span<const std::string> constraints);
+/// @param probes       the names of the probes and obstacles
+std::vector<std::string> all_quantities(std::span<const std::string> constraints,
+                                        std::span<const std::string> probes);
 
 }  // namespace incise::scenario

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/contact/surface_contact.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/io/vtk/frame.h"
 #include "incise/physics/elements/precision.h"
@@ -157,7 +158,8 @@ struct CutSpec {
 /// one key, the time of the cut.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, BladeSpec, CutSpec> kind;
+    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe> kind;
+    bool is_obstacle = false;  ///< an [[obstacle]]: a probe that is always present
     /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path;
     std::string location = {};  ///< for messages: FILE:line:column
@@ -190,6 +192,7 @@ struct Scenario {
     MeshSpec mesh;
     std::vector<MaterialSpec> materials;
     DynamicsSpec dynamics;
+    contact::ContactSettings contact;
     std::vector<ConstraintSpec> constraints;
     std::vector<LoadSpec> loads;
     std::vector<ToolSpec> tools;

@@ -18,8 +18,8 @@ namespace {
 using io::format_number;
 using Keys = std::string_view;
 
-constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "constraint",
-                              "load",  "tool", "output",   "expect"};
+constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "contact", "constraint",
+                              "load",  "tool", "obstacle", "output",   "expect"};
 constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array", "weld"};
 constexpr Keys mesh_box_keys[] = {"size", "cells", "element", "origin"};
 constexpr Keys element_names[] = {"tet", "hex"};
@@ -27,6 +27,7 @@ constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
                                                 topology::CellKind::hexahedron};
 constexpr Keys dynamics_keys[] = {"mode",   "integrator", "end_time", "time_step", "steps",
                                   "safety", "damping",    "gravity",  "precision"};
+constexpr Keys contact_keys[] = {"enabled", "friction", "self"};
 constexpr Keys mode_names[] = {"dynamic", "static"};
 constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
 constexpr Keys precision_names[] = {"double", "single"};
@@ -152,6 +153,19 @@ void keep_sound(const TableReader& root, DynamicsSpec& spec) {
     if (!is_sound("precision")) spec.precision = physics::Precision::double_precision;
 }
 
+/// Reports probes and obstacles in a run without contact.
+void require_contact(const TableReader& root, const Scenario& scenario) {
+    const DynamicsSpec& dynamics = scenario.dynamics;
+    const bool has_contact = scenario.contact.enabled && dynamics.mode == Mode::dynamic &&
+                             dynamics.integrator == TimeIntegrator::semi_implicit_euler;
+    if (has_contact || !root.is_sound("dynamics") || !root.is_sound("contact")) return;
+    for (const ToolSpec& tool : scenario.tools)
+        if (std::holds_alternative<cutting::Probe>(tool.kind))
+            root.error({}, "tool " + in_quotes(tool.name) + " (" + tool.location +
+                               ") needs contact: use explicit dynamics, without enabled = false in "
+                               "[contact]");
+}
+
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     Scenario scenario;
     scenario.name = file.stem().string();
@@ -161,12 +175,17 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.materials = read_materials(root, scenario.mesh);
     scenario.dynamics = read_dynamics(root, scenario.materials);
     const double end_time = scenario.dynamics.end_time;
+    scenario.contact = read_contact(root, scenario.dynamics);
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
     scenario.tools = read_tools(root, scenario.folder, end_time);
+    require_contact(root, scenario);
     scenario.output = read_output(root, end_time);
-    scenario.expect = read_expectations(root, held);
+    std::vector<std::string> probes;
+    for (const ToolSpec& tool : scenario.tools)
+        if (std::holds_alternative<cutting::Probe>(tool.kind)) probes.push_back(tool.name);
+    scenario.expect = read_expectations(root, held, probes);
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();
     keep_sound(root, scenario.dynamics);
@@ -248,6 +267,22 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     return spec;
 }
 
+contact::ContactSettings read_contact(const TableReader& root, const DynamicsSpec& dynamics) {
+    contact::ContactSettings settings;
+    const auto contact = root.table("contact", {contact_keys});
+    if (!contact) return settings;
+    settings.enabled = contact->flag("enabled", settings.enabled);
+    settings.friction = contact->number("friction", settings.friction, limits::non_negative);
+    settings.self = contact->flag("self", settings.self);
+    const bool is_explicit = dynamics.mode == Mode::dynamic &&
+                             dynamics.integrator == TimeIntegrator::semi_implicit_euler;
+    if (!is_explicit && settings.enabled && root.is_sound("dynamics"))
+        contact->error({},
+                       "is for explicit dynamics: implicit steps and statics have no contact; "
+                       "write enabled = false, or use integrator = \"semi-implicit-euler\"");
+    return settings;
+}
+
 OutputSpec read_output(const TableReader& root, double end_time) {
     OutputSpec spec;
     // A short run has ten. In a long run an interruption loses at most 0.5 s of simulated time.
@@ -282,9 +317,10 @@ OutputSpec read_output(const TableReader& root, double end_time) {
 }
 
 std::vector<Expectation> read_expectations(const TableReader& root,
-                                           const std::vector<std::string>& constraints) {
+                                           const std::vector<std::string>& constraints,
+                                           const std::vector<std::string>& probes) {
     std::vector<Expectation> expectations;
-    const std::vector<std::string> quantities = all_quantities(constraints);
+    const std::vector<std::string> quantities = all_quantities(constraints, probes);
     const std::vector<std::string_view> names(quantities.begin(), quantities.end());
     const auto expect = root.table("expect", {names});
     if (!expect) return expectations;

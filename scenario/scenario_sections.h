@@ -26,6 +26,9 @@ std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec
 /// @param root       the root table
 /// @param materials  the materials of the body; not all methods have forces in single precision
 DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials);
+/// Reads the [contact] section.
+/// @param dynamics  contact exists in explicit dynamics only
+contact::ContactSettings read_contact(const TableReader& root, const DynamicsSpec& dynamics);
 /// Reads the [[constraint]] sections. The result has only constraints whose selection is sound. Of
 /// these, faulty parts are left out.
 /// @param root      the root table
@@ -35,8 +38,8 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
                                              std::vector<std::string>& names);
 /// Reads the [[load]] sections. The result has only loads of one kind whose selection is sound.
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
-/// Reads the [[tool]] sections. The result has only tools of a known kind, and tools that name the
-/// file of a surface. A tool with a faulty path or shape has an empty path.
+/// Reads the [[tool]] and [[obstacle]] sections. The result has only tools of a known kind, and
+/// tools that name the file of a surface. A tool with a faulty path or shape has an empty path.
 /// @param root      the root table
 /// @param folder    folder of the scenario, to which names of surface files are relative
 /// @param end_time  end of the run, s: later keys give a warning; not above 0 if not known
@@ -46,8 +49,10 @@ OutputSpec read_output(const TableReader& root, double end_time);
 /// Reads the [expect] section.
 /// @param root         the root table
 /// @param constraints  names of the constraints, whose reactions are quantities
+/// @param probes       names of the probes and obstacles, the forces on which are quantities
 std::vector<Expectation> read_expectations(const TableReader& root,
-                                           const std::vector<std::string>& constraints);
+                                           const std::vector<std::string>& constraints,
+                                           const std::vector<std::string>& probes);
 
 /// Returns the name of a constraint, load or tool, or `fallback` if it has none, and adds the name
 /// to `used`. Reports a name that is in `used` already. Reports characters other than letters,

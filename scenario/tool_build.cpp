@@ -24,21 +24,24 @@ struct Extent {
     double radius = 0.0;
 };
 
-Extent extent_of(const cutting::CarverShape& shape) {
+/// @param shape  none that is unbounded
+Extent extent_of(const auto& shape) {
     if (const auto* sphere = std::get_if<cutting::Sphere>(&shape))
         return {{Vec3::Zero()}, sphere->radius};
     if (const auto* capsule = std::get_if<cutting::Capsule>(&shape))
         return {{capsule->from, capsule->to}, capsule->radius};
     Extent extent;
-    const Vec3 half = 0.5 * std::get<cutting::Cuboid>(shape).size;
+    const auto* box = std::get_if<cutting::Cuboid>(&shape);
+    const Vec3 half = box ? Vec3(0.5 * box->size) : Vec3(Vec3::Zero());
     for (const double x : {-half.x(), half.x()})
         for (const double y : {-half.y(), half.y()})
             for (const double z : {-half.z(), half.z()}) extent.points.emplace_back(x, y, z);
     return extent;
 }
 
-Extent extent_of(const cutting::ToolShape& shape) {
+Extent extent_of_tool(const cutting::ToolShape& shape) {
     if (const auto* carver = std::get_if<Carver>(&shape)) return extent_of(carver->shape);
+    if (const auto* probe = std::get_if<cutting::Probe>(&shape)) return extent_of(probe->shape);
     return {std::get<cutting::Blade>(shape).edge};
 }
 
@@ -106,13 +109,16 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     if (const auto* carver = std::get_if<Carver>(&spec.kind)) shape = *carver;
     if (const auto* blade = std::get_if<BladeSpec>(&spec.kind)) shape = shape_of(*blade);
     if (const auto* cut = std::get_if<CutSpec>(&spec.kind)) shape = shape_of(*cut, warnings);
+    if (const auto* probe = std::get_if<cutting::Probe>(&spec.kind)) shape = *probe;
     auto surface = cutting::cut_surface_of(shape);
-    return {spec.name, std::move(shape), ToolPath(spec.path), std::move(surface)};
+    return {spec.name, std::move(shape), ToolPath(spec.path, spec.is_obstacle), std::move(surface)};
 }
 
 bool may_meet(const ScriptedTool& tool, const Box& box) {
     if (tool.surface) return tool.surface->may_meet(box);
-    const Extent extent = extent_of(tool.shape);
+    const auto* probe = std::get_if<cutting::Probe>(&tool.shape);
+    if (probe && std::holds_alternative<cutting::HalfSpace>(probe->shape)) return true;
+    const Extent extent = extent_of_tool(tool.shape);
     const Box swept = swept_box(tool.path, extent.points);
     // The second term is a margin for rounding.
     const Vec3 margin = Vec3::Constant(extent.radius + 1e-12 * swept.diagonal().norm());
@@ -198,7 +204,7 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
 bool divides(const cutting::ToolShape& shape) {
     if (const auto* blade = std::get_if<cutting::Blade>(&shape))
         return blade->mode == CutMode::split;
-    return !std::holds_alternative<Carver>(shape);
+    return !std::holds_alternative<Carver>(shape) && !std::holds_alternative<cutting::Probe>(shape);
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {

@@ -17,6 +17,7 @@ Pose ToolPath::pose(double time) const {
 }
 
 bool ToolPath::is_present(double from, double to) const {
+    if (is_endless_) return true;
     const double first = first_time(), last = last_time();
     if (first == last) return first <= to && (from < first || (from == 0.0 && first == 0.0));
     return to > first && from < last;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,8 +17,10 @@ namespace incise::scenario {
 /// Without keys, only keys() may be called.
 class ToolPath {
   public:
+    /// @param is_endless  true if the tool acts in all steps
     /// @pre  the times ascend strictly
-    explicit ToolPath(std::vector<TimeKey<Pose>> keys) : keys_(std::move(keys)) {}
+    explicit ToolPath(std::vector<TimeKey<Pose>> keys, bool is_endless = false)
+        : keys_(std::move(keys)), is_endless_(is_endless) {}
 
     /// Returns the pose at `time`, s. Before the first key it is the pose of the first key, after
     /// the last key that of the last.
@@ -29,7 +32,10 @@ class ToolPath {
     bool is_present(double from, double to) const;
 
     double first_time() const { return keys_.front().time; }  ///< s
-    double last_time() const { return keys_.back().time; }    ///< s
+    /// Returns the time of the last key, s; infinite if the tool acts in all steps.
+    double last_time() const {
+        return is_endless_ ? std::numeric_limits<double>::infinity() : keys_.back().time;
+    }
 
     /// Returns a pose shortly before the tool reaches its last pose. The two poses give the
     /// direction in which the tool moved. Returns nothing if the tool never moves.
@@ -39,6 +45,7 @@ class ToolPath {
 
   private:
     std::vector<TimeKey<Pose>> keys_;
+    bool is_endless_;
 };
 
 }  // namespace incise::scenario

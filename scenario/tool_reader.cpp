@@ -12,15 +12,18 @@ namespace {
 using io::format_number;
 using Keys = std::string_view;
 
-constexpr Keys tool_keys[] = {"kind", "name", "path",  "shape",   "edge", "mode",
-                              "snap", "time", "plane", "surface", "scale"};
-constexpr Keys kinds[] = {"carver", "blade", "cut"};
+constexpr Keys tool_keys[] = {"kind", "name", "path",  "shape",   "edge",  "mode",
+                              "snap", "time", "plane", "surface", "scale", "friction"};
+constexpr Keys obstacle_keys[] = {"name", "shape", "friction", "path"};
+constexpr Keys kinds[] = {"carver", "blade", "cut", "probe"};
 constexpr Keys modes[] = {"split", "separate"};  // in the order of CutMode
 constexpr Limits snap_limits{.low = 0.0, .high = 0.5, .includes_low = true, .includes_high = true};
 constexpr Keys plane_keys[] = {"point", "normal"};
 constexpr Keys pose_keys[] = {"time", "at", "rotate"};
 constexpr Keys rotation_keys[] = {"axis", "angle"};
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
+constexpr Keys obstacle_shape_keys[] = {"half_space", "sphere", "capsule", "box"};
+constexpr Keys half_space_keys[] = {"point", "normal"};
 constexpr Keys shape_sphere_keys[] = {"radius"};
 constexpr Keys capsule_keys[] = {"from", "to", "radius"};
 constexpr Keys shape_box_keys[] = {"size"};
@@ -38,31 +41,67 @@ Pose read_pose(const TableReader& row) {
     return pose;
 }
 
+/// Reads the shape that one of the keys sphere, capsule and box of a table gives. Returns nothing
+/// without one.
+std::optional<cutting::CarverShape> read_shape(const TableReader& shape) {
+    std::optional<cutting::CarverShape> found;
+    const auto radius_of = [](const TableReader& table) {
+        table.require("radius", "a length, as in radius = 0.008");
+        return table.number("radius", 1.0, limits::positive);
+    };
+    if (const auto sphere = shape.table("sphere", {shape_sphere_keys}))
+        found = cutting::Sphere{radius_of(*sphere)};
+    if (const auto capsule = shape.table("capsule", {capsule_keys})) {
+        capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
+        capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
+        found =
+            cutting::Capsule{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
+    }
+    if (const auto box = shape.table("box", {shape_box_keys})) {
+        box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
+        const Vec3 size = box->vector("size", Vec3::Ones());
+        if (!(size.minCoeff() > 0.0))
+            box->error("size", "is not allowed: all three lengths must be above 0");
+        found = cutting::Cuboid{size};
+    }
+    return found;
+}
+
 Carver read_carver(const TableReader& tool) {
     Carver carver;
     const auto shape = tool.table("shape", {shape_keys});
     if (!shape) return carver;
     shape->one_of({"sphere", "capsule", "box"});
-    const auto radius_of = [](const TableReader& table) {
-        table.require("radius", "a length, as in radius = 0.008");
-        return table.number("radius", 1.0, limits::positive);
-    };
-    if (const auto sphere = shape->table("sphere", {shape_sphere_keys}))
-        carver.shape = cutting::Sphere{radius_of(*sphere)};
-    if (const auto capsule = shape->table("capsule", {capsule_keys})) {
-        capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
-        capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
-        carver.shape =
-            cutting::Capsule{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
-    }
-    if (const auto box = shape->table("box", {shape_box_keys})) {
-        box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
-        const Vec3 size = box->vector("size", Vec3::Ones());
-        if (!(size.minCoeff() > 0.0))
-            box->error("size", "is not allowed: all three lengths must be above 0");
-        carver.shape = cutting::Cuboid{size};
-    }
+    if (const auto found = read_shape(*shape)) carver.shape = *found;
     return carver;
+}
+
+cutting::Probe read_probe(const TableReader& tool) {
+    cutting::Probe probe;
+    probe.friction = tool.number("friction", probe.friction, limits::non_negative);
+    const auto shape = tool.table("shape", {shape_keys});
+    if (!shape) return probe;
+    shape->one_of({"sphere", "capsule", "box"});
+    if (const auto found = read_shape(*shape))
+        std::visit([&](const auto& one) { probe.shape = one; }, *found);
+    return probe;
+}
+
+cutting::Probe read_obstacle(const TableReader& obstacle) {
+    cutting::Probe probe;
+    probe.friction = obstacle.number("friction", probe.friction, limits::non_negative);
+    const auto shape = obstacle.table("shape", {obstacle_shape_keys});
+    if (!shape) return probe;
+    shape->one_of({"half_space", "sphere", "capsule", "box"});
+    if (const auto found = read_shape(*shape))
+        std::visit([&](const auto& one) { probe.shape = one; }, *found);
+    if (const auto half_space = shape->table("half_space", {half_space_keys})) {
+        half_space->require("point", "a point of its surface, as in point = [0, 0, 0]");
+        half_space->require("normal", "towards the free side, as in normal = [0, 0, 1]");
+        probe.shape = cutting::HalfSpace{half_space->vector("point"),
+                                         half_space->direction("normal", Vec3::UnitZ())};
+    }
+    return probe;
 }
 
 BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
@@ -111,15 +150,16 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
 
 /// Reports keys that a tool of this kind needs but does not have, and keys of other kinds.
 void check_keys(const TableReader& tool, Keys kind) {
-    if (kind == "carver")
+    if (kind == "carver" || kind == "probe")
         tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
     else
-        refuse(tool, {"shape"}, "a carver");
+        refuse(tool, {"shape"}, "a carver or a probe");
+    if (kind != "probe") refuse(tool, {"friction"}, "a probe");
     if (kind == "blade")
         tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]");
     else
         refuse(tool, {"edge", "mode"}, "a blade");
-    if (kind == "carver") refuse(tool, {"snap"}, "a blade");
+    if (kind == "carver" || kind == "probe") refuse(tool, {"snap"}, "a blade");
     if (kind == "cut") {
         tool.one_of({"plane", "surface"});
         refuse(tool, {"path"}, "a blade");
@@ -140,6 +180,10 @@ bool knows_where(const TableReader& tool, Keys kind) {
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<BladeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
+    if (std::holds_alternative<cutting::Probe>(spec.kind) && spec.path.size() == 1)
+        tool.error("path",
+                   "must have at least 2 keys: a probe is there from the first to the last; "
+                   "for one that is always there, write an [[obstacle]]");
     if (end_time > 0.0 && !spec.path.empty() && spec.path.front().time > end_time)
         tool.warning(tool.has("time") ? "time" : "path",
                      "tool " + in_quotes(spec.name) + " starts at " +
@@ -166,8 +210,9 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
         if (index) check_keys(tool, kind);
         std::optional<double> snap;
-        if (kind != "carver") snap = tool.number_if_given("snap", snap_limits);
+        if (kind != "carver" && kind != "probe") snap = tool.number_if_given("snap", snap_limits);
         if (may_be("carver")) spec.kind = read_carver(tool);
+        if (kind == "probe") spec.kind = read_probe(tool);
         if (may_be("blade")) spec.kind = read_blade(tool, snap);
         if (may_be("cut")) {
             spec.kind = read_cut(tool, snap, folder);
@@ -180,6 +225,21 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         if (!index && !tool.has("surface")) continue;
         if (index) check_path(tool, spec, end_time);
         if (!index || !knows_where(tool, kind)) spec.path.clear();
+        specs.push_back(std::move(spec));
+    }
+    int count = 0;
+    for (const auto& obstacle : root.tables("obstacle", {obstacle_keys})) {
+        ToolSpec spec;
+        spec.kind = read_obstacle(obstacle);
+        spec.is_obstacle = true;
+        spec.location = obstacle.location_text();
+        spec.name = read_name(obstacle, "obstacle_" + std::to_string(++count), names);
+        obstacle.require(
+            "shape", "as in shape = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }");
+        spec.path = {{0.0, Pose()}};
+        if (obstacle.has("path"))
+            spec.path = read_time_keys<Pose>(obstacle, "path", {pose_keys}, end_time, read_pose);
+        if (!obstacle.is_sound("path") || !obstacle.is_sound("shape")) spec.path.clear();
         specs.push_back(std::move(spec));
     }
     return specs;

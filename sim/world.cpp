@@ -41,6 +41,12 @@ const StepReport& World::Parts::checked_step(double end, double dt) {
         throw InputError("a step of " + io::format_number(dt) + " s is above the stable step of " +
                          io::format_number(at_rest) + " s");
     constexpr std::size_t most_parts = 1000;
+    for (const Tool& tool : tools)
+        if (solver == Solver::semi_implicit_euler && parts_for(tool) > double(most_parts))
+            throw InputError("tool '" + tool.def.name + "' moves so far in a step of " +
+                             io::format_number(dt) +
+                             " s that the step needs more than 1000 parts; move it more slowly, or "
+                             "place it anew");
     if (num_parts(dt) > most_parts)
         throw InputError("a step of " + io::format_number(dt) + " s is far above " +
                          io::format_number(stable_step) +
@@ -81,6 +87,9 @@ void World::Parts::require_sound_pose(ToolId id, const Pose& pose) const {
 ToolId World::add_tool(ToolDef def) {
     require_sound(def);
     Parts& p = *parts_;
+    if (std::holds_alternative<cutting::Probe>(def.shape) && !p.contact)
+        throw InputError("tool '" + def.name +
+                         "' is a probe: it needs the explicit solver, with contact enabled");
     Parts::Tool tool{std::move(def)};
     tool.surface = cutting::cut_surface_of(tool.def.shape);
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))

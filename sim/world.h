@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "incise/base/error.h"
+#include "incise/contact/surface_contact.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/force_term.h"
@@ -49,6 +50,9 @@ struct WorldDef {
     double damping = 0.0;                               ///< mass-proportional, 1/s
     std::vector<physics::Constraint> constraints = {};  ///< nodes are given by id
     std::vector<physics::Load> loads = {};
+
+    /// Contact between the surfaces of the body. It acts with the explicit solver only.
+    contact::ContactSettings contact = {};
 
     Solver solver = Solver::semi_implicit_euler;
     int num_threads = 1;  ///< does not change any result
@@ -93,14 +97,26 @@ struct ToolState {
     ToolId tool;
     Pose pose;
     bool is_in_tissue = false;  ///< true if the tool splits elements and its cut ends inside one
+    /// What the tissue exerts on a probe, mean over the step: force, N, and torque about the origin
+    /// of the tool at the end of the step, N m. Zero for other tools.
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
+
+/// Contact in a step.
+struct ContactState {
+    std::size_t num_points = 0;    ///< points of contact with an impulse
+    double max_penetration = 0.0;  ///< largest overlap before the step, m
+    double dissipation = 0.0;      ///< energy that contact has taken since the start, J
 };
 
 /// The report of one step.
 struct StepReport {
-    double from = 0.0, to = 0.0;   ///< s
-    std::size_t num_parts = 1;     ///< explicit steps that the step was divided into
-    std::vector<Edit> edits;       ///< in order of execution
-    std::vector<ToolState> tools;  ///< those present at the end of the step
+    double from = 0.0, to = 0.0;  ///< s
+    std::size_t num_parts = 1;    ///< explicit steps that the step was divided into
+    std::vector<Edit> edits;      ///< in order of execution
+    /// Those present at the end of the step, and probes that were withdrawn at its end.
+    std::vector<ToolState> tools;
+    ContactState contact;  ///< in the last part of the step
 };
 
 /// Thrown if a tool meets something that it cannot cut.
@@ -138,13 +154,15 @@ class World {
     /// too.
     ///
     /// With the explicit solver, a step above stable_step() moves the tissue in equal parts that
-    /// are not above it: StepReport::num_parts. A step of constant length therefore stays possible
+    /// are not above it: StepReport::num_parts. So does a step in which a probe moves by more than
+    /// a quarter of an element, or of its least half width: it does not pass through a surface. A
+    /// step of constant length therefore stays possible
     /// when strain stiffens the tissue; it only takes longer. Tools cut once, at the end of the
     /// step.
     ///
     /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above
-    /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, or if the
-    /// world has failed before.
+    /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, if a probe
+    /// would need more than 1000 parts, or if the world has failed before.
     /// Throws physics::MotionFailure if the solver fails, and ToolError if a tool meets something
     /// that it cannot cut. In both cases the world has failed: it can be read and restored, but not
     /// stepped.
@@ -170,7 +188,7 @@ class World {
 
     /// Adds a tool. The tool is present in the world only after a pose has been set.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
-    /// radius that is not above 0.
+    /// radius that is not above 0, and for a probe in a world without contact.
     ToolId add_tool(ToolDef def);
     /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose, and a
     /// withdrawal of it no longer holds.
@@ -256,9 +274,8 @@ class World {
     static constexpr std::uint32_t state_format = 10;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
-    /// constraints, loads, tools and cuts in progress. The materials and the solver are not
-    /// included.
-    /// Cost: some 100 bytes an element and as many a node.
+    /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are
+    /// not included. Cost: some 100 bytes an element and as many a node.
     std::string save() const;
     /// Restores a state that save() has returned. Later steps give the same results bit for bit.
     /// Throws InputError, and changes nothing, for bytes that cannot be a state of a world with the

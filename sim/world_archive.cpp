@@ -30,7 +30,8 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     : mesh(topology::load_mesh(ar)),
       time(read_time(ar)),
       model(mesh, former.model.elements().materials(), ar, time),
-      integrator(make_integrator(former.solver)),
+      contact(former.contact ? make_contact(former.contact->settings(), former.solver) : nullptr),
+      integrator(make_integrator(former.solver, contact.get())),
       solver(former.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()) {
@@ -38,6 +39,12 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     ledger.restore(ar);
     ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
        has_failed);
+    if (ar.read<bool>() != (contact != nullptr))
+        throw InputError(
+            "the world that was saved has contact, and this one has not, or the other "
+            "way round");
+    if (contact) contact->restore(ar, model, built_surface());
+    report_contact();
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of the world");
     if (!(stable_step > 0.0)) throw InputError("its stable step is not above 0");
     prepare_tools();
@@ -64,6 +71,8 @@ void World::Parts::save(ArchiveWriter& ar) const {
     ledger.save(ar);
     ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
        has_failed);
+    ar(contact != nullptr);
+    if (contact) contact->save(ar);
 }
 
 /// Checks the tools that an archive contained, and computes the members that it does not contain.

@@ -129,7 +129,20 @@ struct FaultOfShape {
         return fault_of_snap(cut.snap);
     }
 
+    std::string operator()(const cutting::Probe& probe) const {
+        if (!(probe.friction >= 0.0 && std::isfinite(probe.friction)))
+            return "its friction is " + io::format_number(probe.friction) +
+                   ": it must be 0 or more";
+        return std::visit([&](const auto& shape) { return fault_of(shape); }, probe.shape);
+    }
+
   private:
+    static std::string fault_of(const cutting::HalfSpace& half_space) {
+        if (!is_finite(half_space.point)) return "its point is not finite";
+        if (std::abs(half_space.normal.norm() - 1.0) < 1e-6) return "";
+        return "its normal has a length of " + io::format_number(half_space.normal.norm()) +
+               ": it must be 1";
+    }
     static std::string fault_of(const cutting::Sphere& sphere) {
         return fault_of_length("it has a radius", sphere.radius);
     }
@@ -261,6 +274,9 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
         def.solver != Solver::statics)
         throw InputError("there is no such solver");
     require_sound_num_threads(def.num_threads);
+    if (!(def.contact.friction >= 0.0 && std::isfinite(def.contact.friction)))
+        throw InputError("the friction of contact is " + io::format_number(def.contact.friction) +
+                         ": it must be 0 or more");
     for (const physics::Constraint& constraint : def.constraints) require_sound(constraint, mesh);
     for (const physics::Load& load : def.loads) require_sound(load, mesh);
 }

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/contact/contact.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/sim/numbering.h"
 #include "incise/sim/world.h"
 
 namespace incise::sim {
 
-std::unique_ptr<physics::Integrator> make_integrator(Solver solver);
+std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Contact* contact);
 
 /// When the stable step is computed anew: docs/theory.md, Stable step. The computation takes about
 /// as long as two steps. In calm motion it adds 2 %.
@@ -65,8 +66,9 @@ struct World::Parts {
         std::optional<cutting::CutId> cut = {};                   // only for a blade that splits
         std::shared_ptr<const cutting::CutSurface> surface = {};  // only for cuts at once
         bool is_present = false;
-        Pose pose = {};    // at present
-        Pose target = {};  // at the end of the next step
+        bool has_just_left = false;  // a probe, in this step
+        Pose pose = {};              // at present
+        Pose target = {};            // at the end of the next step
         bool is_leaving = false;
         std::optional<Pose> pose_before_end = {};
         std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // only for a blade
@@ -104,6 +106,14 @@ struct World::Parts {
     void update_stable_step();
     /// Returns how many parts a step of `dt`, s, needs.
     std::size_t num_parts(double dt) const;
+    /// Returns how many parts a step needs in which a tool moves to its target.
+    double parts_for(const Tool& tool) const;
+    /// Sets the motion of probes in a part of a step, from one share of it to another.
+    void move_probes(double from, double to);
+    std::unique_ptr<contact::Contact> make_contact(const contact::ContactSettings& settings,
+                                                   Solver with);
+    void report_contact();
+    void report_tool(ToolId id);
     void cut_with(ToolId id, double end);
     cutting::Split split_with(Tool& tool);
     void follow(ToolId id, cutting::Split done, double end);
@@ -117,6 +127,8 @@ struct World::Parts {
     topology::Mesh mesh;
     double time = 0.0;
     physics::Model model;
+    std::optional<topology::BoundarySurface> surface;
+    std::unique_ptr<contact::Contact> contact;  // only with the explicit solver
     std::unique_ptr<physics::Integrator> integrator;
     Solver solver;
     Ledger ledger;
@@ -126,7 +138,6 @@ struct World::Parts {
     std::map<std::size_t, Grasp> grasps;  // by the number of the constraint
     Numbering loads{"load"};
     bool loads_have_changed = false;  // since the forces were computed
-    std::optional<topology::BoundarySurface> surface;
     StepReport report;
     std::uint64_t num_steps = 0;
     double stable_step = 0.0;      // as last computed, s

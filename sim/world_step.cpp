@@ -49,10 +49,18 @@ double mean_element_length(const Mesh& mesh) {
 
 }  // namespace
 
-std::unique_ptr<physics::Integrator> make_integrator(Solver solver) {
+std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Contact* contact) {
     if (solver == Solver::statics) return std::make_unique<physics::Statics>();
     if (solver == Solver::implicit_euler) return std::make_unique<physics::ImplicitEuler>();
-    return std::make_unique<physics::SemiImplicitEuler>();
+    auto integrator = std::make_unique<physics::SemiImplicitEuler>();
+    if (contact) integrator->add_projection(*contact);
+    return integrator;
+}
+
+std::unique_ptr<contact::Contact> World::Parts::make_contact(
+    const contact::ContactSettings& settings, Solver with) {
+    if (!settings.enabled || with != Solver::semi_implicit_euler) return nullptr;
+    return std::make_unique<contact::Contact>(settings, mean_element_length(mesh));
 }
 
 World::Parts::Parts(WorldDef def)
@@ -61,7 +69,8 @@ World::Parts::Parts(WorldDef def)
       model{mesh,
             materials_of(def, mesh),
             {def.gravity, def.damping, std::move(def.constraints), std::move(def.loads)}},
-      integrator(make_integrator(def.solver)),
+      contact(make_contact(def.contact, def.solver)),
+      integrator(make_integrator(def.solver, contact.get())),
       solver(def.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()),
@@ -70,6 +79,7 @@ World::Parts::Parts(WorldDef def)
       stable_step(model.stable_step()),
       bound_interval{mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
+    if (contact) contact->follow(model, built_surface());
 }
 
 void World::Parts::step_to(double end) {
@@ -110,10 +120,30 @@ void World::Parts::step_to(double end) {
         for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
     }
     model.compute_forces(end);
+    if (contact && !report.edits.empty()) contact->follow(model, built_surface());
     update_stable_step();
-    for (std::size_t i = 0; i < tools.size(); ++i)
-        if (const Tool& tool = tools[i]; tool.is_present)
-            report.tools.push_back({{i}, tool.pose, tool.cut && cutter.is_in_tissue(*tool.cut)});
+    for (std::size_t i = 0; i < tools.size(); ++i) report_tool({i});
+    report_contact();
+}
+
+void World::Parts::report_tool(ToolId id) {
+    Tool& tool = tools[id.index];
+    if (!tool.is_present && !tool.has_just_left) return;
+    ToolState state{id, tool.pose, tool.cut && cutter.is_in_tissue(*tool.cut)};
+    if (contact) {
+        const contact::ToolImpulse done = contact->take_impulse(id.index);
+        state.force = -done.force / (report.to - report.from);
+        state.torque = -done.torque / (report.to - report.from);
+    }
+    report.tools.push_back(state);
+    if (tool.has_just_left) contact->remove_tool(id.index);
+    tool.has_just_left = false;
+}
+
+void World::Parts::report_contact() {
+    if (contact)
+        report.contact = {contact->num_points(), contact->max_penetration(),
+                          contact->dissipation()};
 }
 
 double World::Parts::present_bound() const {
@@ -156,7 +186,30 @@ void World::Parts::update_stable_step() {
 
 std::size_t World::Parts::num_parts(double dt) const {
     if (solver != Solver::semi_implicit_euler) return 1;
-    return static_cast<std::size_t>(std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0));
+    double parts = std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0);
+    for (const Tool& tool : tools) parts = std::max(parts, parts_for(tool));
+    return static_cast<std::size_t>(std::min(parts, 1e9));
+}
+
+double World::Parts::parts_for(const Tool& tool) const {
+    const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
+    if (!probe || !tool.is_present) return 1.0;
+    constexpr double most = 0.25;  // of an element, or of the probe
+    const double move =
+        (tool.target.position - tool.pose.position).norm() +
+        contact::reach_of(probe->shape) * tool.pose.rotation.angularDistance(tool.target.rotation);
+    return std::ceil(move /
+                     (most * std::min(contact::half_width_of(probe->shape), contact->size())));
+}
+
+void World::Parts::move_probes(double from, double to) {
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+        const Tool& tool = tools[i];
+        const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
+        if (probe && tool.is_present)
+            contact->move_tool(i, *probe, interpolate(tool.pose, tool.target, from),
+                               interpolate(tool.pose, tool.target, to));
+    }
 }
 
 double World::Parts::move_to(double end) {
@@ -167,7 +220,11 @@ double World::Parts::move_to(double end) {
         const double next =
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
         if (i > 0) model.compute_forces(time);
+        if (contact)
+            move_probes(static_cast<double>(i) / static_cast<double>(n),
+                        static_cast<double>(i + 1) / static_cast<double>(n));
         integrator->step(model, time, next - time);
+        if (contact) contact->book_work(model);
         largest_move += model.largest_mesh_move();
         bound_interval.moved += model.largest_move();
         time = next;
@@ -179,6 +236,13 @@ double World::Parts::move_to(double end) {
 void World::Parts::cut_with(ToolId id, double end) {
     Tool& tool = tools[id.index];
     if (!tool.is_present) return;
+    if (std::holds_alternative<cutting::Probe>(tool.def.shape)) {
+        tool.pose = tool.target;
+        if (!tool.is_leaving) return;
+        tool.has_just_left = true;
+        tool.is_present = tool.is_leaving = false;
+        return;
+    }
     const auto carry_out = [&](auto edit) -> cutting::Split {
         try {
             return edit();

@@ -8,26 +8,11 @@
 
 #include "incise/base/types.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
+#include "incise/cutting/tools/shapes.h"
 #include "incise/topology/pose.h"
 
 namespace incise::cutting {
 
-/// A ball in the frame of the tool, m.
-struct Sphere {
-    double radius;  ///< centred at the origin
-    static void archive(auto& ar, auto& self) { ar(self.radius); }
-};
-/// A cylinder with round ends in the frame of the tool, m.
-struct Capsule {
-    Vec3 from, to;  ///< ends of the axis
-    double radius;
-    static void archive(auto& ar, auto& self) { ar(self.from, self.to, self.radius); }
-};
-/// A box in the frame of the tool, with sides parallel to the axes, m.
-struct Cuboid {
-    Vec3 size;  ///< edge lengths, centred at the origin
-    static void archive(auto& ar, auto& self) { ar(self.size); }
-};
 using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
 
 /// True if the segment from a to b, in the frame of the tool, meets the shape or its surface.

@@ -48,7 +48,16 @@ struct SurfaceCut {
     static void archive(auto& ar, auto& self) { ar(self.surface, self.snap); }
 };
 
-using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut>;
+using ProbeShape = std::variant<Sphere, Capsule, Cuboid, HalfSpace>;
+
+/// A rigid tool that pushes tissue and cuts nothing.
+struct Probe {
+    ProbeShape shape;
+    double friction = 0.0;  ///< Coulomb's coefficient between it and the tissue
+    static void archive(auto& ar, auto& self) { ar(self.shape, self.friction); }
+};
+
+using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe>;
 
 /// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.
 std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape);

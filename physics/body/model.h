@@ -171,10 +171,16 @@ class Model {
     /// Without such changes, the results are those of integrate() bit for bit.
     void kick(double time, double dt);
     /// Changes the velocities of free components between kick() and drift(). The work of an impulse
-    /// counts as external; it is the impulse times the mean of the velocities before and after it.
-    /// An impulse on a prescribed component changes the reaction of the constraint instead.
+    /// counts as external; it is the impulse times the mean of the velocities before and after the
+    /// step. An impulse on a prescribed component changes the reaction of the constraint instead.
+    /// Damping acts on what an impulse does as on what a force does; see response_to_impulses().
     /// @param impulses  N s, by node id
     void give_impulses(std::span<const Vec3> impulses);
+    /// Returns the change of velocity by an impulse between kick() and drift(), times the mass of
+    /// the node over the impulse: 1 without damping.
+    double response_to_impulses() const { return response_to_impulses_; }
+    /// Returns the work of the impulses of the last step, J.
+    double impulse_work() const { return impulse_work_; }
     /// Makes the second stage of the step: sets the positions and everything else. It throws as
     /// integrate() does.
     /// @pre  kick() was called with the same arguments
@@ -450,6 +456,8 @@ class Model {
     std::vector<Vec3> previous_positions_;           // scratch, of viscous bodies only
     std::vector<Vec3> previous_velocities_;          // from kick to drift, by node id
     std::vector<Vec3> impulses_;  // from kick to drift, by node id, N s; empty: none
+    double impulse_work_ = 0.0;   // of the last step, J
+    double response_to_impulses_ = 1.0;
 };
 
 }  // namespace incise::physics

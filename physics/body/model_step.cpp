@@ -36,6 +36,7 @@ void Model::step_ranges(double time, double dt, MoveRange move_range) {
     for (std::size_t i = 0; i < range_reactions_.size(); ++i)
         reactions_[i % constraints_.size()] += range_reactions_[i];
     external_work_ += sums.work;
+    impulse_work_ = sums.impulse_work;
     dissipated_energy_ += damping_ * sums.mass_times_square * dt;
     largest_move_ = std::sqrt(sums.largest_square) * dt;
     if (!sums.is_finite() || largest_move_ > body_size_) throw failure_of_step(*this, time, dt);
@@ -84,7 +85,10 @@ StepSums Model::move_node(std::size_t n, const State::Values& values, double tim
     values.positions[n] = step.x;
     values.velocities[n] = step.v;
     const double square = step.v.squaredNorm();
-    return {step.work + outer.dot(step.x - x), mass * square, square};
+    return {.work = step.work + outer.dot(step.x - x),
+            .impulse_work = 0.0,
+            .mass_times_square = mass * square,
+            .largest_square = square};
 }
 
 Model::NodeStep Model::constrain_node(std::size_t n, const Vec3& v, double time, double dt,
@@ -134,6 +138,7 @@ void Model::kick(double time, double dt) {
     previous_velocities_.assign(values.velocities.begin(), values.velocities.end());
     impulses_.clear();
     const double slowing = 1.0 / (1.0 + damping_ * dt);
+    response_to_impulses_ = slowing;
     workers_.for_each_range(masses_.size(), [&](NodeRange range) {
         for (std::size_t n = range.begin; n < range.end; ++n) {
             if (masses_[n] == 0.0) continue;  // dead
@@ -159,14 +164,9 @@ void Model::give_impulses(std::span<const Vec3> impulses) {
         if (masses_[n] == 0.0 || impulses[n].isZero(0.0)) continue;
         const auto* constraint_of = constraints_.of_node(n);
         for (int c = 0; c < 3; ++c) {
-            if (constraint_of && (*constraint_of)[static_cast<std::size_t>(c)] >= 0) {
-                impulses_[n][c] += impulses[n][c];
-                continue;
-            }
-            double& v = values.velocities[n][c];
-            const double change = impulses[n][c] / masses_[n];
-            external_work_ += impulses[n][c] * (v + 0.5 * change);
-            v += change;
+            impulses_[n][c] += impulses[n][c];
+            if (constraint_of && (*constraint_of)[static_cast<std::size_t>(c)] >= 0) continue;
+            values.velocities[n][c] += response_to_impulses_ * impulses[n][c] / masses_[n];
         }
     }
 }
@@ -179,8 +179,11 @@ void Model::drift(double time, double dt) {
             if (masses_[n] == 0.0) continue;  // dead
             const Vec3 x = values.positions[n], outer = outer_forces_[n];
             NodeStep step{x + dt * values.velocities[n], values.velocities[n], 0.0};
-            if (constraints_.of_node(n)) {
-                const Vec3 impulse = impulses_.empty() ? Vec3(Vec3::Zero()) : impulses_[n];
+            const Vec3 impulse = impulses_.empty() ? Vec3(Vec3::Zero()) : impulses_[n];
+            Vec3 free_impulse = impulse;
+            if (const auto* constraint_of = constraints_.of_node(n)) {
+                for (int c = 0; c < 3; ++c)
+                    if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0) free_impulse[c] = 0.0;
                 step = constrain_node(n, previous_velocities_[n], time, dt,
                                       elastic_forces_[n] + outer, step, reactions);
                 add_reactions_to_impulse(n, impulse / dt, step.x, reactions);
@@ -188,7 +191,11 @@ void Model::drift(double time, double dt) {
             values.positions[n] = step.x;
             values.velocities[n] = step.v;
             const double square = step.v.squaredNorm();
-            sums += StepSums{step.work + outer.dot(step.x - x), masses_[n] * square, square};
+            const double of_impulse = 0.5 * free_impulse.dot(previous_velocities_[n] + step.v);
+            sums += StepSums{.work = step.work + outer.dot(step.x - x) + of_impulse,
+                             .impulse_work = of_impulse,
+                             .mass_times_square = masses_[n] * square,
+                             .largest_square = square};
         }
         return sums;
     });

@@ -14,13 +14,15 @@ namespace incise::physics {
 
 /// Sums of a step over nodes.
 struct StepSums {
-    double work = 0.0;  ///< of outer forces and constraints, J
+    double work = 0.0;          ///< of outer forces, constraints and impulses, J
+    double impulse_work = 0.0;  ///< of impulses alone, J
     /// Sum of mass times squared speed, kg m2/s2; largest squared speed, m2/s2.
     double mass_times_square = 0.0, largest_square = 0.0;
 
     bool is_finite() const { return std::isfinite(mass_times_square); }
     StepSums& operator+=(const StepSums& o) {
         work += o.work;
+        impulse_work += o.impulse_work;
         mass_times_square += o.mass_times_square;
         largest_square = std::max(largest_square, o.largest_square);
         return *this;

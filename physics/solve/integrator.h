@@ -34,13 +34,15 @@ class Integrator {
 class VelocityProjection {
   public:
     virtual ~VelocityProjection() = default;
+    /// Looks at the body before a step. Returns false if it will give no impulses in the step.
+    virtual bool prepare(const Model& /*model*/, double /*time*/, double /*dt*/) { return true; }
     /// Gives impulses to nodes of the model; see Model::give_impulses. The step is from `time` to
     /// time + dt, s, and the velocities of the model are those of its end.
     virtual void project(Model& model, double time, double dt) = 0;
 };
 
 /// Symplectic Euler, for steps below the stable step. A step has the stages kick, project and
-/// drift. Without projections it is one pass over the nodes: Model::integrate.
+/// drift. If no projection will give impulses, it is one pass over the nodes: Model::integrate.
 ///
 /// Velocities are those in the middle of the step before. So where a step differs in length from
 /// the one before, the forces act over the mean of both. Source: docs/theory.md, Masses and time
@@ -51,13 +53,12 @@ class SemiImplicitEuler final : public Integrator {
     void save(ArchiveWriter& ar) const override;
     void restore(ArchiveReader& ar, const Model& model) override;
     /// Adds a projection. Projections act in the order in which they are added.
-    void add_projection(std::unique_ptr<VelocityProjection> projection) {
-        projections_.push_back(std::move(projection));
-    }
+    /// @lifetime The projection must outlive the integrator.
+    void add_projection(VelocityProjection& projection) { projections_.push_back(&projection); }
 
   private:
-    std::vector<std::unique_ptr<VelocityProjection>> projections_;
-    double dt_ = 0.0;  // of the step before, s; 0: none
+    std::vector<VelocityProjection*> projections_, acting_;  // all, and those of a step
+    double dt_ = 0.0;                                        // of the step before, s; 0: none
 };
 
 /// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'). The forces f are those of

@@ -15,12 +15,15 @@ void SemiImplicitEuler::step(Model& model, double time, double dt) {
         model.shift_velocities(0.5 * (dt_ - dt));
         dt_ = dt;
     }
-    if (projections_.empty()) {
+    acting_.clear();
+    for (VelocityProjection* const projection : projections_)
+        if (projection->prepare(model, time, dt)) acting_.push_back(projection);
+    if (acting_.empty()) {
         model.integrate(time, dt);
         return;
     }
     model.kick(time, dt);
-    for (const auto& projection : projections_) projection->project(model, time, dt);
+    for (VelocityProjection* const projection : acting_) projection->project(model, time, dt);
     model.drift(time, dt);
 }
 

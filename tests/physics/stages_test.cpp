@@ -77,7 +77,8 @@ TEST(Stages, WithoutProjectionAreTheFusedStep) {
         Model fused(mesh, material.table, held_moved_and_damped(mesh));
         Model staged(mesh, material.table, held_moved_and_damped(mesh));
         SemiImplicitEuler one_pass, stages;
-        stages.add_projection(std::make_unique<NoProjection>());
+        NoProjection none;
+        stages.add_projection(none);
         const double dt = 0.5 * fused.stable_step();
         for (int i = 0; i < 50; ++i) {
             one_pass.step(fused, i * dt, dt);
@@ -133,7 +134,8 @@ TEST(Stages, ImpulsesChangeMomentumAndWork) {
     const Vec3 impulse(1e-3, -2e-3, 5e-4);
     Model model(mesh, table_of_one_law(soft_law));
     SemiImplicitEuler integrator;
-    integrator.add_projection(std::make_unique<Push>(NodeId(3), impulse));
+    Push push(NodeId(3), impulse);
+    integrator.add_projection(push);
     const double dt = 0.1 * model.stable_step();
     const Totals before = model.totals();
     integrator.step(model, 0.0, dt);
@@ -151,7 +153,8 @@ TEST(Stages, ConstraintsBearTheImpulsesOnTheirNodes) {
     const NodeId node = held.constraints[0].nodes.members()[0].node;
     Model model(mesh, table_of_one_law(soft_law), held);
     SemiImplicitEuler integrator;
-    integrator.add_projection(std::make_unique<Push>(node, impulse));
+    Push push(node, impulse);
+    integrator.add_projection(push);
     const double dt = 0.1 * model.stable_step();
     integrator.step(model, 0.0, dt);
     Model alone(mesh, table_of_one_law(soft_law), held);

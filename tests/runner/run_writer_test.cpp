@@ -74,7 +74,8 @@ TEST_F(RunFiles, HistoryHasARowPerFrameAndEdit) {
               "time,step,nodes,elements,components,mass,volume,kinetic_energy,elastic_energy,"
               "external_work,dissipated_energy,momentum_x,momentum_y,momentum_z,"
               "angular_momentum_x,angular_momentum_y,angular_momentum_z,min_J,time_step,"
-              "stable_step,reaction_floor_x,reaction_floor_y,reaction_floor_z,"
+              "stable_step,contacts,max_penetration,contact_dissipation,reaction_floor_x,reaction_"
+              "floor_y,reaction_floor_z,"
               "torque_floor_x,torque_floor_y,torque_floor_z");
     const auto& edits = simulation_.edits();
     ASSERT_GT(edits.size(), 2u);
@@ -437,7 +438,7 @@ TEST(Expectations, CanNameExactlyTheQuantitiesOfTheSummary) {
     const Simulation simulation(scenario_of(soft_cube + dynamics(0.2)));
     std::vector<std::string> names;
     for (const auto& [name, value] : summary_quantities(simulation)) names.push_back(name);
-    EXPECT_EQ(names, all_quantities(std::vector<std::string>{"floor"}));
+    EXPECT_EQ(names, all_quantities(std::vector<std::string>{"floor"}, {}));
 }
 
 }  // namespace

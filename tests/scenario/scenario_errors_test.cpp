@@ -48,7 +48,8 @@ fix = "xxy"
     EXPECT_EQ(
         file.errors(),
         (Lines{"scene.toml:1:1: key 'titel': is not known; did you mean 'title'? Known here: "
-               "title, mesh, material, dynamics, constraint, load, tool, output, expect",
+               "title, mesh, material, dynamics, contact, constraint, load, tool, obstacle, "
+               "output, expect",
                "scene.toml:3:8: key 'mesh.file': there is no file kidney.vtu (paths are relative "
                "to the scenario's folder)",
                "scene.toml:4:9: key 'mesh.scale': -1 is not allowed: must be above 0",
@@ -381,8 +382,9 @@ TEST(ScenarioErrors, OfLoads) {
 }
 
 TEST(ScenarioErrors, OfTools) {
-    EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
-              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut");
+    EXPECT_EQ(
+        error_of("[[tool]]\nsnap = 0.1\n"),
+        "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, probe");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
               "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
@@ -455,7 +457,7 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
         "Known here: time, step, nodes, elements, components, mass, volume, kinetic_energy, "
         "elastic_energy, external_work, dissipated_energy, momentum_x, momentum_y, momentum_z, "
         "angular_momentum_x, angular_momentum_y, angular_momentum_z, min_J, time_step, "
-        "stable_step, ";
+        "stable_step, contacts, max_penetration, contact_dissipation, ";
     const std::string more =
         "gravity_energy, edits, elements_removed, elements_split, elements_added, faces_opened, "
         "cut_area, mass_removed, mass_error, energy_error, volume_change, max_displacement";

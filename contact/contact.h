@@ -1,0 +1,76 @@
+// Contact as a part of an explicit step.
+// Source: docs/theory.md, Contact.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "incise/contact/contact_solver.h"
+#include "incise/contact/rigid_contact.h"
+#include "incise/contact/surface_contact.h"
+#include "incise/physics/solve/integrator.h"
+#include "incise/topology/boundary_surface.h"
+
+namespace incise::contact {
+
+/// Contact in the steps of a body: of its surface with itself, and with rigid tools. Its impulses
+/// keep linear momentum to rounding. They take energy, and give none but the work of the tools, to
+/// the order of the step.
+class Contact final : public physics::VelocityProjection {
+  public:
+    /// @param size  mean length of an element at rest, m
+    Contact(const ContactSettings& settings, double size) : tissue_(settings, size) {}
+
+    /// Follows the edits of a step, or begins.
+    /// @param surface  of the body
+    void follow(const physics::Model& model, const topology::BoundarySurface& surface);
+
+    /// Sets the motion of a tool in the next step. A tool that is not known yet comes.
+    /// @param tool  its number
+    void move_tool(std::size_t tool, const cutting::Probe& probe, const Pose& before,
+                   const Pose& after);
+    /// Takes a tool away.
+    void remove_tool(std::size_t tool) { tools_.erase(tool); }
+    /// Returns what a tool has exerted since the last call.
+    ToolImpulse take_impulse(std::size_t tool);
+    /// Counts the work of the impulses of the last step: that of the tools as external, the rest as
+    /// dissipated. Call it after each step.
+    void book_work(physics::Model& model);
+
+    bool prepare(const physics::Model& model, double time, double dt) override;
+    void project(physics::Model& model, double time, double dt) override;
+
+    const ContactSettings& settings() const { return tissue_.settings(); }
+    double size() const { return tissue_.size(); }
+    /// Returns the number of points of contact with an impulse in the last step.
+    std::size_t num_points() const { return num_points_; }
+    /// Returns the largest overlap before the last step, m.
+    double max_penetration() const { return max_penetration_; }
+    /// Returns the energy that contact has taken since the start, J.
+    double dissipation() const { return dissipation_; }
+    const ContactSolver& solver() const { return solver_; }
+
+    void save(ArchiveWriter& ar) const;
+    /// Restores what save() wrote.
+    /// @pre  model and surface are those of the saved state
+    void restore(ArchiveReader& ar, const physics::Model& model,
+                 const topology::BoundarySurface& surface);
+
+  private:
+    struct Tool {
+        RigidContact contact;
+        ToolImpulse impulse = {};
+    };
+    SurfaceContact tissue_;
+    std::map<std::size_t, Tool> tools_;
+    ContactSolver solver_{tissue_.size()};
+    std::size_t num_points_ = 0;
+    double max_penetration_ = 0.0;                 // m
+    double tool_work_ = 0.0;                       // of the last step, J
+    double dissipation_ = 0.0;                     // J
+    std::vector<Vec3> inverse_masses_, impulses_;  // scratch, by node of the fragments
+};
+
+}  // namespace incise::contact

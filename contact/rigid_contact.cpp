@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/rigid_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "incise/base/error.h"
+
+namespace incise::contact {
+
+namespace {
+
+// Lengths are parts of the mean length of an element.
+constexpr double probe_reach =
+    0.3;  // at which a point counts: farther than anything moves in a step
+constexpr double probe_skin =
+    0.5;  // by which triangles are found that are not within probe_reach yet
+
+}  // namespace
+
+RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const Vec3& weights) {
+    constexpr double rounding = 1e-9;
+    Feature feature;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (weights[static_cast<int>(k)] > rounding) feature[count++] = triangle[k];
+    std::ranges::sort(feature);
+    return feature;
+}
+
+/// Returns the largest distance by which a point of the tool moves in the step, m, at most.
+double RigidContact::largest_move() const {
+    return (after_.position - before_.position).norm() +
+           reach_of(probe_.shape) * before_.rotation.angularDistance(after_.rotation);
+}
+
+void RigidContact::find_triangles(std::span<const Vec3> positions,
+                                  std::span<const Triangle> surface) {
+    const Box of_shape = box_of(probe_.shape);
+    const double margin = (probe_reach + probe_skin) * size_;
+    triangles_.clear();
+    for (std::uint32_t t = 0; t < surface.size(); ++t) {
+        Box box;
+        for (const NodeId n : surface[t]) box.extend(before_.to_tool(positions[n.index()]));
+        const Vec3 more = Vec3::Constant(margin);
+        if (Box(box.min() - more, box.max() + more).intersects(of_shape)) triangles_.push_back(t);
+    }
+    room_ = probe_skin * size_;
+}
+
+void RigidContact::add_points(const physics::Model& model, std::span<const Triangle> surface,
+                              double dt, ContactSolver& solver) {
+    const std::span<const Vec3> positions = model.mesh_positions();
+    // What has moved since the last step: the tissue in it, and the tool in this one at most.
+    room_ -= model.largest_mesh_move() + largest_move();
+    if (room_ < 0.0) find_triangles(positions, surface);
+    max_penetration_ = 0.0;
+    first_point_ = solver.size();
+    places_.clear();
+    features_.clear();
+    std::map<Feature, std::pair<RigidTouch, std::uint32_t>> touches;
+    for (const std::uint32_t t : triangles_) {
+        const Triangle& triangle = surface[t];
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = before_.to_tool(positions[triangle[k].index()]);
+        found_.clear();
+        append_touches(probe_.shape, corners, probe_reach * size_, found_);
+        for (const RigidTouch& touch : found_) {
+            const auto [it, is_new] =
+                touches.try_emplace(feature_of(triangle, touch.weights), touch, t);
+            if (!is_new && touch.gap < it->second.first.gap) it->second = {touch, t};
+        }
+    }
+    for (const auto& [feature, found] : touches) {
+        const auto& [touch, t] = found;
+        ContactPoint point;
+        point.normal = before_.rotation * touch.normal;
+        point.gap = touch.gap;
+        point.friction = probe_.friction;
+        const Vec3 here = before_.to_world(touch.point);
+        point.velocity = (after_.to_world(touch.point) - here) / dt;
+        max_penetration_ = std::max(max_penetration_, -touch.gap);
+        point.impulse = last_impulse_at(feature);
+        places_.push_back(here);
+        features_.push_back(feature);
+        solver.begin(point);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const double weight = touch.weights[static_cast<int>(k)]; weight != 0.0)
+                add_shares(model, surface[t][k], weight, solver);
+    }
+}
+
+/// Returns the impulse of a point in the step before, N s; zero if it was not there.
+Vec3 RigidContact::last_impulse_at(const Feature& feature) const {
+    const auto it = std::ranges::lower_bound(last_features_, feature);
+    if (it == last_features_.end() || *it != feature) return Vec3::Zero();
+    return last_impulses_[static_cast<std::size_t>(it - last_features_.begin())];
+}
+
+ToolImpulse RigidContact::take_impulses(const ContactSolver& solver) {
+    ToolImpulse sum;
+    last_features_.clear();
+    last_impulses_.clear();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const Vec3& impulse = solver.impulse(first_point_ + i);
+        if (impulse.isZero(0.0)) continue;
+        last_features_.push_back(features_[i]);
+        last_impulses_.push_back(impulse);
+        sum.force += impulse;
+        sum.torque += (places_[i] - before_.position).cross(impulse);
+        sum.work += impulse.dot(solver.point(first_point_ + i).velocity);
+    }
+    return sum;
+}
+
+void RigidContact::restore(ArchiveReader& ar, std::size_t num_triangles) {
+    list(ar, *this);
+    const bool fits =
+        std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; }) &&
+        std::isfinite(room_) && last_features_.size() == last_impulses_.size() &&
+        std::ranges::is_sorted(last_features_) &&
+        std::ranges::all_of(last_impulses_, [](const Vec3& v) { return v.allFinite(); });
+    if (!fits) throw InputError("its tools touch another body");
+}
+
+}  // namespace incise::contact

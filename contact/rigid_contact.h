@@ -1,0 +1,92 @@
+// Contact between the surface of a body and a rigid tool.
+// Source: docs/theory.md, Contact.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "incise/base/archive.h"
+#include "incise/contact/contact_solver.h"
+#include "incise/contact/rigid_touch.h"
+#include "incise/contact/surface_contact.h"
+#include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/model.h"
+#include "incise/topology/pose.h"
+
+namespace incise::contact {
+
+/// What a tool exerts on the tissue in a step.
+struct ToolImpulse {
+    Vec3 force = Vec3::Zero();   ///< N s
+    Vec3 torque = Vec3::Zero();  ///< N m s, about the origin of the tool
+    double work = 0.0;           ///< J
+    ToolImpulse& operator+=(const ToolImpulse& other) {
+        force += other.force;
+        torque += other.torque;
+        work += other.work;
+        return *this;
+    }
+};
+
+/// Points of contact of a rigid tool with the faces of a body. A vertex or an edge of the surface
+/// that several triangles share counts once.
+class RigidContact {
+  public:
+    /// @param size  mean length of an element at rest, m: distances are parts of it
+    RigidContact(cutting::Probe probe, double size) : probe_(std::move(probe)), size_(size) {}
+
+    /// Sets the motion of the tool in the next step.
+    void move(const Pose& before, const Pose& after) {
+        before_ = before;
+        after_ = after;
+    }
+    /// Takes note of an edit of the surface.
+    void forget_surface() { room_ = -1.0; }
+
+    /// Finds the points of contact at the present positions, and adds them to the solver.
+    /// Cost: that of the triangles near the tool. Now and then, when tool and tissue have moved by
+    /// a part of an element, O(n) in the triangles of the surface.
+    /// @param surface  triangles of the body
+    /// @param dt       s
+    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+                    ContactSolver& solver);
+    /// Takes the impulses of the points that add_points() added, and returns what the tool exerts
+    /// by them. The next step begins with them.
+    ToolImpulse take_impulses(const ContactSolver& solver);
+    double max_penetration() const { return max_penetration_; }
+
+    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    /// Restores what save() wrote. Throws InputError for the data of another body.
+    void restore(ArchiveReader& ar, std::size_t num_triangles);
+
+  private:
+    /// The corners of a triangle that a point depends on, in ascending order.
+    using Feature = std::array<NodeId, 3>;
+    static void list(auto& ar, auto& self) {
+        ar(self.probe_, self.triangles_, self.room_, self.last_features_, self.last_impulses_);
+    }
+    static Feature feature_of(const Triangle& triangle, const Vec3& weights);
+    Vec3 last_impulse_at(const Feature& feature) const;
+    double largest_move() const;
+    void find_triangles(std::span<const Vec3> positions, std::span<const Triangle> surface);
+
+    cutting::Probe probe_;
+    double size_;
+    Pose before_, after_;
+    std::vector<std::uint32_t> triangles_;  // near the tool
+    double room_ = -1.0;  // how far both may move before triangles_ is out of date, m
+    double max_penetration_ = 0.0;
+    std::size_t first_point_ = 0;         // in the solver
+    std::vector<Vec3> places_;            // of the points from there on, m
+    std::vector<Feature> features_;       // of the same, in ascending order
+    std::vector<Feature> last_features_;  // of the step before, with its impulses, N s
+    std::vector<Vec3> last_impulses_;
+    std::vector<RigidTouch> found_;  // scratch
+};
+
+}  // namespace incise::contact

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/surface_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
+
+namespace incise::contact {
+
+namespace {
+
+// Lengths are parts of the mean length of an element.
+constexpr double node_reach =
+    0.15;  // at which a node is a point of contact: farther than it moves in a step
+constexpr double skin = 0.2;     // by which pairs are found that are not within node_reach yet
+constexpr double deepest = 0.4;  // a node that is deeper has no side any more
+/// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
+/// no other triangle goes on there.
+constexpr double rim = 0.25;
+/// Of the overlap that a cut left, this share goes in a step.
+constexpr double slack_loss = 0.01;
+/// An overlap of this part of an element is none: the twins of a cut have the same position.
+constexpr double rounding = 1e-10;
+
+}  // namespace
+
+void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver) {
+    const topology::Embedding& at = model.embedded_nodes()[n];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
+        solver.add_share(at.nodes[k], weight * at.weights[k]);
+}
+
+void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solver) {
+    const std::span<const Vec3> positions = model.mesh_positions();
+    const double moved = 2.0 * model.largest_mesh_move();
+    room_ -= moved;
+    if (room_ < 0.0 && has_moved_far(positions)) find_pairs(model);
+    max_penetration_ = 0.0;
+    touches_.resize(near_.size());
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        NearNode& near = near_[i];
+        near.room -= moved;
+        if (near.touched >= 0 || near.room < 0.0) find_touched(i, positions);
+        if (near.touched >= 0)
+            touches_[i] =
+                touch(pairs_.nodes()[i], static_cast<std::size_t>(near.touched), positions);
+    }
+    first_point_ = solver.size();
+    nodes_of_points_.clear();
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        if (near_[i].touched >= 0 && !is_with_twin(i)) add_point(i, model, solver);
+}
+
+void SurfaceContact::take_impulses(const ContactSolver& solver) {
+    for (NearNode& near : near_) near.impulse.setZero();
+    for (std::size_t k = 0; k < nodes_of_points_.size(); ++k)
+        near_[nodes_of_points_[k]].impulse = solver.impulse(first_point_ + k);
+}
+
+/// True if a node touches another one, which touches it as well and has the lower id: then one
+/// point of contact is enough. So it is with the two nodes that a cut has made of one.
+bool SurfaceContact::is_with_twin(std::size_t i) const {
+    constexpr double nearly_one = 0.98;
+    const auto node_under = [&](std::size_t k) {
+        const Triangle& triangle = triangles_[static_cast<std::size_t>(near_[k].touched)];
+        for (int corner = 0; corner < 3; ++corner)
+            if (touches_[k].weights[corner] > nearly_one)
+                return triangle[static_cast<std::size_t>(corner)];
+        return NodeId();
+    };
+    const NodeId n = pairs_.nodes()[i], other = node_under(i);
+    if (!other.is_valid() || n < other) return false;
+    const auto it = std::ranges::lower_bound(pairs_.nodes(), other);
+    if (it == pairs_.nodes().end() || *it != other) return false;
+    const auto k = static_cast<std::size_t>(it - pairs_.nodes().begin());
+    return near_[k].touched >= 0 && node_under(k) == n;
+}
+
+/// Lists the triangles of the surface in the order of their faces, whatever edits led to it.
+void SurfaceContact::list_triangles(const physics::Model& model,
+                                    const topology::BoundarySurface& surface) {
+    struct Row {
+        FaceId face;
+        Triangle triangle;
+        bool is_cut;
+    };
+    std::vector<Row> rows;
+    rows.reserve(surface.triangles().size());
+    for (std::size_t t = 0; t < surface.triangles().size(); ++t)
+        rows.push_back({surface.faces()[t], surface.triangles()[t], surface.is_cut()[t] != 0});
+    std::ranges::sort(rows, {}, [](const Row& row) { return std::tie(row.face, row.triangle); });
+    faces_.clear();
+    triangles_.clear();
+    takes_part_.clear();
+    for (const Row& row : rows) {
+        faces_.push_back(row.face);
+        triangles_.push_back(row.triangle);
+        takes_part_.push_back(settings_.self || row.is_cut ? 1 : 0);
+    }
+    tree_.set_triangles(triangles_, model.mesh().rest_positions());
+    pairs_.set_surface(tree_, {model.mesh(), model.fragments(), faces_, takes_part_});
+}
+
+void SurfaceContact::know_surface(const physics::Model& model,
+                                  const topology::BoundarySurface& surface) {
+    // What nodes touch stays what it is if the triangle is still there.
+    std::map<NodeId, std::pair<Triangle, NearNode>> known;
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        if (near_[i].touched >= 0)
+            known.emplace(
+                pairs_.nodes()[i],
+                std::pair(triangles_[static_cast<std::size_t>(near_[i].touched)], near_[i]));
+    list_triangles(model, surface);
+    near_.clear();
+    find_pairs(model);
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        const auto it = known.find(pairs_.nodes()[i]);
+        if (it == known.end()) continue;
+        for (const std::uint32_t t : pairs_.triangles_of(i))
+            if (triangles_[t] == it->second.first) {
+                near_[i] = it->second.second;
+                near_[i].touched = static_cast<std::int32_t>(t);
+            }
+    }
+}
+
+void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
+                             const topology::BoundarySurface& surface) {
+    list(ar, *this);
+    const auto require = [](bool holds) {
+        if (!holds) throw InputError("its contact is that of another body");
+    };
+    require(size_ > 0.0 && positions_of_pairs_.size() == model.mesh().node_capacity() &&
+            std::isfinite(room_));
+    list_triangles(model, surface);
+    find_pairs_at(model, positions_of_pairs_);
+    require(near_.size() == pairs_.nodes().size());
+    for (const NearNode& near : near_)
+        require(near.touched < static_cast<std::int64_t>(triangles_.size()) && near.slack <= 0.0 &&
+                !std::isnan(near.room) && near.impulse.allFinite());
+}
+
+/// Returns true if two parts of the surface may have moved by more than the skin towards each other
+/// since the pairs were found. Else says how far they may still move.
+bool SurfaceContact::has_moved_far(std::span<const Vec3> positions) {
+    Vec3 sum = Vec3::Zero();
+    std::size_t count = 0;
+    for (const Triangle& triangle : triangles_) {
+        const std::size_t n = triangle[0].index();
+        sum += positions[n] - positions_of_pairs_[n];
+        ++count;
+    }
+    if (count == 0) return false;
+    const Vec3 mean = sum / static_cast<double>(count);
+    double square = 0.0;
+    for (const Triangle& triangle : triangles_)
+        for (const NodeId n : triangle)
+            square = std::max(
+                square,
+                (positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm());
+    room_ = skin * size_ - 2.0 * std::sqrt(square);
+    return room_ < 0.0;
+}
+
+void SurfaceContact::find_pairs(const physics::Model& model) {
+    std::map<NodeId, NearNode> known;
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
+    const std::span<const Vec3> positions = model.mesh_positions();
+    find_pairs_at(model, positions);
+    near_.assign(pairs_.nodes().size(), {});
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        if (const auto it = known.find(pairs_.nodes()[i]); it != known.end()) near_[i] = it->second;
+    positions_of_pairs_.assign(positions.begin(), positions.end());
+    room_ = skin * size_;
+}
+
+void SurfaceContact::find_pairs_at(const physics::Model& model, std::span<const Vec3> positions) {
+    tree_.fit(positions);
+    pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
+                (node_reach + skin) * size_);
+}
+
+/// Returns where a node is above a triangle. Its gap is infinite if the triangle has no area.
+SurfaceContact::Touch SurfaceContact::touch(NodeId n, std::size_t t,
+                                            std::span<const Vec3> positions) const {
+    const auto& [na, nb, nc] = triangles_[t];
+    const Vec3 &a = positions[na.index()], &b = positions[nb.index()], &c = positions[nc.index()];
+    const Vec3 area = (b - a).cross(c - a);
+    const double square = area.squaredNorm();
+    if (!(square > 0.0)) return {};
+    const Vec3 x = positions[n.index()] - a;
+    Touch touch;
+    touch.normal = area / std::sqrt(square);
+    touch.weights[2] = (b - a).cross(x).dot(area) / square;
+    touch.weights[1] = x.cross(c - a).dot(area) / square;
+    touch.weights[0] = 1.0 - touch.weights[1] - touch.weights[2];
+    touch.gap = touch.normal.dot(x);
+    return touch;
+}
+
+/// Finds the triangle that a node touches: the one it touched, as long as it is over it, or else
+/// the nearest one.
+void SurfaceContact::find_touched(std::size_t i, std::span<const Vec3> positions) {
+    NearNode& near = near_[i];
+    const NodeId n = pairs_.nodes()[i];
+    // Of a node at a corner, rounding decides over which triangle it is.
+    constexpr double tolerance = 1e-6;
+    const auto is_over = [&](const Touch& at, double outside) {
+        return at.weights.minCoeff() >= -outside && at.gap < node_reach * size_ &&
+               at.gap > -deepest * size_;
+    };
+    const bool did_touch = near.touched >= 0;
+    if (did_touch &&
+        is_over(touch(n, static_cast<std::size_t>(near.touched), positions), tolerance))
+        return;
+    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t nearest = 0;
+    for (const std::uint32_t t : pairs_.triangles_of(i)) {
+        const auto& [a, b, c] = triangles_[t];
+        const double square = squared_distance(positions[n.index()], positions[a.index()],
+                                               positions[b.index()], positions[c.index()]);
+        if (square >= least) continue;
+        least = square;
+        nearest = t;
+    }
+    const Touch at = touch(n, nearest, positions);
+    near.touched = is_over(at, rim) ? static_cast<std::int32_t>(nearest) : -1;
+    near.room = std::sqrt(least) - node_reach * size_;
+    if (!did_touch && near.touched >= 0) near.slack = std::min(0.0, at.gap);
+}
+
+void SurfaceContact::add_point(std::size_t i, const physics::Model& model, ContactSolver& solver) {
+    NearNode& near = near_[i];
+    const Touch& at = touches_[i];
+    max_penetration_ = std::max(max_penetration_, -at.gap);
+    near.slack = at.gap > 0.0 ? 0.0 : std::max(at.gap, (1.0 - slack_loss) * near.slack);
+    ContactPoint point;
+    point.normal = at.normal;
+    point.gap = at.gap - near.slack;
+    if (std::abs(point.gap) < rounding * size_) point.gap = 0.0;
+    point.friction = settings_.friction;
+    point.impulse = near.impulse;
+    nodes_of_points_.push_back(i);
+    solver.begin(point);
+    add_shares(model, pairs_.nodes()[i], 1.0, solver);
+    const Triangle& triangle = triangles_[static_cast<std::size_t>(near.touched)];
+    for (std::size_t k = 0; k < 3; ++k)
+        if (const double weight = at.weights[static_cast<int>(k)]; weight != 0.0)
+            add_shares(model, triangle[k], -weight, solver);
+}
+
+}  // namespace incise::contact

@@ -1,0 +1,115 @@
+// Contact between parts of the surface of a body: faces of cuts, pieces, and folds.
+// Source: docs/theory.md, Contact.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "incise/contact/contact_solver.h"
+#include "incise/contact/surface_tree.h"
+#include "incise/contact/touching_pairs.h"
+#include "incise/physics/body/model.h"
+#include "incise/topology/boundary_surface.h"
+
+namespace incise::contact {
+
+/// Settings of the contact between tissue and tissue.
+struct ContactSettings {
+    bool enabled = true;
+    double friction = 0.0;  ///< Coulomb's coefficient, 0 or more
+    bool self = true;       ///< any surface against any other; false: only faces of cuts
+
+    bool operator==(const ContactSettings&) const = default;
+};
+
+/// Adds the shares of a node of the mesh to the last point of a solver.
+void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver);
+
+/// Points of contact of the surface of a body with itself.
+///
+/// Nodes of the surface meet triangles. A node touches the triangle that is nearest to it of those
+/// that face it. Of two surfaces that touch, the nodes of both act. Contact of two edges is left
+/// out.
+class SurfaceContact {
+  public:
+    /// @param size  mean length of an element at rest, m: distances are parts of it
+    SurfaceContact(ContactSettings settings, double size) : settings_(settings), size_(size) {}
+
+    /// Begins with the surface of a body, or follows the edits of a step. Cost: O(n log n) in the
+    /// nodes of the surface.
+    void know_surface(const physics::Model& model, const topology::BoundarySurface& surface);
+    /// Finds the points of contact at the present positions, and adds them to the solver.
+    /// Cost: proportional to the nodes that are near another surface. Now and then, when the
+    /// surface has moved by a part of an element, O(n log n) in its nodes.
+    /// @pre  know_surface() was called after the last edit
+    void add_points(const physics::Model& model, ContactSolver& solver);
+    /// Takes the impulses of the points that add_points() added: the next step begins with them.
+    void take_impulses(const ContactSolver& solver);
+
+    /// Returns the triangles of the surface, in an order that no history of edits changes.
+    std::span<const Triangle> triangles() const { return triangles_; }
+    /// Returns the largest overlap at the last call of add_points(), m.
+    double max_penetration() const { return max_penetration_; }
+    const ContactSettings& settings() const { return settings_; }
+    double size() const { return size_; }
+
+    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    /// Restores what save() wrote. Throws InputError for the data of another body.
+    void restore(ArchiveReader& ar, const physics::Model& model,
+                 const topology::BoundarySurface& surface);
+
+  private:
+    /// A node of the surface that is near triangles.
+    struct NearNode {
+        std::int32_t touched = -1;  ///< triangle, or -1
+        /// The overlap at which the node came to the triangle, m, at most 0. A cut in strained
+        /// tissue may leave such an overlap; it goes slowly, so that it does not throw the sides
+        /// apart.
+        double slack = 0.0;
+        /// How far the surface may move before the node can touch a triangle, m.
+        double room = 0.0;
+        Vec3 impulse = Vec3::Zero();  ///< of the last step, N s
+        static void archive(auto& ar, auto& self) {
+            ar(self.touched, self.slack, self.room, self.impulse);
+        }
+    };
+
+    /// Where a node is above a triangle.
+    struct Touch {
+        Vec3 normal = Vec3::UnitZ();  ///< of the triangle, outward
+        Vec3 weights = Vec3::Zero();  ///< of its corners, of the projection of the node
+        double gap = std::numeric_limits<double>::infinity();  ///< along the normal, m
+    };
+
+    static void list(auto& ar, auto& self) {
+        ar(self.size_, self.near_, self.positions_of_pairs_, self.room_, self.max_penetration_);
+    }
+    void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
+    void find_pairs(const physics::Model& model);
+    void find_pairs_at(const physics::Model& model, std::span<const Vec3> positions);
+    bool has_moved_far(std::span<const Vec3> positions);
+    void find_touched(std::size_t i, std::span<const Vec3> positions);
+    Touch touch(NodeId n, std::size_t t, std::span<const Vec3> positions) const;
+    bool is_with_twin(std::size_t i) const;
+    void add_point(std::size_t i, const physics::Model& model, ContactSolver& solver);
+
+    ContactSettings settings_;
+    double size_;
+    std::vector<FaceId> faces_;             // in ascending order
+    std::vector<Triangle> triangles_;       // of these faces
+    std::vector<std::uint8_t> takes_part_;  // by triangle
+    SurfaceTree tree_;
+    TouchingPairs pairs_;
+    std::vector<NearNode> near_;            // by node of pairs_
+    std::vector<Vec3> positions_of_pairs_;  // at which pairs_ were found, by id
+    double room_ = -1.0;  // how far the surface may move before pairs_ is out of date, m
+    double max_penetration_ = 0.0;
+    std::vector<Touch> touches_;                // scratch, by node of pairs_
+    std::size_t first_point_ = 0;               // in the solver
+    std::vector<std::size_t> nodes_of_points_;  // by point from there on, its node in pairs_
+};
+
+}  // namespace incise::contact

@@ -1,0 +1,130 @@
+// Halves of a cut block that collide in flight: what contact keeps, and what it takes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "incise/contact/contact.h"
+#include "support/exact_plane.h"
+#include "support/mesh_families.h"
+#include "support/num_cases.h"
+
+namespace incise::contact {
+namespace {
+
+using physics::Model;
+using topology::Mesh;
+
+/// A jittered cube in two halves, which fly at each other and spin.
+struct Halves {
+    Mesh mesh;
+    physics::MaterialTable table;
+    Model model;
+    topology::BoundarySurface surface;
+    double size = 0.25;  // of an element, m
+
+    explicit Halves(std::uint64_t seed)
+        : mesh(Mesh::build(test::jittered_cube(4, 0.1, seed)).mesh),
+          table{{{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1500.0, 6000.0}}}},
+                {{0, 0}},
+                {}},
+          model(mesh, table),
+          surface(mesh) {
+        test::Random random(seed);
+        const Vec3 point = Vec3::Constant(0.5),
+                   normal = (Vec3::UnitZ() + random.vector(0.5)).normalized();
+        const auto changes = test::cut_along_plane(mesh, point, normal);
+        model.apply(mesh, changes);
+        surface.apply(mesh, changes);
+        const Vec3 spin = random.vector(0.1), slide = random.vector(0.03);
+        std::vector<Vec3> x(model.positions().begin(), model.positions().end()), v(x.size());
+        for (const ElementId e : model.fragments().elements()) {
+            const ElementId cell = model.fragments().cells_of(e)[0];
+            Vec3 centre = Vec3::Zero();
+            for (const NodeId n : mesh.corners(cell)) centre += 0.25 * mesh.rest_position(n);
+            const double side = (centre - point).dot(normal) > 0.0 ? 1.0 : -1.0;
+            for (const NodeId n : model.fragments().corners(e)) {
+                const Vec3& X = model.fragments().rest_position(n);
+                x[n.index()] = X + side * 0.05 * normal;
+                v[n.index()] = side * (slide - 0.1 * normal) + spin.cross(X - point);
+            }
+        }
+        model.set_state(x, v, 0.0);
+        model.compute_totals_and_forces();
+    }
+};
+
+/// Elastic and kinetic energy, J, with the velocities of the present: those of the model are half a
+/// step older.
+double energy_of(const Model& model, double dt) {
+    double energy = model.totals().elastic_energy;
+    for (std::size_t n = 0; n < model.masses().size(); ++n) {
+        const double mass = model.masses()[n];
+        if (mass == 0.0) continue;
+        const Vec3 v = model.velocities()[n] + 0.5 * dt / mass * model.elastic_forces()[n];
+        energy += 0.5 * mass * v.squaredNorm();
+    }
+    return energy;
+}
+
+void expect_sound_collision(std::uint64_t seed, double friction) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ", friction " << friction);
+    Halves halves(seed);
+    Model& model = halves.model;
+    Contact contact({.friction = friction}, halves.size);
+    contact.follow(model, halves.surface);
+    physics::SemiImplicitEuler integrator;
+    integrator.add_projection(contact);
+    const physics::Totals before = model.totals();
+    double scale = 0.0, most = 0.0, rest = 0.0, deepest = 0.0, time = 0.0;
+    for (std::size_t n = 0; n < model.masses().size(); ++n)
+        scale += model.masses()[n] * model.velocities()[n].norm();
+    std::size_t num_points = 0;
+    for (int i = 0; i < 600; ++i) {
+        const double dt = 0.4 * model.rest_stable_step();
+        integrator.step(model, time, dt);
+        contact.book_work(model);
+        time += dt;
+        model.compute_forces(time);
+        rest = energy_of(model, dt);
+        most = std::max(most, rest);
+        deepest = std::max(deepest, contact.max_penetration());
+        num_points = std::max(num_points, contact.num_points());
+    }
+    const physics::Totals after = model.totals();
+    EXPECT_GT(num_points, 10u);
+    EXPECT_LE((after.momentum - before.momentum).norm(), 1e-13 * scale);
+    EXPECT_LE((after.angular_momentum - before.angular_momentum).norm(),
+              (friction == 0.0 ? 1e-12 : 1e-4) * scale);
+    const double energy = before.elastic_energy + before.kinetic_energy;
+    EXPECT_LT(most, 1.002 * energy);
+    EXPECT_GT(contact.dissipation(), 0.0);
+    EXPECT_NEAR(rest + contact.dissipation(), energy, 2e-3 * energy);
+    EXPECT_LT(deepest, 0.02 * halves.size);
+}
+
+TEST(SurfaceContact, KeepsMomentumAndAccountsForEnergy) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed)
+        for (const double friction : {0.0, 0.4}) expect_sound_collision(seed, friction);
+}
+
+// Without contact the halves of the test above pass through each other.
+TEST(SurfaceContact, IsWhatStopsTheHalves) {
+    Halves halves(1);
+    double time = 0.0;
+    const double dt = 0.4 * halves.model.rest_stable_step();
+    for (int i = 0; i < 600; ++i) {
+        halves.model.integrate(time, dt);
+        time += dt;
+        halves.model.compute_forces(time);
+    }
+    double lowest = 0.0;  // of the top, against where it was
+    for (const NodeId n : halves.mesh.nodes())
+        if (halves.mesh.rest_position(n).z() == 1.0)
+            lowest = std::min(lowest, halves.model.mesh_positions()[n.index()].z() - 1.0);
+    EXPECT_LT(lowest, -0.1);
+}
+
+}  // namespace
+}  // namespace incise::contact

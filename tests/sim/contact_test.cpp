@@ -1,0 +1,241 @@
+// Contact in a world: faces of cuts, and probes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "support/num_cases.h"
+#include "tests/sim/soft_world.h"
+
+namespace incise::sim {
+namespace {
+
+void cut_along(World& world, const Vec3& point, const Vec3& normal) {
+    const ToolId plane = world.add_tool({"plane", cutting::PlaneCut{point, normal}});
+    world.set_tool_pose(plane, Pose());
+    world.withdraw_tool(plane);
+}
+
+void run_until(World& world, double time) {
+    while (world.time() < time) world.step(0.8 * world.stable_step());
+}
+
+/// The cube without loads.
+WorldDef cube_at_rest(double friction = 0.0) {
+    WorldDef def = soft_body();
+    def.gravity.setZero();
+    def.contact.friction = friction;
+    return def;
+}
+
+TEST(Contact, OfAFreshCutExertsNoForce) {
+    World world(cube_at_rest(0.3));
+    cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
+    for (int i = 0; i < 1000; ++i) {
+        const StepReport& report = world.step(0.8 * world.stable_step());
+        ASSERT_EQ(report.contact.num_points, 0u);
+    }
+    EXPECT_EQ(world.report().contact.dissipation, 0.0);
+    for (const NodeId n : world.mesh().nodes())
+        EXPECT_LE((world.positions()[n.index()] - world.mesh().rest_position(n)).norm(),
+                  1e-12 * size);
+}
+
+TEST(Contact, ChangesNoBitUntilSomethingTouches) {
+    WorldDef without = soft_body();
+    without.contact.enabled = false;
+    World a = held(World(soft_body())), b = held(World(std::move(without)));
+    for (int i = 0; i < 100; ++i) {
+        a.step(0.8 * a.stable_step());
+        b.step(0.8 * b.stable_step());
+    }
+    for (const NodeId n : a.mesh().nodes())
+        ASSERT_EQ(a.positions()[n.index()], b.positions()[n.index()]);
+}
+
+/// The force on the bottom of a cube that is pressed by a tenth, its ends glued.
+double pressing_force(double friction, bool is_cut) {
+    WorldDef def = cube_at_rest(friction);
+    def.mesh = cube(6);
+    def.damping = 30.0;
+    World world = held(World(std::move(def)));
+    physics::Constraint lid{.name = "lid"};
+    lid.nodes =
+        physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
+    lid.displacement =
+        physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.4, -0.1 * size * Vec3::UnitZ()}});
+    world.add_constraint(std::move(lid));
+    if (is_cut) cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
+    run_until(world, 1.2);
+    return world.reaction(ConstraintId{0}).force.z();
+}
+
+// A cut that is closed and cannot slip is no cut. Without friction the slope of the cut slips.
+TEST(Contact, OfAClosedCutBearsWhatTheWholeBodyBears) {
+    const double whole = pressing_force(0.0, false);
+    EXPECT_GT(whole, 0.1);
+    EXPECT_NEAR(pressing_force(0.5, true), whole, 0.005 * whole);
+    EXPECT_LT(pressing_force(0.0, true), 0.9 * whole);
+}
+
+struct Ball {
+    World world;
+    ToolId ball;
+};
+
+/// A held cube, and a ball above the middle of its top.
+Ball ball_above(double friction, double radius = 0.02) {
+    WorldDef def = cube_at_rest();
+    def.mesh = cube(8);
+    def.damping = 20.0;
+    World world = held(World(std::move(def)));
+    const ToolId ball = world.add_tool({"ball", cutting::Probe{cutting::Sphere{radius}, friction}});
+    world.place_tool(ball, at({0.05, 0.05, size + radius}));
+    return {std::move(world), ball};
+}
+
+/// Moves a tool on a straight line.
+void move_tool(World& world, ToolId tool, const Vec3& to, double duration) {
+    const Vec3 from = world.tool_pose(tool).position;
+    const int num_steps = static_cast<int>(std::ceil(duration / (0.8 * world.stable_step())));
+    for (int i = 1; i <= num_steps; ++i) {
+        world.set_tool_pose(tool, at(from + (to - from) * i / num_steps));
+        world.step(duration / num_steps);
+    }
+}
+
+TEST(Contact, OfABallExertsWhatTheFloorBears) {
+    auto [world, ball] = ball_above(0.0);
+    move_tool(world, ball, {0.05, 0.05, size + 0.012}, 0.3);
+    move_tool(world, ball, {0.05, 0.05, size + 0.012}, 0.7);
+    const StepReport& report = world.report();
+    ASSERT_EQ(report.tools.size(), 1u);
+    const double floor = world.reaction(ConstraintId{0}).force.z();
+    EXPECT_GT(report.tools[0].force.z(), 0.05);
+    EXPECT_NEAR(report.tools[0].force.z(), floor, 0.01 * floor);
+    EXPECT_LT(report.tools[0].force.head<2>().norm(), 0.1 * floor);
+    EXPECT_LT(report.contact.max_penetration, 1e-5);
+    // The ball has done the work that the tissue holds, but for what was lost.
+    EXPECT_LT(world.ledger().energy_error(), 0.01);
+}
+
+TEST(Contact, OfASlidingBallHasItsFriction) {
+    const auto drag = [](double friction) {
+        auto [world, ball] = ball_above(friction);
+        move_tool(world, ball, {0.05, 0.05, size + 0.014}, 0.3);
+        move_tool(world, ball, {0.07, 0.05, size + 0.014}, 0.6);
+        const Vec3 force = world.report().tools[0].force;
+        return -force.x() / force.z();
+    };
+    EXPECT_NEAR(drag(0.0), 0.0, 0.08);  // soft tissue tilts in front of the ball
+    EXPECT_NEAR(drag(0.3), 0.3, 0.08);
+}
+
+// The parts of a step are so short that the ball does not pass through the surface.
+TEST(Contact, OfAFastSmallBallIsNotMissed) {
+    auto [world, ball] = ball_above(0.0, 0.003);
+    world.set_tool_pose(ball, at({0.05, 0.05, size - 0.01}));
+    EXPECT_GT(world.step(0.5 * world.stable_step()).num_parts, 10u);
+    double above = 0.0;
+    for (const NodeId n : nodes_where(world, [](const Vec3& x) {
+             return x.z() == size && std::hypot(x.x() - 0.05, x.y() - 0.05) < 1e-9;
+         }))
+        above = world.positions()[n.index()].z();
+    EXPECT_LT(above, size - 0.01 - 0.0029);
+    world.set_tool_pose(ball, at({0.05, 0.05, 100.0}));
+    EXPECT_NE(input_error_of([&] { world.step(0.5 * world.stable_step()); }).find("parts"),
+              std::string::npos);
+}
+
+// Cut, pressed and slid, with impulses to begin with: the same bits after a pause, on two threads.
+TEST(Contact, GoesOnWithTheSameBitsAfterRestore) {
+    const auto begin = [] {
+        Ball b = ball_above(0.3);
+        cut_along(b.world, {0.05, 0.05, 0.07}, {0.1, 0.05, 1.0});
+        return b;
+    };
+    const auto press = [](Ball& b, int from, int to) {
+        for (int i = from; i < to; ++i) {
+            b.world.set_tool_pose(b.ball, at({0.05 + 2e-5 * i, 0.05, size + 0.02 - 4e-5 * i}));
+            b.world.step(0.8 * b.world.stable_step());
+        }
+    };
+    Ball whole = begin();
+    press(whole, 0, 300);
+    EXPECT_GT(whole.world.report().contact.num_points, 20u);
+    const std::string end = whole.world.save();
+    for (const int pause : {3, 150, 299}) {
+        Ball first = begin(), second = begin();
+        press(first, 0, pause);
+        second.world.restore(first.world.save());
+        second.world.set_num_threads(2);
+        EXPECT_EQ(second.world.report().contact.dissipation,
+                  first.world.report().contact.dissipation);
+        press(second, pause, 300);
+        EXPECT_TRUE(second.world.save() == end) << "pause at " << pause;
+    }
+}
+
+/// How far a stiff block on a slope has slid after some time, over what a rigid one slides.
+double slide_on_slope(double slope, double friction) {
+    WorldDef def;
+    def.mesh = topology::box_mesh(topology::CellKind::tetrahedron, Vec3(0, 0, 1e-6),
+                                  Vec3(0.04, 0.04, 0.02), {4, 4, 2});
+    def.materials = {{1000.0, physics::HyperElasticLinks{.law = physics::NeoHookean{7e4, 1e5},
+                                                         .prony = {{0.5, 0.002}}}}};
+    // The slope is level here, and gravity is oblique.
+    const double angle = std::atan(slope), g = 9.81;
+    def.gravity = {g * std::sin(angle), 0.0, -g * std::cos(angle)};
+    World world(std::move(def));
+    const ToolId table = world.add_tool({"table", cutting::Probe{cutting::HalfSpace{}, friction}});
+    world.place_tool(table, Pose());
+    constexpr double time = 0.2;
+    run_until(world, time);
+    Vec3 moved = Vec3::Zero();
+    for (const NodeId n : world.mesh().nodes())
+        moved += world.positions()[n.index()] - world.mesh().rest_position(n);
+    moved /= static_cast<double>(world.mesh().num_nodes());
+    const double exact =
+        0.5 * g * world.time() * world.time() * (std::sin(angle) - friction * std::cos(angle));
+    return moved.x() / exact;
+}
+
+TEST(Contact, OfABlockOnASlopeSticksOrSlidesByCoulombsLaw) {
+    EXPECT_NEAR(slide_on_slope(0.6, 0.4), 1.0, 0.02);
+    EXPECT_NEAR(slide_on_slope(0.6, 0.0), 1.0, 0.02);
+    EXPECT_NEAR(slide_on_slope(0.38, 0.4), 0.0, 0.05);  // of the negative way of a rigid one
+}
+
+TEST(Contact, RefusesWhatItCannotDo) {
+    const cutting::Probe ball{cutting::Sphere{0.01}};
+    for (const Solver solver : {Solver::implicit_euler, Solver::statics}) {
+        World world(soft_body(solver));
+        EXPECT_NE(input_error_of([&] {
+                      world.add_tool({"ball", ball});
+                  }).find("explicit solver"),
+                  std::string::npos);
+    }
+    World world(soft_body());
+    EXPECT_NE(input_error_of([&] {
+                  world.add_tool({"ball", cutting::Probe{cutting::Sphere{0.0}}});
+              }).find("radius"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] {
+                  world.add_tool({"ball", cutting::Probe{cutting::Sphere{0.1}, -1.0}});
+              }).find("friction"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] {
+                  world.add_tool({"table", cutting::Probe{cutting::HalfSpace{{}, {0, 0, 2}}}});
+              }).find("normal"),
+              std::string::npos);
+    WorldDef def = soft_body();
+    def.contact.friction = -0.1;
+    EXPECT_NE(input_error_of([&] { const World none(std::move(def)); }).find("friction"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace incise::sim
