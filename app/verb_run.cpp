@@ -144,14 +144,14 @@ auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
     }
 }
 
-/// Warns of tools that were present during the run but cut nothing, because this is rarely
-/// intended.
+/// Warns of tools that were present during the run and should have cut but did not, because this is
+/// rarely intended.
 void warn_of_idle_tools(const runner::Simulation& simulation) {
     for (const scenario::ToolSpec& tool : simulation.scenario().tools) {
         const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
-        if (!has_cut && tool.path.front().time < simulation.time())
+        if (!has_cut && !scenario::feels_force(tool) && tool.path.front().time < simulation.time())
             print_warning("tool '" + tool.name + "' has cut nothing; look at a picture of where " +
                           "the tissue is when it passes");
     }

@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <map>
+#include <variant>
 #include <vector>
 
 #include "incise/contact/contact_solver.h"
+#include "incise/contact/grasp_contact.h"
 #include "incise/contact/rigid_contact.h"
 #include "incise/contact/surface_contact.h"
 #include "incise/physics/solve/integrator.h"
@@ -27,10 +29,17 @@ class Contact final : public physics::VelocityProjection {
     /// @param surface  of the body
     void follow(const physics::Model& model, const topology::BoundarySurface& surface);
 
-    /// Sets the motion of a tool in the next step. A tool that is not known yet comes.
+    /// Sets the motion of a probe or a grasper in the next step. A tool that is not known yet
+    /// comes.
     /// @param tool  its number
-    void move_tool(std::size_t tool, const cutting::Probe& probe, const Pose& before,
+    void move_tool(std::size_t tool, const cutting::ToolShape& shape, const Pose& before,
                    const Pose& after);
+    /// Closes or opens the jaws of a grasper.
+    void close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
+               const Pose& pose);
+    void open(std::size_t tool);
+    /// Returns how many points a grasper holds.
+    std::size_t num_held(std::size_t tool) const;
     /// Takes a tool away.
     void remove_tool(std::size_t tool) { tools_.erase(tool); }
     /// Returns what a tool has exerted since the last call.
@@ -60,9 +69,10 @@ class Contact final : public physics::VelocityProjection {
 
   private:
     struct Tool {
-        RigidContact contact;
+        std::variant<RigidContact, GraspContact> contact;
         ToolImpulse impulse = {};
     };
+    Tool& tool_of(std::size_t tool, const cutting::ToolShape& shape);
     SurfaceContact tissue_;
     std::map<std::size_t, Tool> tools_;
     ContactSolver solver_{tissue_.size()};

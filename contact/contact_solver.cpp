@@ -69,6 +69,17 @@ void ContactSolver::make_rows(double dt, double rest_step) {
             softness += local_shares_[s].weight * local_shares_[s].weight * of_node;
             softest = std::max(softest, of_node.maxCoeff());
         }
+        if (point.is_held) {
+            Row row{};
+            row.point = i;
+            row.begin = begin;
+            row.end = end;
+            row.softness = softness;
+            row.drift = correction / rest_step * point.offset;
+            row.largest_impulse = point.largest_force * dt;
+            rows_.push_back(row);
+            continue;
+        }
         const double along_normal = point.normal.cwiseAbs2().dot(softness);
         if (!(along_normal > least_softness * softest)) continue;
         const double approach =
@@ -79,8 +90,21 @@ void ContactSolver::make_rows(double dt, double rest_step) {
     }
 }
 
+void ContactSolver::relax_held(Row& row) {
+    Vec3 approach = row.drift - points_[row.point].velocity;
+    for (std::size_t s = row.begin; s < row.end; ++s)
+        approach += local_shares_[s].weight * nodes_[local_shares_[s].node].velocity;
+    Vec3 impulse = impulses_[row.point];
+    for (int c = 0; c < 3; ++c)
+        if (row.softness[c] > 0.0) impulse[c] -= approach[c] / row.softness[c];
+    const double length = impulse.norm();
+    if (length > row.largest_impulse) impulse *= row.largest_impulse / length;
+    change_impulse(row, impulse);
+}
+
 void ContactSolver::relax(Row& row) {
     const ContactPoint& point = points_[row.point];
+    if (point.is_held) return relax_held(row);
     const Vec3& known = impulses_[row.point];
     Vec3 relative = -point.velocity;
     for (std::size_t s = row.begin; s < row.end; ++s)
@@ -103,6 +127,11 @@ void ContactSolver::relax(Row& row) {
 
 void ContactSolver::begin_with_impulse(Row& row) {
     const ContactPoint& point = points_[row.point];
+    if (point.is_held) {
+        const double length = point.impulse.norm();
+        const double share = length > row.largest_impulse ? row.largest_impulse / length : 1.0;
+        return change_impulse(row, share * point.impulse);
+    }
     row.normal_impulse = std::max(0.0, point.impulse.dot(point.normal));
     if (row.normal_impulse == 0.0) return;
     Vec3 tangential = point.impulse - point.impulse.dot(point.normal) * point.normal;

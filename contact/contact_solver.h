@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,11 @@ struct ContactPoint {
     double friction = 0.0;         ///< Coulomb's coefficient
     Vec3 velocity = Vec3::Zero();  ///< of a rigid body at the point, m/s; else 0
     Vec3 impulse = Vec3::Zero();   ///< of the step before, N s: where the search begins
+    /// True if the point is held: its relative position is to become 0 in all directions. Then
+    /// `offset` is what it is now, m, and normal, gap and friction have no meaning.
+    bool is_held = false;
+    Vec3 offset = Vec3::Zero();
+    double largest_force = std::numeric_limits<double>::infinity();  ///< of a point that is held, N
 };
 
 /// The points of contact of a step, and their impulses.
@@ -83,11 +89,15 @@ class ContactSolver {
         double allowed;                  // approach, m/s
         double rounding;                 // an approach that is none, m/s
         double normal_impulse = 0.0;     // N s
+        Vec3 softness = Vec3::Zero();    // of a point that is held: by component, 1/kg
+        Vec3 drift = Vec3::Zero();       // of the same: velocity that removes its offset, m/s
+        double largest_impulse = 0.0;    // of the same, N s
     };
     void number_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
     void make_rows(double dt, double rest_step);
     void begin_with_impulse(Row& row);
     void relax(Row& row);
+    void relax_held(Row& row);
     void change_impulse(const Row& row, const Vec3& to);
 
     double rounding_of_length_, largest_correction_;

@@ -100,7 +100,7 @@ Vec3 RigidContact::last_impulse_at(const Feature& feature) const {
     return last_impulses_[static_cast<std::size_t>(it - last_features_.begin())];
 }
 
-ToolImpulse RigidContact::take_impulses(const ContactSolver& solver) {
+ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt*/) {
     ToolImpulse sum;
     last_features_.clear();
     last_impulses_.clear();

@@ -14,24 +14,12 @@
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/rigid_touch.h"
 #include "incise/contact/surface_contact.h"
+#include "incise/contact/tool_impulse.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/pose.h"
 
 namespace incise::contact {
-
-/// What a tool exerts on the tissue in a step.
-struct ToolImpulse {
-    Vec3 force = Vec3::Zero();   ///< N s
-    Vec3 torque = Vec3::Zero();  ///< N m s, about the origin of the tool
-    double work = 0.0;           ///< J
-    ToolImpulse& operator+=(const ToolImpulse& other) {
-        force += other.force;
-        torque += other.torque;
-        work += other.work;
-        return *this;
-    }
-};
 
 /// Points of contact of a rigid tool with the faces of a body. A vertex or an edge of the surface
 /// that several triangles share counts once.
@@ -57,7 +45,7 @@ class RigidContact {
                     ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added, and returns what the tool exerts
     /// by them. The next step begins with them.
-    ToolImpulse take_impulses(const ContactSolver& solver);
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
     double max_penetration() const { return max_penetration_; }
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }

@@ -17,7 +17,7 @@ namespace {
 // Lengths are parts of the mean length of an element.
 constexpr double node_reach =
     0.15;  // at which a node is a point of contact: farther than it moves in a step
-constexpr double skin = 0.2;     // by which pairs are found that are not within node_reach yet
+constexpr double skin = 0.5;     // by which pairs are found that are not within node_reach yet
 constexpr double deepest = 0.4;  // a node that is deeper has no side any more
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
 /// no other triangle goes on there.
@@ -106,27 +106,62 @@ void SurfaceContact::list_triangles(const physics::Model& model,
     pairs_.set_surface(tree_, {model.mesh(), model.fragments(), faces_, takes_part_});
 }
 
+// Near the edit, pairs are found anew. Those of other nodes stay, with the new numbers of
+// triangles.
 void SurfaceContact::know_surface(const physics::Model& model,
                                   const topology::BoundarySurface& surface) {
-    // What nodes touch stays what it is if the triangle is still there.
-    std::map<NodeId, std::pair<Triangle, NearNode>> known;
-    for (std::size_t i = 0; i < near_.size(); ++i)
-        if (near_[i].touched >= 0)
-            known.emplace(
-                pairs_.nodes()[i],
-                std::pair(triangles_[static_cast<std::size_t>(near_[i].touched)], near_[i]));
+    const std::vector<FaceId> old_faces = std::move(faces_);
+    const std::vector<Triangle> old_triangles = std::move(triangles_);
+    const std::span<const Vec3> positions = model.mesh_positions();
     list_triangles(model, surface);
-    near_.clear();
-    find_pairs(model);
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-        const auto it = known.find(pairs_.nodes()[i]);
-        if (it == known.end()) continue;
-        for (const std::uint32_t t : pairs_.triangles_of(i))
-            if (triangles_[t] == it->second.first) {
-                near_[i] = it->second.second;
-                near_[i].touched = static_cast<std::int32_t>(t);
-            }
+    tree_.fit(positions);
+
+    constexpr std::int32_t none = -1;
+    std::vector<std::int32_t> number_of_old(old_triangles.size(), none);
+    Box changed;
+    const auto extend = [&](const Triangle& triangle) {
+        for (const NodeId n : triangle) changed.extend(positions[n.index()]);
+    };
+    std::size_t next = 0;  // of the old ones, in the same order
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        const auto key = std::tie(faces_[t], triangles_[t]);
+        while (next < old_triangles.size() && std::tie(old_faces[next], old_triangles[next]) < key)
+            extend(old_triangles[next++]);
+        if (next < old_triangles.size() && std::tie(old_faces[next], old_triangles[next]) == key)
+            number_of_old[next++] = static_cast<std::int32_t>(t);
+        else
+            extend(triangles_[t]);
     }
+    while (next < old_triangles.size()) extend(old_triangles[next++]);
+    if (changed.isEmpty()) return;
+    const double distance = (node_reach + skin) * size_;
+    const Box near_edit(changed.min() - Vec3::Constant(distance),
+                        changed.max() + Vec3::Constant(distance));
+
+    const std::size_t num_known = positions_of_pairs_.size();
+    positions_of_pairs_.resize(positions.size(), Vec3::Zero());
+    const auto is_near_edit = [&](NodeId n) {
+        if (n.index() < num_known && !near_edit.contains(positions[n.index()])) return false;
+        positions_of_pairs_[n.index()] = positions[n.index()];
+        return true;
+    };
+    const std::vector<NearNode> known = std::move(near_);
+    const std::vector<NodeId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
+    pairs_.find_again(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
+                      distance, number_of_old, is_near_edit);
+    // What nodes touch stays what it is if the triangle is still there.
+    near_.assign(pairs_.nodes().size(), {});
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        const auto it = std::ranges::lower_bound(known_nodes, pairs_.nodes()[i]);
+        if (it == known_nodes.end() || *it != pairs_.nodes()[i]) continue;
+        const NearNode& before = known[static_cast<std::size_t>(it - known_nodes.begin())];
+        const std::int32_t touched =
+            before.touched < 0 ? none : number_of_old[static_cast<std::size_t>(before.touched)];
+        if (touched < 0) continue;
+        near_[i] = before;
+        near_[i].touched = touched;
+    }
+    if (num_known == 0) room_ = skin * size_;
 }
 
 void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
@@ -138,8 +173,8 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
     require(size_ > 0.0 && positions_of_pairs_.size() == model.mesh().node_capacity() &&
             std::isfinite(room_));
     list_triangles(model, surface);
-    find_pairs_at(model, positions_of_pairs_);
-    require(near_.size() == pairs_.nodes().size());
+    require(near_.size() == pairs_.nodes().size() &&
+            pairs_.fits(model.mesh().node_capacity(), triangles_.size()));
     for (const NearNode& near : near_)
         require(near.touched < static_cast<std::int64_t>(triangles_.size()) && near.slack <= 0.0 &&
                 !std::isnan(near.room) && near.impulse.allFinite());
@@ -172,18 +207,14 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
     const std::span<const Vec3> positions = model.mesh_positions();
-    find_pairs_at(model, positions);
+    tree_.fit(positions);
+    pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
+                (node_reach + skin) * size_);
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (const auto it = known.find(pairs_.nodes()[i]); it != known.end()) near_[i] = it->second;
     positions_of_pairs_.assign(positions.begin(), positions.end());
     room_ = skin * size_;
-}
-
-void SurfaceContact::find_pairs_at(const physics::Model& model, std::span<const Vec3> positions) {
-    tree_.fit(positions);
-    pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
-                (node_reach + skin) * size_);
 }
 
 /// Returns where a node is above a triangle. Its gap is infinite if the triangle has no area.

@@ -39,7 +39,7 @@ class SurfaceContact {
     SurfaceContact(ContactSettings settings, double size) : settings_(settings), size_(size) {}
 
     /// Begins with the surface of a body, or follows the edits of a step. Cost: O(n log n) in the
-    /// nodes of the surface.
+    /// triangles of the surface, and that of the pairs near the edits.
     void know_surface(const physics::Model& model, const topology::BoundarySurface& surface);
     /// Finds the points of contact at the present positions, and adds them to the solver.
     /// Cost: proportional to the nodes that are near another surface. Now and then, when the
@@ -85,11 +85,11 @@ class SurfaceContact {
     };
 
     static void list(auto& ar, auto& self) {
-        ar(self.size_, self.near_, self.positions_of_pairs_, self.room_, self.max_penetration_);
+        ar(self.size_, self.pairs_, self.near_, self.positions_of_pairs_, self.room_,
+           self.max_penetration_);
     }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
     void find_pairs(const physics::Model& model);
-    void find_pairs_at(const physics::Model& model, std::span<const Vec3> positions);
     bool has_moved_far(std::span<const Vec3> positions);
     void find_touched(std::size_t i, std::span<const Vec3> positions);
     Touch touch(NodeId n, std::size_t t, std::span<const Vec3> positions) const;

@@ -117,10 +117,42 @@ void TouchingPairs::set_surface(const SurfaceTree& tree, const ContactBody& body
     }
 }
 
-// Nodes that follow each other in the order of the tree are near each other: they look for
-// triangles in groups.
 void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
                          std::span<const Vec3> positions, double reach) {
+    found_.clear();
+    append_pairs(tree, body, positions, reach, surface_nodes_);
+    take_found();
+}
+
+void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
+                               std::span<const Vec3> positions, double reach,
+                               std::span<const std::int32_t> number_of_old,
+                               const std::function<bool(NodeId)>& is_chosen) {
+    found_.clear();
+    std::vector<NodeId> chosen;
+    for (const NodeId n : surface_nodes_) {
+        const auto it = std::ranges::lower_bound(nodes_, n);
+        const bool is_known = it != nodes_.end() && *it == n;
+        const auto old = is_known ? triangles_of(static_cast<std::size_t>(it - nodes_.begin()))
+                                  : std::span<const std::uint32_t>();
+        const bool is_whole =
+            std::ranges::all_of(old, [&](std::uint32_t t) { return number_of_old[t] >= 0; });
+        if (is_chosen(n) || !is_whole) {
+            chosen.push_back(n);
+            continue;
+        }
+        for (const std::uint32_t t : old)
+            found_.emplace_back(n, static_cast<std::uint32_t>(number_of_old[t]));
+    }
+    append_pairs(tree, body, positions, reach, chosen);
+    take_found();
+}
+
+// Nodes that follow each other in the order of the tree are near each other: they look for
+// triangles in groups.
+void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& body,
+                                 std::span<const Vec3> positions, double reach,
+                                 std::span<const NodeId> nodes) {
     constexpr std::size_t group_size = 8;
     set_node_normals(tree.triangles(), positions, normals_);
     SameParts are_same_part(tree, body, rest_normals_);
@@ -134,11 +166,9 @@ void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
                                 positions[c.index()]) < reach * reach &&
                !are_same_part(n, t);
     };
-    found_.clear();
     const Vec3 margin = Vec3::Constant(reach);
-    for (std::size_t begin = 0; begin < surface_nodes_.size(); begin += group_size) {
-        const auto group = std::span(surface_nodes_)
-                               .subspan(begin, std::min(group_size, surface_nodes_.size() - begin));
+    for (std::size_t begin = 0; begin < nodes.size(); begin += group_size) {
+        const auto group = nodes.subspan(begin, std::min(group_size, nodes.size() - begin));
         Box box;
         NormalCone normals;
         for (const NodeId n : group) {
@@ -148,11 +178,13 @@ void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
         near_group_.clear();
         tree.for_each_against(Box(box.min() - margin, box.max() + margin), normals,
                               [&](std::uint32_t t) { near_group_.push_back(t); });
-        if (near_group_.empty()) continue;
         for (const NodeId n : group)
             for (const std::uint32_t t : near_group_)
                 if (is_near(n, t)) found_.emplace_back(n, t);
     }
+}
+
+void TouchingPairs::take_found() {
     std::ranges::sort(found_);
     nodes_.clear();
     begin_.assign(1, 0);
@@ -165,6 +197,15 @@ void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
         triangles_.push_back(t);
         begin_.back() = triangles_.size();
     }
+}
+
+bool TouchingPairs::fits(std::size_t num_nodes, std::size_t num_triangles) const {
+    return begin_.size() == nodes_.size() + 1 && begin_.front() == 0 &&
+           begin_.back() == triangles_.size() && std::ranges::is_sorted(begin_) &&
+           std::ranges::is_sorted(nodes_) &&
+           std::ranges::all_of(nodes_,
+                               [&](NodeId n) { return n.is_valid() && n.index() < num_nodes; }) &&
+           std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; });
 }
 
 }  // namespace incise::contact

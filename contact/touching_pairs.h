@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,6 +42,16 @@ class TouchingPairs {
     void find(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
               double reach);
 
+    /// Finds the pairs of some nodes anew, and keeps those of the others.
+    /// @param number_of_old  by triangle of the last surface, its number in the tree; -1 if it is
+    ///                       gone. Nodes with a triangle that is gone count as chosen.
+    /// @param is_chosen      is_chosen(n): find the pairs of this node. It is called once for each
+    ///                       node of the surface.
+    void find_again(const SurfaceTree& tree, const ContactBody& body,
+                    std::span<const Vec3> positions, double reach,
+                    std::span<const std::int32_t> number_of_old,
+                    const std::function<bool(NodeId)>& is_chosen);
+
     /// Returns the nodes with pairs, in ascending order.
     std::span<const NodeId> nodes() const { return nodes_; }
     /// Returns the triangles of the i-th of nodes().
@@ -47,7 +59,15 @@ class TouchingPairs {
         return {triangles_.data() + begin_[i], begin_[i + 1] - begin_[i]};
     }
 
+    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.begin_, self.triangles_); }
+    /// True if the pairs can be those of a surface with so many triangles.
+    bool fits(std::size_t num_nodes, std::size_t num_triangles) const;
+
   private:
+    void append_pairs(const SurfaceTree& tree, const ContactBody& body,
+                      std::span<const Vec3> positions, double reach, std::span<const NodeId> nodes);
+    void take_found();
+
     std::vector<NodeId> surface_nodes_;         // those that take part, in the order of the tree
     std::vector<Vec3> rest_normals_, normals_;  // by node; the latter is scratch
     std::vector<std::uint32_t> near_group_;     // scratch

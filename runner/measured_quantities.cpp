@@ -65,7 +65,7 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
     }
     const sim::World& world = simulation.world();
     for (std::size_t i = 0; i < world.num_tools(); ++i) {
-        if (!std::holds_alternative<cutting::Probe>(world.tool({i}).shape)) continue;
+        if (!cutting::feels_force(world.tool({i}).shape)) continue;
         Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
         for (const sim::ToolState& tool : world.report().tools)
             if (tool.tool.index == i) {

@@ -57,6 +57,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
     for (scenario::ScriptedTool& tool : body.tools) {
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
         paths_.push_back(std::move(tool.path));
+        jaws_.push_back({tool.close, tool.open});
     }
     // Refuses a fixed step that is too large before anything is written.
     scenario::step_limit(scenario_, model(), world_.stable_step(), num_steps());
@@ -99,11 +100,25 @@ void Simulation::move_tools(Interval step) {
         if (!path.is_present(step.from, step.to)) continue;
         const sim::ToolId tool{i};
         if (!world_.is_tool_present(tool)) world_.place_tool(tool, path.pose(step.from));
+        move_jaws(tool, step.from);
         world_.set_tool_pose(tool, path.pose(step.to));
         if (step.to < path.last_time()) continue;
         const auto before = path.pose_before_end();
         world_.withdraw_tool(tool, before ? &*before : nullptr);
     }
+}
+
+/// Closes or opens the jaws of a grasper at the beginning of a step.
+void Simulation::move_jaws(sim::ToolId tool, double time) {
+    const auto& [close, open] = jaws_[tool.index];
+    if (!close) return;
+    const bool is_to_be_closed = time >= *close && !(open && time >= *open);
+    if (is_to_be_closed == world_.is_grasper_closed(tool)) return;
+    if (!is_to_be_closed) return world_.open_grasper(tool);
+    if (world_.close_grasper(tool) == 0)
+        warnings_.push_back("grasper '" + world_.tool(tool).name +
+                            "' closes on nothing at t = " + io::format_number(time) +
+                            " s; check where its path and the tissue are then");
 }
 
 void Simulation::report_edits() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -109,7 +110,14 @@ class Simulation {
     StepPolicy policy_;
     std::vector<std::string> warnings_;
     sim::World world_;
+    /// When the jaws of a grasper close and open, s.
+    struct Jaws {
+        std::optional<double> close, open;
+    };
+    void move_jaws(sim::ToolId tool, double time);
+
     std::vector<scenario::ToolPath> paths_;  // by the number of the tool in the world
+    std::vector<Jaws> jaws_;                 // likewise
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;

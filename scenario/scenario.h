@@ -154,16 +154,29 @@ struct CutSpec {
     std::string location = {};   ///< for messages: FILE:line:column of the key `surface`
 };
 
+/// A grasper, with the times at which its jaws close and open, s.
+struct GrasperSpec {
+    cutting::Grasper grasper;
+    double close = 0.0;
+    std::optional<double> open;  ///< if not set, the jaws open at the end of the path
+};
+
 /// A [[tool]] section. The tool is present from the first to the last key of its path. A cut has
 /// one key, the time of the cut.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe> kind;
+    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe, GrasperSpec> kind;
     bool is_obstacle = false;  ///< an [[obstacle]]: a probe that is always present
     /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path;
     std::string location = {};  ///< for messages: FILE:line:column
 };
+
+/// True for probes, graspers and obstacles: they cut nothing, and tissue exerts a force on them.
+inline bool feels_force(const ToolSpec& tool) {
+    return std::holds_alternative<cutting::Probe>(tool.kind) ||
+           std::holds_alternative<GrasperSpec>(tool.kind);
+}
 
 /// The fields that a frame can hold in addition to points, rest positions, ids and regions.
 enum class Field { displacement, velocity, mass, force, stress, von_mises, J, energy_density };

@@ -153,14 +153,14 @@ void keep_sound(const TableReader& root, DynamicsSpec& spec) {
     if (!is_sound("precision")) spec.precision = physics::Precision::double_precision;
 }
 
-/// Reports probes and obstacles in a run without contact.
+/// Reports probes, graspers and obstacles in a run without contact.
 void require_contact(const TableReader& root, const Scenario& scenario) {
     const DynamicsSpec& dynamics = scenario.dynamics;
     const bool has_contact = scenario.contact.enabled && dynamics.mode == Mode::dynamic &&
                              dynamics.integrator == TimeIntegrator::semi_implicit_euler;
     if (has_contact || !root.is_sound("dynamics") || !root.is_sound("contact")) return;
     for (const ToolSpec& tool : scenario.tools)
-        if (std::holds_alternative<cutting::Probe>(tool.kind))
+        if (feels_force(tool))
             root.error({}, "tool " + in_quotes(tool.name) + " (" + tool.location +
                                ") needs contact: use explicit dynamics, without enabled = false in "
                                "[contact]");
@@ -184,7 +184,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.output = read_output(root, end_time);
     std::vector<std::string> probes;
     for (const ToolSpec& tool : scenario.tools)
-        if (std::holds_alternative<cutting::Probe>(tool.kind)) probes.push_back(tool.name);
+        if (feels_force(tool)) probes.push_back(tool.name);
     scenario.expect = read_expectations(root, held, probes);
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();

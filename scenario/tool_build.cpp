@@ -42,6 +42,8 @@ Extent extent_of(const auto& shape) {
 Extent extent_of_tool(const cutting::ToolShape& shape) {
     if (const auto* carver = std::get_if<Carver>(&shape)) return extent_of(carver->shape);
     if (const auto* probe = std::get_if<cutting::Probe>(&shape)) return extent_of(probe->shape);
+    if (const auto* grasper = std::get_if<cutting::Grasper>(&shape))
+        return extent_of(grasper->jaws);
     return {std::get<cutting::Blade>(shape).edge};
 }
 
@@ -110,8 +112,16 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     if (const auto* blade = std::get_if<BladeSpec>(&spec.kind)) shape = shape_of(*blade);
     if (const auto* cut = std::get_if<CutSpec>(&spec.kind)) shape = shape_of(*cut, warnings);
     if (const auto* probe = std::get_if<cutting::Probe>(&spec.kind)) shape = *probe;
+    const auto* grasper = std::get_if<GrasperSpec>(&spec.kind);
+    if (grasper) shape = grasper->grasper;
     auto surface = cutting::cut_surface_of(shape);
-    return {spec.name, std::move(shape), ToolPath(spec.path, spec.is_obstacle), std::move(surface)};
+    ScriptedTool tool{spec.name, std::move(shape), ToolPath(spec.path, spec.is_obstacle),
+                      std::move(surface)};
+    if (grasper) {
+        tool.close = grasper->close;
+        tool.open = grasper->open;
+    }
+    return tool;
 }
 
 bool may_meet(const ScriptedTool& tool, const Box& box) {
@@ -204,7 +214,7 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
 bool divides(const cutting::ToolShape& shape) {
     if (const auto* blade = std::get_if<cutting::Blade>(&shape))
         return blade->mode == CutMode::split;
-    return !std::holds_alternative<Carver>(shape) && !std::holds_alternative<cutting::Probe>(shape);
+    return !std::holds_alternative<Carver>(shape) && !cutting::feels_force(shape);
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {

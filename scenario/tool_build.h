@@ -29,6 +29,7 @@ struct ScriptedTool {
     cutting::ToolShape shape;
     ToolPath path;
     std::shared_ptr<const cutting::CutSurface> surface;  ///< of a CutSpec; null for other tools
+    std::optional<double> close = {}, open = {};         ///< of a grasper, s
 };
 
 /// Builds a tool, and reads the file of its surface if it has one. A blade without a mode splits.

@@ -12,10 +12,11 @@ namespace {
 using io::format_number;
 using Keys = std::string_view;
 
-constexpr Keys tool_keys[] = {"kind", "name", "path",  "shape",   "edge",  "mode",
-                              "snap", "time", "plane", "surface", "scale", "friction"};
+constexpr Keys tool_keys[] = {"kind",  "name",     "path",  "shape", "edge",
+                              "mode",  "snap",     "time",  "plane", "surface",
+                              "scale", "friction", "close", "open",  "max_force"};
 constexpr Keys obstacle_keys[] = {"name", "shape", "friction", "path"};
-constexpr Keys kinds[] = {"carver", "blade", "cut", "probe"};
+constexpr Keys kinds[] = {"carver", "blade", "cut", "probe", "grasper"};
 constexpr Keys modes[] = {"split", "separate"};  // in the order of CutMode
 constexpr Limits snap_limits{.low = 0.0, .high = 0.5, .includes_low = true, .includes_high = true};
 constexpr Keys plane_keys[] = {"point", "normal"};
@@ -104,6 +105,23 @@ cutting::Probe read_obstacle(const TableReader& obstacle) {
     return probe;
 }
 
+GrasperSpec read_grasper(const TableReader& tool) {
+    GrasperSpec spec;
+    spec.grasper.max_force =
+        tool.number("max_force", spec.grasper.max_force, {.low = 0.0, .includes_high = true});
+    spec.close = tool.number("close", 0.0, limits::non_negative);
+    spec.open = tool.number_if_given("open", limits::non_negative);
+    if (spec.open && *spec.open <= spec.close && tool.is_sound("open") && tool.is_sound("close"))
+        tool.error("open", format_number(*spec.open) +
+                               " is not allowed: must be after 'close', at " +
+                               format_number(spec.close) + " s");
+    const auto shape = tool.table("shape", {shape_keys});
+    if (!shape) return spec;
+    shape->one_of({"sphere", "capsule", "box"});
+    if (const auto found = read_shape(*shape)) spec.grasper.jaws = *found;
+    return spec;
+}
+
 BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
     BladeSpec blade;
     blade.edge = tool.vectors("edge");
@@ -150,16 +168,20 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
 
 /// Reports keys that a tool of this kind needs but does not have, and keys of other kinds.
 void check_keys(const TableReader& tool, Keys kind) {
-    if (kind == "carver" || kind == "probe")
+    if (kind == "carver" || kind == "probe" || kind == "grasper")
         tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
     else
-        refuse(tool, {"shape"}, "a carver or a probe");
+        refuse(tool, {"shape"}, "a carver, a probe or a grasper");
+    if (kind == "grasper")
+        tool.require("close", "when its jaws close, seconds, as in close = 0.2");
+    else
+        refuse(tool, {"close", "open", "max_force"}, "a grasper");
     if (kind != "probe") refuse(tool, {"friction"}, "a probe");
     if (kind == "blade")
         tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]");
     else
         refuse(tool, {"edge", "mode"}, "a blade");
-    if (kind == "carver" || kind == "probe") refuse(tool, {"snap"}, "a blade");
+    if (kind != "blade" && kind != "cut") refuse(tool, {"snap"}, "a blade");
     if (kind == "cut") {
         tool.one_of({"plane", "surface"});
         refuse(tool, {"path"}, "a blade");
@@ -180,6 +202,14 @@ bool knows_where(const TableReader& tool, Keys kind) {
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<BladeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
+    if (const auto* grasper = std::get_if<GrasperSpec>(&spec.kind); grasper && !spec.path.empty()) {
+        const double first = spec.path.front().time, last = spec.path.back().time;
+        if (tool.is_sound("close") && !(grasper->close >= first && grasper->close < last))
+            tool.error("close", format_number(grasper->close) +
+                                    " is not allowed: must be within the path, from " +
+                                    format_number(first) + " to before " + format_number(last) +
+                                    " s");
+    }
     if (std::holds_alternative<cutting::Probe>(spec.kind) && spec.path.size() == 1)
         tool.error("path",
                    "must have at least 2 keys: a probe is there from the first to the last; "
@@ -210,9 +240,11 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
         if (index) check_keys(tool, kind);
         std::optional<double> snap;
-        if (kind != "carver" && kind != "probe") snap = tool.number_if_given("snap", snap_limits);
+        if (kind.empty() || kind == "blade" || kind == "cut")
+            snap = tool.number_if_given("snap", snap_limits);
         if (may_be("carver")) spec.kind = read_carver(tool);
         if (kind == "probe") spec.kind = read_probe(tool);
+        if (kind == "grasper") spec.kind = read_grasper(tool);
         if (may_be("blade")) spec.kind = read_blade(tool, snap);
         if (may_be("cut")) {
             spec.kind = read_cut(tool, snap, folder);

@@ -87,9 +87,9 @@ void World::Parts::require_sound_pose(ToolId id, const Pose& pose) const {
 ToolId World::add_tool(ToolDef def) {
     require_sound(def);
     Parts& p = *parts_;
-    if (std::holds_alternative<cutting::Probe>(def.shape) && !p.contact)
+    if (cutting::feels_force(def.shape) && !p.contact)
         throw InputError("tool '" + def.name +
-                         "' is a probe: it needs the explicit solver, with contact enabled");
+                         "' touches tissue: it needs the explicit solver, with contact enabled");
     Parts::Tool tool{std::move(def)};
     tool.surface = cutting::cut_surface_of(tool.def.shape);
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
@@ -127,6 +127,30 @@ void World::withdraw_tool(ToolId id, const Pose* pose_before) {
     if (pose_before) tool.pose_before_end = *pose_before;
 }
 
+const cutting::Grasper& World::Parts::grasper_of(ToolId id) {
+    const Tool& tool = tool_of(id);
+    const auto* grasper = std::get_if<cutting::Grasper>(&tool.def.shape);
+    if (!grasper) throw InputError("tool '" + tool.def.name + "' is no grasper");
+    if (!tool.is_present) throw InputError("grasper '" + tool.def.name + "' is not there");
+    return *grasper;
+}
+
+std::size_t World::close_grasper(ToolId id) {
+    Parts& p = *parts_;
+    const cutting::Grasper& grasper = p.grasper_of(id);
+    Parts::Tool& tool = p.tool_of(id);
+    p.contact->close(id.index, grasper, p.model, tool.pose);
+    tool.is_closed = true;
+    return p.contact->num_held(id.index);
+}
+
+void World::open_grasper(ToolId id) {
+    parts_->grasper_of(id);
+    parts_->contact->open(id.index);
+    parts_->tool_of(id).is_closed = false;
+}
+
+bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed; }
 bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present; }
 Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
 const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }

@@ -97,8 +97,8 @@ struct ToolState {
     ToolId tool;
     Pose pose;
     bool is_in_tissue = false;  ///< true if the tool splits elements and its cut ends inside one
-    /// What the tissue exerts on a probe, mean over the step: force, N, and torque about the origin
-    /// of the tool at the end of the step, N m. Zero for other tools.
+    /// What the tissue exerts on a probe or a grasper, mean over the step: force, N, and torque
+    /// about the origin of the tool at the end of the step, N m. Zero for other tools.
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
@@ -114,7 +114,8 @@ struct StepReport {
     double from = 0.0, to = 0.0;  ///< s
     std::size_t num_parts = 1;    ///< explicit steps that the step was divided into
     std::vector<Edit> edits;      ///< in order of execution
-    /// Those present at the end of the step, and probes that were withdrawn at its end.
+    /// Those present at the end of the step, and probes and graspers that were withdrawn at its
+    /// end.
     std::vector<ToolState> tools;
     ContactState contact;  ///< in the last part of the step
 };
@@ -188,7 +189,8 @@ class World {
 
     /// Adds a tool. The tool is present in the world only after a pose has been set.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
-    /// radius that is not above 0, and for a probe in a world without contact.
+    /// radius that is not above 0, and for a probe or a grasper in a world
+    /// without contact.
     ToolId add_tool(ToolDef def);
     /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose, and a
     /// withdrawal of it no longer holds.
@@ -204,6 +206,14 @@ class World {
     ///                     which the blade moved. If null, the direction is that of the last step
     ///                     in which the blade moved.
     void withdraw_tool(ToolId tool, const Pose* pose_before = nullptr);
+    /// Closes the jaws of a grasper: they take hold of the surface that is in them at the present
+    /// pose of the tool, and carry it from now on. Returns how many points they hold.
+    /// Throws InputError if the tool is no grasper, or is not there.
+    std::size_t close_grasper(ToolId tool);
+    /// Opens the jaws: the tissue keeps its velocity. Throws as close_grasper() does.
+    void open_grasper(ToolId tool);
+    /// True from close_grasper() to open_grasper(), also if all tissue has slipped out of the jaws.
+    bool is_grasper_closed(ToolId tool) const;
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;

@@ -135,6 +135,12 @@ struct FaultOfShape {
                    ": it must be 0 or more";
         return std::visit([&](const auto& shape) { return fault_of(shape); }, probe.shape);
     }
+    std::string operator()(const cutting::Grasper& grasper) const {
+        if (!(grasper.max_force > 0.0))
+            return "its largest force is " + io::format_number(grasper.max_force) +
+                   " N: it must be above 0";
+        return std::visit([&](const auto& shape) { return fault_of(shape); }, grasper.jaws);
+    }
 
   private:
     static std::string fault_of(const cutting::HalfSpace& half_space) {

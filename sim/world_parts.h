@@ -66,7 +66,8 @@ struct World::Parts {
         std::optional<cutting::CutId> cut = {};                   // only for a blade that splits
         std::shared_ptr<const cutting::CutSurface> surface = {};  // only for cuts at once
         bool is_present = false;
-        bool has_just_left = false;  // a probe, in this step
+        bool has_just_left = false;  // a probe or a grasper, in this step
+        bool is_closed = false;      // a grasper
         Pose pose = {};              // at present
         Pose target = {};            // at the end of the next step
         bool is_leaving = false;
@@ -75,7 +76,7 @@ struct World::Parts {
 
         static void archive(auto& ar, auto& self) {
             ar(self.def.name, self.def.shape, self.cut, self.is_present, self.pose, self.target,
-               self.is_leaving, self.pose_before_end, self.edge_after, self.motion);
+               self.is_leaving, self.pose_before_end, self.edge_after, self.motion, self.is_closed);
         }
     };
 
@@ -108,7 +109,7 @@ struct World::Parts {
     std::size_t num_parts(double dt) const;
     /// Returns how many parts a step needs in which a tool moves to its target.
     double parts_for(const Tool& tool) const;
-    /// Sets the motion of probes in a part of a step, from one share of it to another.
+    /// Sets the motion of probes and graspers in a part of a step, from one share of it to another.
     void move_probes(double from, double to);
     std::unique_ptr<contact::Contact> make_contact(const contact::ContactSettings& settings,
                                                    Solver with);
@@ -118,6 +119,7 @@ struct World::Parts {
     cutting::Split split_with(Tool& tool);
     void follow(ToolId id, cutting::Split done, double end);
     Tool& tool_of(ToolId id);
+    const cutting::Grasper& grasper_of(ToolId id);
     topology::BoundarySurface& built_surface();
     void require_sound_pose(ToolId id, const Pose& pose) const;
     bool is_any_tool_present() const {

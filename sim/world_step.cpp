@@ -205,9 +205,8 @@ double World::Parts::parts_for(const Tool& tool) const {
 void World::Parts::move_probes(double from, double to) {
     for (std::size_t i = 0; i < tools.size(); ++i) {
         const Tool& tool = tools[i];
-        const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
-        if (probe && tool.is_present)
-            contact->move_tool(i, *probe, interpolate(tool.pose, tool.target, from),
+        if (cutting::feels_force(tool.def.shape) && tool.is_present)
+            contact->move_tool(i, tool.def.shape, interpolate(tool.pose, tool.target, from),
                                interpolate(tool.pose, tool.target, to));
     }
 }
@@ -236,11 +235,11 @@ double World::Parts::move_to(double end) {
 void World::Parts::cut_with(ToolId id, double end) {
     Tool& tool = tools[id.index];
     if (!tool.is_present) return;
-    if (std::holds_alternative<cutting::Probe>(tool.def.shape)) {
+    if (cutting::feels_force(tool.def.shape)) {
         tool.pose = tool.target;
         if (!tool.is_leaving) return;
         tool.has_just_left = true;
-        tool.is_present = tool.is_leaving = false;
+        tool.is_present = tool.is_leaving = tool.is_closed = false;
         return;
     }
     const auto carry_out = [&](auto edit) -> cutting::Split {

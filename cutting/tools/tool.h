@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -57,7 +58,20 @@ struct Probe {
     static void archive(auto& ar, auto& self) { ar(self.shape, self.friction); }
 };
 
-using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe>;
+/// A tool whose jaws hold the surface of the tissue that is in them when they close.
+struct Grasper {
+    CarverShape jaws;  ///< what they enclose
+    /// The largest force that they hold, N; above it tissue slips out of them.
+    double max_force = std::numeric_limits<double>::infinity();
+    static void archive(auto& ar, auto& self) { ar(self.jaws, self.max_force); }
+};
+
+using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper>;
+
+/// True for tools that tissue exerts a force on: probes and graspers.
+inline bool feels_force(const ToolShape& shape) {
+    return std::holds_alternative<Probe>(shape) || std::holds_alternative<Grasper>(shape);
+}
 
 /// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.
 std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape);

@@ -382,9 +382,9 @@ TEST(ScenarioErrors, OfLoads) {
 }
 
 TEST(ScenarioErrors, OfTools) {
-    EXPECT_EQ(
-        error_of("[[tool]]\nsnap = 0.1\n"),
-        "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, probe");
+    EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
+              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, "
+              "probe, grasper");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
               "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 #include <string>
 
 #include "support/num_cases.h"
@@ -209,6 +209,83 @@ TEST(Contact, OfABlockOnASlopeSticksOrSlidesByCoulombsLaw) {
     EXPECT_NEAR(slide_on_slope(0.38, 0.4), 0.0, 0.05);  // of the negative way of a rigid one
 }
 
+/// A cube that hangs from its top, and a grasper at its bottom.
+struct Held {
+    World world;
+    ToolId grasper;
+};
+Held held_by_grasper(double max_force = std::numeric_limits<double>::infinity()) {
+    WorldDef def = cube_at_rest();
+    def.damping = 20.0;
+    World world(std::move(def));
+    world.add_constraint({.name = "top",
+                          .nodes = physics::NodeSet(nodes_where(
+                              world, [](const Vec3& x) { return x.z() > size - 1e-9; }))});
+    const ToolId grasper =
+        world.add_tool({"grasper", cutting::Grasper{cutting::Sphere{0.03}, max_force}});
+    world.place_tool(grasper, at({0.05, 0.05, 0.0}));
+    EXPECT_GT(world.close_grasper(grasper), 4u);
+    return {std::move(world), grasper};
+}
+
+TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
+    auto [world, grasper] = held_by_grasper();
+    move_tool(world, grasper, {0.05, 0.05, -0.02}, 0.4);
+    move_tool(world, grasper, {0.05, 0.05, -0.02}, 0.8);
+    for (const NodeId n : nodes_where(world, [](const Vec3& x) {
+             return x.z() == 0.0 && (x - Vec3(0.05, 0.05, 0.0)).norm() < 0.029;
+         }))
+        EXPECT_NEAR(world.positions()[n.index()].z(), world.mesh().rest_position(n).z() - 0.02,
+                    1e-4);
+    const double force = world.report().tools[0].force.z();  // tissue draws it up
+    EXPECT_GT(force, 0.1);
+    EXPECT_NEAR(force, world.reaction(ConstraintId{0}).force.z(), 0.01 * force);
+    EXPECT_LT(world.ledger().energy_error(), 0.01);
+    world.open_grasper(grasper);
+    EXPECT_FALSE(world.is_grasper_closed(grasper));
+    run_until(world, world.time() + 1.0);
+    EXPECT_EQ(world.report().tools[0].force, Vec3(Vec3::Zero()));
+    for (const NodeId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
+        EXPECT_NEAR(world.positions()[n.index()].z(), 0.0, 1e-4);
+}
+
+// Tissue slips out of jaws that are drawn away by more than they can hold.
+TEST(Contact, OfAGrasperSlipsAboveItsLargestForce) {
+    auto [free, holding] = held_by_grasper();
+    move_tool(free, holding, {0.05, 0.05, -0.02}, 0.4);
+    const double needed = free.report().tools[0].force.z();
+    auto [world, grasper] = held_by_grasper(0.3 * needed);
+    double largest = 0.0;
+    for (int i = 1; i <= 20; ++i) {
+        move_tool(world, grasper, {0.05, 0.05, -0.004 * i}, 0.05);
+        largest = std::max(largest, world.report().tools[0].force.norm());
+    }
+    EXPECT_LE(largest, 0.3 * needed * (1.0 + 1e-9));
+    EXPECT_GT(largest, 0.2 * needed);
+    EXPECT_TRUE(world.is_grasper_closed(grasper));
+    EXPECT_EQ(world.report().tools[0].force, Vec3(Vec3::Zero()));  // all has slipped out
+}
+
+TEST(Contact, OfAGrasperGoesOnWithTheSameBitsAfterRestore) {
+    const auto pull = [](Held& h, int from, int to) {
+        for (int i = from; i < to; ++i) {
+            if (i == 40) cut_along(h.world, {0.05, 0.05, 0.01}, {1.0, 0.2, 0.1});
+            h.world.set_tool_pose(h.grasper, at({0.05, 0.05, -1e-4 * i}));
+            h.world.step(0.8 * h.world.stable_step());
+        }
+    };
+    Held whole = held_by_grasper(0.2);
+    pull(whole, 0, 150);
+    const std::string end = whole.world.save();
+    for (const int pause : {1, 41, 120}) {
+        Held first = held_by_grasper(0.2), second = held_by_grasper(0.2);
+        pull(first, 0, pause);
+        second.world.restore(first.world.save());
+        pull(second, pause, 150);
+        EXPECT_TRUE(second.world.save() == end) << "pause at " << pause;
+    }
+}
+
 TEST(Contact, RefusesWhatItCannotDo) {
     const cutting::Probe ball{cutting::Sphere{0.01}};
     for (const Solver solver : {Solver::implicit_euler, Solver::statics}) {
@@ -219,6 +296,16 @@ TEST(Contact, RefusesWhatItCannotDo) {
                   std::string::npos);
     }
     World world(soft_body());
+    const ToolId away = world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}}});
+    EXPECT_NE(input_error_of([&] { world.close_grasper(away); }).find("not there"),
+              std::string::npos);
+    const ToolId blade = world.add_tool(scalpel());
+    EXPECT_NE(input_error_of([&] { world.open_grasper(blade); }).find("no grasper"),
+              std::string::npos);
+    EXPECT_NE(input_error_of([&] {
+                  world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}, 0.0}});
+              }).find("force"),
+              std::string::npos);
     EXPECT_NE(input_error_of([&] {
                   world.add_tool({"ball", cutting::Probe{cutting::Sphere{0.0}}});
               }).find("radius"),

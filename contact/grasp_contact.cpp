@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/grasp_contact.h"
+
+#include <algorithm>
+#include <limits>
+#include <variant>
+
+#include "incise/base/error.h"
+#include "incise/contact/rigid_touch.h"
+#include "incise/contact/surface_contact.h"
+
+namespace incise::contact {
+
+namespace {
+
+/// Tissue that has slipped farther out of the jaws than that is let go, over the size of an
+/// element.
+constexpr double let_go_at = 0.5;
+/// A point slips where its force is this share of the largest one.
+constexpr double slips_at = 0.999;
+
+double distance_from(const cutting::CarverShape& jaws, const Vec3& x) {
+    const cutting::ProbeShape shape =
+        std::visit([](const auto& one) { return cutting::ProbeShape(one); }, jaws);
+    const Box box = box_of(shape);
+    return cutting::meets(jaws, x, x) ? 0.0 : box.exteriorDistance(x);
+}
+
+}  // namespace
+
+Vec3 GraspContact::position_of(const Held& held, std::span<const Vec3> positions) const {
+    Vec3 x = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+        x += held.weights[static_cast<int>(k)] * positions[held.nodes[k].index()];
+    return x;
+}
+
+void GraspContact::close(const physics::Model& model, std::span<const Triangle> surface,
+                         const Pose& pose) {
+    const std::span<const Vec3> positions = model.mesh_positions();
+    held_.clear();
+    std::vector<NodeId> nodes;
+    for (const Triangle& triangle : surface)
+        for (const NodeId n : triangle) {
+            const Vec3 x = pose.to_tool(positions[n.index()]);
+            if (cutting::meets(grasper_.jaws, x, x)) nodes.push_back(n);
+        }
+    std::ranges::sort(nodes);
+    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+    for (const NodeId n : nodes)
+        held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()])});
+    if (!held_.empty()) return;
+    const cutting::ProbeShape shape =
+        std::visit([](const auto& one) { return cutting::ProbeShape(one); }, grasper_.jaws);
+    std::vector<RigidTouch> touches;
+    for (const Triangle& triangle : surface) {
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = pose.to_tool(positions[triangle[k].index()]);
+        touches.clear();
+        append_touches(shape, corners, 0.0, touches);
+        for (const RigidTouch& touch : touches)
+            held_.push_back({triangle, touch.weights, touch.point});
+    }
+}
+
+void GraspContact::follow(const physics::Model& model) {
+    std::erase_if(held_, [&](const Held& held) {
+        return std::ranges::any_of(held.nodes, [&](NodeId n) { return !model.mesh().is_alive(n); });
+    });
+}
+
+void GraspContact::add_points(const physics::Model& model, double dt, ContactSolver& solver) {
+    const std::span<const Vec3> positions = model.mesh_positions();
+    first_point_ = solver.size();
+    for (Held& held : held_) {
+        const Vec3 x = position_of(held, positions), here = before_.to_world(held.place);
+        ContactPoint point;
+        point.is_held = true;
+        point.offset = x - here;
+        point.velocity = (after_.to_world(held.place) - here) / dt;
+        point.impulse = held.impulse;
+        point.largest_force = grasper_.max_force / static_cast<double>(held_.size());
+        solver.begin(point);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const double weight = held.weights[static_cast<int>(k)]; weight != 0.0)
+                add_shares(model, held.nodes[k], weight, solver);
+    }
+}
+
+ToolImpulse GraspContact::take_impulses(const ContactSolver& solver, double dt) {
+    ToolImpulse sum;
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+        Held& held = held_[i];
+        const ContactPoint& point = solver.point(first_point_ + i);
+        held.impulse = solver.impulse(first_point_ + i);
+        sum.force += held.impulse;
+        sum.torque += (before_.to_world(held.place) - before_.position).cross(held.impulse);
+        sum.work += held.impulse.dot(point.velocity);
+        // A point that slips is held where it has come to.
+        if (held.impulse.norm() >= slips_at * point.largest_force * dt)
+            held.place = before_.to_tool(before_.to_world(held.place) + point.offset);
+    }
+    std::erase_if(held_, [&](const Held& held) {
+        return distance_from(grasper_.jaws, held.place) > let_go_at * size_;
+    });
+    return sum;
+}
+
+void GraspContact::restore(ArchiveReader& ar, const physics::Model& model) {
+    list(ar, *this);
+    for (const Held& held : held_) {
+        const bool fits = held.weights.allFinite() && held.place.allFinite() &&
+                          held.impulse.allFinite() &&
+                          std::ranges::all_of(held.nodes, [&](NodeId n) {
+                              return n.is_valid() && n.index() < model.mesh().node_capacity();
+                          });
+        if (!fits) throw InputError("a grasper holds another body");
+    }
+}
+
+}  // namespace incise::contact

@@ -1,0 +1,77 @@
+// A grasp of the surface of a body by the jaws of a tool.
+// Source: docs/theory.md, Contact.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "incise/base/archive.h"
+#include "incise/contact/contact_solver.h"
+#include "incise/contact/surface_tree.h"
+#include "incise/contact/tool_impulse.h"
+#include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/model.h"
+#include "incise/topology/pose.h"
+
+namespace incise::contact {
+
+/// Points of the surface that jaws hold. Each moves with the jaws, as long as that takes no more
+/// than its share of the largest force. Above it the point slips, and one that leaves the jaws is
+/// let go.
+class GraspContact {
+  public:
+    /// @param size  mean length of an element at rest, m
+    GraspContact(cutting::Grasper grasper, double size)
+        : grasper_(std::move(grasper)), size_(size) {}
+
+    /// Sets the motion of the jaws in the next step.
+    void move(const Pose& before, const Pose& after) {
+        before_ = before;
+        after_ = after;
+    }
+    /// Takes hold of the nodes of a surface that are in the jaws; without any, of the points of its
+    /// triangles that are deepest in them. Cost: O(n) in the triangles.
+    void close(const physics::Model& model, std::span<const Triangle> surface, const Pose& pose);
+    void open() { held_.clear(); }
+    std::size_t num_held() const { return held_.size(); }
+    /// Lets go what an edit has removed.
+    void follow(const physics::Model& model);
+
+    /// Adds the points that are held to the solver.
+    /// @param dt  s
+    void add_points(const physics::Model& model, double dt, ContactSolver& solver);
+    /// Takes the impulses of the points that add_points() added, and returns what the jaws exert by
+    /// them.
+    /// @param dt  s
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
+
+    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    /// Restores what save() wrote. Throws InputError for the data of another body.
+    void restore(ArchiveReader& ar, const physics::Model& model);
+
+  private:
+    /// A point of the surface.
+    struct Held {
+        std::array<NodeId, 3> nodes;  ///< of the mesh
+        Vec3 weights;                 ///< of them; a node has the weight 1
+        Vec3 place;                   ///< in the frame of the jaws, m
+        Vec3 impulse = Vec3::Zero();  ///< of the last step, N s
+        static void archive(auto& ar, auto& self) {
+            ar(self.nodes, self.weights, self.place, self.impulse);
+        }
+    };
+    static void list(auto& ar, auto& self) { ar(self.grasper_, self.size_, self.held_); }
+    Vec3 position_of(const Held& held, std::span<const Vec3> positions) const;
+
+    cutting::Grasper grasper_;
+    double size_;
+    Pose before_, after_;
+    std::vector<Held> held_;
+    std::size_t first_point_ = 0;  // in the solver
+};
+
+}  // namespace incise::contact
