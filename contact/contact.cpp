@@ -106,6 +106,15 @@ void Contact::book_work(physics::Model& model) {
     dissipation_ += loss;
 }
 
+void Contact::require_tools(std::span<const cutting::ToolShape* const> shapes) const {
+    for (const auto& [number, tool] : tools_) {
+        const bool is_grasp = std::holds_alternative<GraspContact>(tool.contact);
+        if (number >= shapes.size() || !cutting::feels_force(*shapes[number]) ||
+            is_grasp != std::holds_alternative<cutting::Grasper>(*shapes[number]))
+            throw InputError("its contact has tools that it does not have");
+    }
+}
+
 void Contact::save(ArchiveWriter& ar) const {
     ar(dissipation_, num_points_, max_penetration_);
     tissue_.save(ar);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -66,6 +67,9 @@ class Contact final : public physics::VelocityProjection {
     /// @pre  model and surface are those of the saved state
     void restore(ArchiveReader& ar, const physics::Model& model,
                  const topology::BoundarySurface& surface);
+
+    /// Throws InputError if tools are known that are not among some shapes, by their numbers.
+    void require_tools(std::span<const cutting::ToolShape* const> shapes) const;
 
   private:
     struct Tool {

@@ -130,7 +130,9 @@ void ContactSolver::begin_with_impulse(Row& row) {
     if (point.is_held) {
         const double length = point.impulse.norm();
         const double share = length > row.largest_impulse ? row.largest_impulse / length : 1.0;
-        return change_impulse(row, share * point.impulse);
+        // What is prescribed by now needs no impulse.
+        const Vec3 start = (row.softness.array() > 0.0).select(share * point.impulse, 0.0);
+        return change_impulse(row, start);
     }
     row.normal_impulse = std::max(0.0, point.impulse.dot(point.normal));
     if (row.normal_impulse == 0.0) return;

@@ -2,7 +2,6 @@
 #include "incise/contact/grasp_contact.h"
 
 #include <algorithm>
-#include <limits>
 #include <variant>
 
 #include "incise/base/error.h"
@@ -20,10 +19,15 @@ constexpr double let_go_at = 0.5;
 constexpr double slips_at = 0.999;
 
 double distance_from(const cutting::CarverShape& jaws, const Vec3& x) {
-    const cutting::ProbeShape shape =
-        std::visit([](const auto& one) { return cutting::ProbeShape(one); }, jaws);
-    const Box box = box_of(shape);
-    return cutting::meets(jaws, x, x) ? 0.0 : box.exteriorDistance(x);
+    if (const auto* ball = std::get_if<cutting::Sphere>(&jaws)) return x.norm() - ball->radius;
+    if (const auto* box = std::get_if<cutting::Cuboid>(&jaws))
+        return (x.cwiseAbs() - 0.5 * box->size).cwiseMax(0.0).norm();
+    const auto& capsule = std::get<cutting::Capsule>(jaws);
+    const Vec3 along = capsule.to - capsule.from;
+    const double length = along.squaredNorm();
+    const double at =
+        length > 0.0 ? std::clamp(along.dot(x - capsule.from) / length, 0.0, 1.0) : 0.0;
+    return (x - capsule.from - at * along).norm() - capsule.radius;
 }
 
 }  // namespace
@@ -59,8 +63,13 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
             corners[k] = pose.to_tool(positions[triangle[k].index()]);
         touches.clear();
         append_touches(shape, corners, 0.0, touches);
-        for (const RigidTouch& touch : touches)
-            held_.push_back({triangle, touch.weights, touch.point});
+        for (const RigidTouch& touch : touches) {
+            // A point on an edge belongs to several triangles.
+            const bool is_known = std::ranges::any_of(held_, [&](const Held& held) {
+                return (held.place - touch.point).norm() < 1e-9 * size_;
+            });
+            if (!is_known) held_.push_back({triangle, touch.weights, touch.point});
+        }
     }
 }
 
@@ -113,7 +122,8 @@ void GraspContact::restore(ArchiveReader& ar, const physics::Model& model) {
         const bool fits = held.weights.allFinite() && held.place.allFinite() &&
                           held.impulse.allFinite() &&
                           std::ranges::all_of(held.nodes, [&](NodeId n) {
-                              return n.is_valid() && n.index() < model.mesh().node_capacity();
+                              return n.is_valid() && n.index() < model.mesh().node_capacity() &&
+                                     model.mesh().is_alive(n);
                           });
         if (!fits) throw InputError("a grasper holds another body");
     }

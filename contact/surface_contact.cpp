@@ -133,13 +133,14 @@ void SurfaceContact::know_surface(const physics::Model& model,
             extend(triangles_[t]);
     }
     while (next < old_triangles.size()) extend(old_triangles[next++]);
-    if (changed.isEmpty()) return;
-    const double distance = (node_reach + skin) * size_;
-    const Box near_edit(changed.min() - Vec3::Constant(distance),
-                        changed.max() + Vec3::Constant(distance));
-
     const std::size_t num_known = positions_of_pairs_.size();
     positions_of_pairs_.resize(positions.size(), Vec3::Zero());
+    if (changed.isEmpty()) return;
+    // Twice as far as pairs reach: the triangles of nodes that are found anew may have moved since
+    // their own were found.
+    const double distance = (node_reach + skin) * size_;
+    const Box near_edit(changed.min() - Vec3::Constant(2.0 * distance),
+                        changed.max() + Vec3::Constant(2.0 * distance));
     const auto is_near_edit = [&](NodeId n) {
         if (n.index() < num_known && !near_edit.contains(positions[n.index()])) return false;
         positions_of_pairs_[n.index()] = positions[n.index()];
@@ -170,8 +171,8 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
     const auto require = [](bool holds) {
         if (!holds) throw InputError("its contact is that of another body");
     };
-    require(size_ > 0.0 && positions_of_pairs_.size() == model.mesh().node_capacity() &&
-            std::isfinite(room_));
+    require(settings_.enabled && settings_.friction >= 0.0 && size_ > 0.0 &&
+            positions_of_pairs_.size() == model.mesh().node_capacity() && std::isfinite(room_));
     list_triangles(model, surface);
     require(near_.size() == pairs_.nodes().size() &&
             pairs_.fits(model.mesh().node_capacity(), triangles_.size()));

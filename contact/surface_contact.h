@@ -23,6 +23,7 @@ struct ContactSettings {
     bool self = true;       ///< any surface against any other; false: only faces of cuts
 
     bool operator==(const ContactSettings&) const = default;
+    static void archive(auto& ar, auto& self) { ar(self.enabled, self.friction, self.self); }
 };
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
@@ -85,8 +86,8 @@ class SurfaceContact {
     };
 
     static void list(auto& ar, auto& self) {
-        ar(self.size_, self.pairs_, self.near_, self.positions_of_pairs_, self.room_,
-           self.max_penetration_);
+        ar(self.settings_, self.size_, self.pairs_, self.near_, self.positions_of_pairs_,
+           self.room_, self.max_penetration_);
     }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
     void find_pairs(const physics::Model& model);

@@ -153,17 +153,14 @@ void keep_sound(const TableReader& root, DynamicsSpec& spec) {
     if (!is_sound("precision")) spec.precision = physics::Precision::double_precision;
 }
 
-/// Reports probes, graspers and obstacles in a run without contact.
-void require_contact(const TableReader& root, const Scenario& scenario) {
+/// Returns why a run has no contact; empty if it has.
+std::string why_no_contact(const TableReader& root, const Scenario& scenario) {
+    if (!root.is_sound("dynamics") || !root.is_sound("contact")) return {};
     const DynamicsSpec& dynamics = scenario.dynamics;
-    const bool has_contact = scenario.contact.enabled && dynamics.mode == Mode::dynamic &&
-                             dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-    if (has_contact || !root.is_sound("dynamics") || !root.is_sound("contact")) return;
-    for (const ToolSpec& tool : scenario.tools)
-        if (feels_force(tool))
-            root.error({}, "tool " + in_quotes(tool.name) + " (" + tool.location +
-                               ") needs contact: use explicit dynamics, without enabled = false in "
-                               "[contact]");
+    if (dynamics.mode == Mode::statics) return "mode = \"static\" has no contact";
+    if (dynamics.integrator != TimeIntegrator::semi_implicit_euler)
+        return "integrator = \"implicit-euler\" has no contact";
+    return scenario.contact.enabled ? "" : "[contact] has enabled = false";
 }
 
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
@@ -179,8 +176,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
-    scenario.tools = read_tools(root, scenario.folder, end_time);
-    require_contact(root, scenario);
+    scenario.tools = read_tools(root, scenario.folder, end_time, why_no_contact(root, scenario));
     scenario.output = read_output(root, end_time);
     std::vector<std::string> probes;
     for (const ToolSpec& tool : scenario.tools)

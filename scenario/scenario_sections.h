@@ -43,8 +43,9 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
 /// @param root      the root table
 /// @param folder    folder of the scenario, to which names of surface files are relative
 /// @param end_time  end of the run, s: later keys give a warning; not above 0 if not known
+/// @param why_no_contact  why tools cannot touch tissue; empty if they can
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
-                                 double end_time);
+                                 double end_time, const std::string& why_no_contact);
 OutputSpec read_output(const TableReader& root, double end_time);
 /// Reads the [expect] section.
 /// @param root         the root table

@@ -199,16 +199,25 @@ bool knows_where(const TableReader& tool, Keys kind) {
            (kind != "cut" || tool.has("plane") != tool.has("surface"));
 }
 
+/// Reports times of jaws that are not within the path.
+void check_jaws(const TableReader& tool, const GrasperSpec& grasper, double first, double last) {
+    const auto within = " is not allowed: must be within the path, from " + format_number(first) +
+                        " to " + format_number(last) + " s";
+    if (tool.is_sound("close") && !(grasper.close >= first && grasper.close < last))
+        tool.error("close", format_number(grasper.close) + within);
+    if (tool.is_sound("open") && grasper.open && !(*grasper.open <= last))
+        tool.error("open", format_number(*grasper.open) + within);
+}
+
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<BladeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
-    if (const auto* grasper = std::get_if<GrasperSpec>(&spec.kind); grasper && !spec.path.empty()) {
-        const double first = spec.path.front().time, last = spec.path.back().time;
-        if (tool.is_sound("close") && !(grasper->close >= first && grasper->close < last))
-            tool.error("close", format_number(grasper->close) +
-                                    " is not allowed: must be within the path, from " +
-                                    format_number(first) + " to before " + format_number(last) +
-                                    " s");
+    if (const auto* grasper = std::get_if<GrasperSpec>(&spec.kind)) {
+        if (spec.path.size() == 1)
+            tool.error("path",
+                       "must have at least 2 keys: a grasper is there from the first to the last");
+        if (spec.path.size() > 1)
+            check_jaws(tool, *grasper, spec.path.front().time, spec.path.back().time);
     }
     if (std::holds_alternative<cutting::Probe>(spec.kind) && spec.path.size() == 1)
         tool.error("path",
@@ -224,7 +233,7 @@ void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) 
 }  // namespace
 
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
-                                 double end_time) {
+                                 double end_time, const std::string& why_no_contact) {
     std::vector<ToolSpec> specs;
     std::vector<std::string> names;
     std::array<int, std::size(kinds)> counts{};
@@ -239,6 +248,8 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
             index ? std::string(kind) + "_" + std::to_string(++counts[*index]) : "";
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
         if (index) check_keys(tool, kind);
+        if ((kind == "probe" || kind == "grasper") && !why_no_contact.empty())
+            tool.error("kind", in_quotes(kind) + " touches tissue, but " + why_no_contact);
         std::optional<double> snap;
         if (kind.empty() || kind == "blade" || kind == "cut")
             snap = tool.number_if_given("snap", snap_limits);
@@ -266,6 +277,8 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         spec.is_obstacle = true;
         spec.location = obstacle.location_text();
         spec.name = read_name(obstacle, "obstacle_" + std::to_string(++count), names);
+        if (!why_no_contact.empty())
+            obstacle.error({}, "an obstacle touches tissue, but " + why_no_contact);
         obstacle.require(
             "shape", "as in shape = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }");
         spec.path = {{0.0, Pose()}};

@@ -45,8 +45,7 @@ const StepReport& World::Parts::checked_step(double end, double dt) {
         if (solver == Solver::semi_implicit_euler && parts_for(tool) > double(most_parts))
             throw InputError("tool '" + tool.def.name + "' moves so far in a step of " +
                              io::format_number(dt) +
-                             " s that the step needs more than 1000 parts; move it more slowly, or "
-                             "place it anew");
+                             " s that the step needs more than 1000 parts; move it more slowly");
     if (num_parts(dt) > most_parts)
         throw InputError("a step of " + io::format_number(dt) + " s is far above " +
                          io::format_number(stable_step) +
@@ -104,8 +103,9 @@ void World::place_tool(ToolId id, const Pose& pose) {
     if (tool.cut && parts_->cutter.is_in_tissue(*tool.cut))
         throw InputError("tool '" + tool.def.name +
                          "' is in the tissue: withdraw it before it is put elsewhere");
+    if (parts_->contact) parts_->contact->remove_tool(id.index);
     tool.is_present = true;
-    tool.is_leaving = false;
+    tool.is_leaving = tool.is_closed = false;
     tool.pose = tool.target = pose;
 }
 

@@ -192,9 +192,9 @@ class World {
     /// radius that is not above 0, and for a probe or a grasper in a world
     /// without contact.
     ToolId add_tool(ToolDef def);
-    /// Puts a tool at a pose immediately. The tool cuts nothing on the path to this pose, and a
-    /// withdrawal of it no longer holds.
-    /// Throws InputError if the tool is a blade whose cut ends in the tissue.
+    /// Puts a tool at a pose immediately. The tool cuts and pushes nothing on the path to this
+    /// pose, and a withdrawal of it no longer holds. A grasper opens its jaws. Throws InputError if
+    /// the tool is a blade whose cut ends in the tissue.
     void place_tool(ToolId tool, const Pose& pose);
     /// Sets the pose of the tool at the end of the next step. Without a call the tool does not
     /// move. A tool that was not present appears at this pose.

@@ -77,6 +77,7 @@ void World::Parts::save(ArchiveWriter& ar) const {
 
 /// Checks the tools that an archive contained, and computes the members that it does not contain.
 void World::Parts::prepare_tools() {
+    std::vector<const cutting::ToolShape*> shapes;
     if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
     for (std::size_t i = 0; i < tools.size(); ++i) {
         Tool& tool = tools[i];
@@ -89,7 +90,11 @@ void World::Parts::prepare_tools() {
         if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))
             throw InputError("the cut of a tool is not there");
         tool.surface = cutting::cut_surface_of(tool.def.shape);
+        shapes.push_back(&tool.def.shape);
+        if (cutting::feels_force(tool.def.shape) && !contact)
+            throw InputError("a tool needs contact, and it has none");
     }
+    if (contact) contact->require_tools(shapes);
 }
 
 namespace {

@@ -179,7 +179,8 @@ class Model {
     /// Returns the change of velocity by an impulse between kick() and drift(), times the mass of
     /// the node over the impulse: 1 without damping.
     double response_to_impulses() const { return response_to_impulses_; }
-    /// Returns the work of the impulses of the last step, J.
+    /// Returns the work of the impulses of the last step, J, with what they do on prescribed
+    /// components.
     double impulse_work() const { return impulse_work_; }
     /// Makes the second stage of the step: sets the positions and everything else. It throws as
     /// integrate() does.

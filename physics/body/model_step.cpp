@@ -192,8 +192,10 @@ void Model::drift(double time, double dt) {
             values.velocities[n] = step.v;
             const double square = step.v.squaredNorm();
             const double of_impulse = 0.5 * free_impulse.dot(previous_velocities_[n] + step.v);
+            // What impulses do on prescribed components is part of the work of the constraint.
+            const double of_prescribed = (impulse - free_impulse).dot(step.v);
             sums += StepSums{.work = step.work + outer.dot(step.x - x) + of_impulse,
-                             .impulse_work = of_impulse,
+                             .impulse_work = of_impulse + of_prescribed,
                              .mass_times_square = masses_[n] * square,
                              .largest_square = square};
         }

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/mesh_families.h"
 
 namespace incise::contact {
@@ -149,6 +151,31 @@ TEST(ContactSolver, AddsUpSharesOfANode) {
     nodes.apply(solver);
     EXPECT_NEAR(nodes.velocities[0].z(), 0.0, 1e-12);
     EXPECT_TRUE(solver.impulse(1).isZero(0.0));
+}
+
+TEST(ContactSolver, HoldsAPointUpToItsLargestForce) {
+    for (const double limit : {10.0, 0.25}) {  // of the velocity of a mass of 1 kg in a step
+        Nodes nodes;
+        nodes.add(1.0, {0.3, 0.0, -0.4});
+        ContactSolver solver(1.0);
+        ContactPoint point{.is_held = true};
+        point.largest_force = limit / one_step;
+        solver.begin(point);
+        solver.add_share(NodeId(0), 1.0);
+        nodes.apply(solver);
+        EXPECT_NEAR(nodes.velocities[0].norm(), std::max(0.0, 0.5 - limit), 1e-12);
+    }
+}
+
+// An impulse of the step before is forgotten where nothing can give way any more.
+TEST(ContactSolver, HoldsNothingThatIsPrescribed) {
+    Nodes nodes;
+    nodes.add_fixed();
+    ContactSolver solver(1.0);
+    solver.begin({.impulse = {1.0, 2.0, 3.0}, .is_held = true});
+    solver.add_share(NodeId(0), 1.0);
+    nodes.apply(solver);
+    EXPECT_TRUE(solver.impulse(0).isZero(0.0));
 }
 
 TEST(ContactSolver, RemovesOverlapsSlowly) {

@@ -382,6 +382,21 @@ TEST(ScenarioErrors, OfLoads) {
 }
 
 TEST(ScenarioErrors, OfTools) {
+    const std::string grasper =
+        "[[tool]]\nkind = \"grasper\"\nshape = { sphere = { radius = 0.1 } }\nclose = 0.1\n";
+    EXPECT_EQ(error_of(grasper + "path = [{ time = 0, at = [0, 0, 0] }]\n"),
+              "scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a grasper is there "
+              "from the first to the last");
+    EXPECT_EQ(
+        error_of(grasper + "open = 3\npath = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = "
+                           "[0, 0, 1] }]\n"),
+        "scene.toml:13:8: key 'tool[0].open': 3 is not allowed: must be within the path, from "
+        "0 to 1 s");
+    EXPECT_EQ(
+        error_of("[[obstacle]]\nshape = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] "
+                 "} }\n[contact]\nenabled = false\n"),
+        "scene.toml:9:1: key 'obstacle[0]': an obstacle touches tissue, but [contact] has "
+        "enabled = false");
     EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
               "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, "
               "probe, grasper");

@@ -150,6 +150,47 @@ TEST(Contact, OfAFastSmallBallIsNotMissed) {
               std::string::npos);
 }
 
+// A tool that is put elsewhere meets what is there, and jaws open on the way.
+TEST(Contact, OfAToolThatIsPlacedAnewIsWithWhatIsThere) {
+    auto [world, ball] = ball_above(0.0, 0.01);
+    world.step(0.5 * world.stable_step());
+    world.place_tool(ball, at({0.02, 0.08, size + 0.01}));
+    move_tool(world, ball, {0.02, 0.08, size + 0.006}, 0.1);
+    EXPECT_GT(world.report().tools[0].force.z(), 0.005);
+
+    const ToolId grasper = world.add_tool({"grasper", cutting::Grasper{cutting::Sphere{0.02}}});
+    world.place_tool(grasper, at({0.08, 0.02, size}));
+    EXPECT_GT(world.close_grasper(grasper), 0u);
+    world.place_tool(grasper, at({0.08, 0.02, 2.0 * size}));
+    EXPECT_FALSE(world.is_grasper_closed(grasper));
+    world.step(0.5 * world.stable_step());
+    EXPECT_EQ(world.report().tools[1].force, Vec3(Vec3::Zero()));
+}
+
+// Beside a lid that moves, points of contact depend on prescribed nodes: their work is the lid's.
+TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
+    WorldDef def = cube_at_rest();
+    def.damping = 20.0;
+    World world = held(World(std::move(def)));
+    physics::Constraint lid{.name = "lid"};
+    lid.nodes =
+        physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
+    lid.displacement =
+        physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.4, -0.1 * size * Vec3::UnitZ()}});
+    world.add_constraint(std::move(lid));
+    cut_along(world, {0.05, 0.05, 0.9 * size}, {0.0, 0.02, 1.0});
+    double work = 0.0;  // of the lid
+    for (int i = 0; i < 400; ++i) {
+        const double dt = 1e-3;
+        world.step(dt);
+        work += world.reaction(ConstraintId{1}).force.z() * -0.1 * size / 0.4 * dt;
+    }
+    EXPECT_GT(work, 1e-4);
+    EXPECT_NEAR(world.model().external_work(), work, 0.02 * work);
+    EXPECT_GT(world.report().contact.dissipation, -0.005 * work);
+    EXPECT_LT(world.report().contact.dissipation, 0.1 * work);
+}
+
 // Cut, pressed and slid, with impulses to begin with: the same bits after a pause, on two threads.
 TEST(Contact, GoesOnWithTheSameBitsAfterRestore) {
     const auto begin = [] {
