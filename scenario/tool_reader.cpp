@@ -68,23 +68,25 @@ std::optional<cutting::CarverShape> read_shape(const TableReader& shape) {
     return found;
 }
 
+/// Reads the key `shape` of a tool. Returns nothing if it is missing or faulty.
+std::optional<cutting::CarverShape> read_shape_of(const TableReader& tool) {
+    const auto shape = tool.table("shape", {shape_keys});
+    if (!shape) return std::nullopt;
+    shape->one_of({"sphere", "capsule", "box"});
+    return read_shape(*shape);
+}
+
 Carver read_carver(const TableReader& tool) {
     Carver carver;
-    const auto shape = tool.table("shape", {shape_keys});
-    if (!shape) return carver;
-    shape->one_of({"sphere", "capsule", "box"});
-    if (const auto found = read_shape(*shape)) carver.shape = *found;
+    if (const auto shape = read_shape_of(tool)) carver.shape = *shape;
     return carver;
 }
 
 cutting::Probe read_probe(const TableReader& tool) {
     cutting::Probe probe;
     probe.friction = tool.number("friction", probe.friction, limits::non_negative);
-    const auto shape = tool.table("shape", {shape_keys});
-    if (!shape) return probe;
-    shape->one_of({"sphere", "capsule", "box"});
-    if (const auto found = read_shape(*shape))
-        std::visit([&](const auto& one) { probe.shape = one; }, *found);
+    if (const auto shape = read_shape_of(tool))
+        std::visit([&](const auto& one) { probe.shape = one; }, *shape);
     return probe;
 }
 
@@ -115,10 +117,7 @@ GrasperSpec read_grasper(const TableReader& tool) {
         tool.error("open", format_number(*spec.open) +
                                " is not allowed: must be after 'close', at " +
                                format_number(spec.close) + " s");
-    const auto shape = tool.table("shape", {shape_keys});
-    if (!shape) return spec;
-    shape->one_of({"sphere", "capsule", "box"});
-    if (const auto found = read_shape(*shape)) spec.grasper.jaws = *found;
+    if (const auto shape = read_shape_of(tool)) spec.grasper.jaws = *shape;
     return spec;
 }
 

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "incise/contact/contact.h"
 #include "support/exact_plane.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
+#include "support/present_energy.h"
 
 namespace incise::contact {
 namespace {
@@ -55,19 +55,6 @@ struct Halves {
     }
 };
 
-/// Elastic and kinetic energy, J, with the velocities of the present: those of the model are half a
-/// step older.
-double energy_of(const Model& model, double dt) {
-    double energy = model.totals().elastic_energy;
-    for (std::size_t n = 0; n < model.masses().size(); ++n) {
-        const double mass = model.masses()[n];
-        if (mass == 0.0) continue;
-        const Vec3 v = model.velocities()[n] + 0.5 * dt / mass * model.elastic_forces()[n];
-        energy += 0.5 * mass * v.squaredNorm();
-    }
-    return energy;
-}
-
 void expect_sound_collision(std::uint64_t seed, double friction) {
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", friction " << friction);
     Halves halves(seed);
@@ -87,7 +74,7 @@ void expect_sound_collision(std::uint64_t seed, double friction) {
         contact.book_work(model);
         time += dt;
         model.compute_forces(time);
-        rest = energy_of(model, dt);
+        rest = test::present_energy(model, dt);
         most = std::max(most, rest);
         deepest = std::max(deepest, contact.max_penetration());
         num_points = std::max(num_points, contact.num_points());

@@ -56,18 +56,26 @@ TEST(Contact, ChangesNoBitUntilSomethingTouches) {
         ASSERT_EQ(a.positions()[n.index()], b.positions()[n.index()]);
 }
 
-/// The force on the bottom of a cube that is pressed by a tenth, its ends glued.
-double pressing_force(double friction, bool is_cut) {
-    WorldDef def = cube_at_rest(friction);
-    def.mesh = cube(6);
-    def.damping = 30.0;
+constexpr double pressed_by = 0.1 * size, pressed_in = 0.4;  // m, s
+
+/// A cube with its ends glued to the floor and to a lid, which presses it.
+World pressed(WorldDef def) {
     World world = held(World(std::move(def)));
     physics::Constraint lid{.name = "lid"};
     lid.nodes =
         physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
     lid.displacement =
-        physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.4, -0.1 * size * Vec3::UnitZ()}});
+        physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {pressed_in, -pressed_by * Vec3::UnitZ()}});
     world.add_constraint(std::move(lid));
+    return world;
+}
+
+/// The force on the bottom of a pressed cube.
+double pressing_force(double friction, bool is_cut) {
+    WorldDef def = cube_at_rest(friction);
+    def.mesh = cube(6);
+    def.damping = 30.0;
+    World world = pressed(std::move(def));
     if (is_cut) cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
     run_until(world, 1.2);
     return world.reaction(ConstraintId{0}).force.z();
@@ -171,19 +179,13 @@ TEST(Contact, OfAToolThatIsPlacedAnewIsWithWhatIsThere) {
 TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
     WorldDef def = cube_at_rest();
     def.damping = 20.0;
-    World world = held(World(std::move(def)));
-    physics::Constraint lid{.name = "lid"};
-    lid.nodes =
-        physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
-    lid.displacement =
-        physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.4, -0.1 * size * Vec3::UnitZ()}});
-    world.add_constraint(std::move(lid));
+    World world = pressed(std::move(def));
     cut_along(world, {0.05, 0.05, 0.9 * size}, {0.0, 0.02, 1.0});
     double work = 0.0;  // of the lid
     for (int i = 0; i < 400; ++i) {
         const double dt = 1e-3;
         world.step(dt);
-        work += world.reaction(ConstraintId{1}).force.z() * -0.1 * size / 0.4 * dt;
+        work += world.reaction(ConstraintId{1}).force.z() * -pressed_by / pressed_in * dt;
     }
     EXPECT_GT(work, 1e-4);
     EXPECT_NEAR(world.model().external_work(), work, 0.02 * work);

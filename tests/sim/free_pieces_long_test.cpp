@@ -8,6 +8,7 @@
 #include "incise/cutting/cutter.h"
 #include "incise/sim/world.h"
 #include "support/mesh_families.h"
+#include "support/present_energy.h"
 
 namespace incise::sim {
 namespace {
@@ -46,20 +47,6 @@ World stretched_and_cut(double jitter, std::uint64_t seed) {
     return world;
 }
 
-/// Returns the sum of elastic and kinetic energy, J, with the velocities of the present: those of
-/// the world are half a step older.
-double energy(const World& world, double dt) {
-    const physics::Model& model = world.model();
-    double energy = model.totals().elastic_energy;
-    for (std::size_t n = 0; n < model.masses().size(); ++n) {
-        const double mass = model.masses()[n];
-        if (mass == 0.0) continue;
-        const Vec3 v = model.velocities()[n] + 0.5 * dt / mass * model.elastic_forces()[n];
-        energy += 0.5 * mass * v.squaredNorm();
-    }
-    return energy;
-}
-
 class FreePieces : public testing::TestWithParam<int> {};
 
 TEST_P(FreePieces, KeepTheirEnergy) {
@@ -73,7 +60,7 @@ TEST_P(FreePieces, KeepTheirEnergy) {
             const double dt = 0.8 * world.stable_step();
             ASSERT_NO_THROW(world.step(dt));
             if (i % 50 != 0) continue;
-            const double now = energy(world, dt);
+            const double now = test::present_energy(world.model(), dt);
             if (i == 0) start = now;
             const int fifth = 5 * i / num_steps;
             if (fifth == 2) third += now;
