@@ -10,26 +10,60 @@
 
 namespace incise::contact {
 
+namespace {
+
+/// Returns the alternative of Contact::Tool::contact for a shape that feels a force.
+std::size_t kind_of(const cutting::ToolShape& shape) {
+    if (std::holds_alternative<cutting::Grasper>(shape)) return 1;
+    if (std::holds_alternative<cutting::Suture>(shape)) return 2;
+    return std::holds_alternative<cutting::Blade>(shape) ? 3 : 0;
+}
+
+}  // namespace
+
 void Contact::follow(const physics::Model& model, const topology::BoundarySurface& surface) {
     tissue_.know_surface(model, surface);
-    for (auto& [number, tool] : tools_) {
-        if (auto* rigid = std::get_if<RigidContact>(&tool.contact)) rigid->forget_surface();
-        if (auto* grasp = std::get_if<GraspContact>(&tool.contact)) grasp->follow(model);
-    }
+    for (auto& [number, tool] : tools_)
+        std::visit([&](auto& contact) { contact.follow(model); }, tool.contact);
 }
 
 Contact::Tool& Contact::tool_of(std::size_t tool, const cutting::ToolShape& shape) {
     const auto known = tools_.find(tool);
     if (known != tools_.end()) return known->second;
+    const auto come = [&](auto contact) -> Tool& {
+        return tools_.try_emplace(tool, Tool{std::move(contact)}).first->second;
+    };
     if (const auto* grasper = std::get_if<cutting::Grasper>(&shape))
-        return tools_.try_emplace(tool, Tool{GraspContact(*grasper, size())}).first->second;
-    return tools_.try_emplace(tool, Tool{RigidContact(std::get<cutting::Probe>(shape), size())})
-        .first->second;
+        return come(GraspContact(*grasper, size()));
+    if (const auto* suture = std::get_if<cutting::Suture>(&shape))
+        return come(SutureContact(*suture, size()));
+    if (const auto* blade = std::get_if<cutting::Blade>(&shape))
+        return come(BladeContact(*blade, size()));
+    return come(RigidContact(std::get<cutting::Probe>(shape), size()));
 }
 
 void Contact::move_tool(std::size_t tool, const cutting::ToolShape& shape, const Pose& before,
                         const Pose& after) {
     std::visit([&](auto& contact) { contact.move(before, after); }, tool_of(tool, shape).contact);
+}
+
+void Contact::move_blade(std::size_t tool, const cutting::Blade& blade, const physics::Model& model,
+                         const Pose& before, const Pose& after, const TissueAt& tissue_at) {
+    std::get<BladeContact>(tool_of(tool, blade).contact).move(model, before, after, tissue_at);
+}
+
+void Contact::tie(std::size_t tool, const cutting::Suture& suture, const physics::Model& model) {
+    std::get<SutureContact>(tool_of(tool, suture).contact).tie(model);
+}
+
+void Contact::draw(std::size_t tool, double before, double after) {
+    const auto it = tools_.find(tool);
+    if (it != tools_.end()) std::get<SutureContact>(it->second.contact).draw(before, after);
+}
+
+double Contact::thread_length(std::size_t tool) const {
+    const auto it = tools_.find(tool);
+    return it == tools_.end() ? 0.0 : std::get<SutureContact>(it->second.contact).length();
 }
 
 void Contact::close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
@@ -45,8 +79,10 @@ void Contact::open(std::size_t tool) {
 std::size_t Contact::num_held(std::size_t tool) const {
     const auto it = tools_.find(tool);
     if (it == tools_.end()) return 0;
-    const auto* grasp = std::get_if<GraspContact>(&it->second.contact);
-    return grasp ? grasp->num_held() : 0;
+    if (const auto* grasp = std::get_if<GraspContact>(&it->second.contact))
+        return grasp->num_held();
+    const auto* suture = std::get_if<SutureContact>(&it->second.contact);
+    return suture ? suture->num_held() : 0;
 }
 
 ToolImpulse Contact::take_impulse(std::size_t tool) {
@@ -57,17 +93,21 @@ ToolImpulse Contact::take_impulse(std::size_t tool) {
 bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
     solver_.clear();
     num_points_ = 0;
-    tool_work_ = 0.0;
+    tool_work_ = fracture_ = 0.0;
+    node_forces_.clear();
     tissue_.add_points(model, solver_);
     max_penetration_ = tissue_.max_penetration();
     for (auto& [number, tool] : tools_) {
-        if (auto* grasp = std::get_if<GraspContact>(&tool.contact)) {
-            grasp->add_points(model, dt, solver_);
-            continue;
+        std::visit(
+            [&](auto& contact) {
+                contact.add_points(model, tissue_.triangles(), dt, solver_);
+                max_penetration_ = std::max(max_penetration_, contact.max_penetration());
+            },
+            tool.contact);
+        if (const auto* blade = std::get_if<BladeContact>(&tool.contact)) {
+            tool.impulse += blade->reported();
+            fracture_energy_ += blade->reported().fracture;
         }
-        auto& rigid = std::get<RigidContact>(tool.contact);
-        rigid.add_points(model, tissue_.triangles(), dt, solver_);
-        max_penetration_ = std::max(max_penetration_, rigid.max_penetration());
     }
     return !solver_.is_empty();
 }
@@ -89,6 +129,7 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
             [&](auto& contact) { return contact.take_impulses(solver_, dt); }, tool.contact);
         tool.impulse += done;
         tool_work_ += done.work;
+        fracture_ += done.fracture;
     }
     impulses_.assign(masses.size(), Vec3::Zero());
     for (std::size_t i = 0; i < solver_.size(); ++i) {
@@ -97,26 +138,30 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
         for (const Share& share : solver_.shares(i))
             impulses_[share.node.index()] += share.weight * solver_.impulse(i);
     }
+    for (std::size_t t = 0; t < solver_.num_threads(); ++t)
+        for (const Pull& pull : solver_.pulls(t))
+            impulses_[pull.node.index()] -= solver_.thread_impulse(t) * pull.gradient;
     model.give_impulses(impulses_);
+    solver_.sum_surface_impulses(node_forces_);
+    for (auto& [node, force] : node_forces_) force /= dt;
 }
 
 void Contact::book_work(physics::Model& model) {
     const double loss = tool_work_ - model.impulse_work();
     model.record_work(loss, loss);
-    dissipation_ += loss;
+    dissipation_ += loss - fracture_;
+    fracture_energy_ += fracture_;
 }
 
 void Contact::require_tools(std::span<const cutting::ToolShape* const> shapes) const {
-    for (const auto& [number, tool] : tools_) {
-        const bool is_grasp = std::holds_alternative<GraspContact>(tool.contact);
+    for (const auto& [number, tool] : tools_)
         if (number >= shapes.size() || !cutting::feels_force(*shapes[number]) ||
-            is_grasp != std::holds_alternative<cutting::Grasper>(*shapes[number]))
+            kind_of(*shapes[number]) != tool.contact.index())
             throw InputError("its contact has tools that it does not have");
-    }
 }
 
 void Contact::save(ArchiveWriter& ar) const {
-    ar(dissipation_, num_points_, max_penetration_);
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces_);
     tissue_.save(ar);
     ar(static_cast<std::uint64_t>(tools_.size()));
     for (const auto& [number, tool] : tools_) {
@@ -127,21 +172,26 @@ void Contact::save(ArchiveWriter& ar) const {
 
 void Contact::restore(ArchiveReader& ar, const physics::Model& model,
                       const topology::BoundarySurface& surface) {
-    ar(dissipation_, num_points_, max_penetration_);
-    if (!std::isfinite(dissipation_)) throw InputError("its contact has no sound energy");
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces_);
+    if (!std::isfinite(dissipation_) || !std::isfinite(fracture_energy_))
+        throw InputError("its contact has no sound energy");
+    for (const auto& [node, force] : node_forces_)
+        if (!node.is_valid() || node.index() >= model.mesh().node_capacity() || !force.allFinite())
+            throw InputError("its contact has forces on another body");
     tissue_.restore(ar, model, surface);
     solver_ = ContactSolver(tissue_.size());
     for (auto count = ar.read<std::uint64_t>(); count > 0; --count) {
         const auto number = ar.read<std::uint64_t>();
-        if (ar.read<std::uint64_t>() == 0) {
-            RigidContact rigid({}, size());
-            rigid.restore(ar, tissue_.triangles().size());
-            tools_.insert_or_assign(number, Tool{std::move(rigid)});
-        } else {
-            GraspContact grasp({}, size());
-            grasp.restore(ar, model);
-            tools_.insert_or_assign(number, Tool{std::move(grasp)});
-        }
+        const auto kind = ar.read<std::uint64_t>();
+        const auto come = [&](auto contact, const auto&... arguments) {
+            contact.restore(ar, arguments...);
+            tools_.insert_or_assign(number, Tool{std::move(contact)});
+        };
+        if (kind == 0) come(RigidContact({}, size()), tissue_.triangles().size());
+        if (kind == 1) come(GraspContact({}, size()), model);
+        if (kind == 2) come(SutureContact({}, size()), model);
+        if (kind == 3) come(BladeContact({}, size()));
+        if (kind > 3) throw InputError("its contact has a tool of an unknown kind");
     }
 }
 

@@ -6,13 +6,16 @@
 #include <cstddef>
 #include <map>
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "incise/contact/blade_contact.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/grasp_contact.h"
 #include "incise/contact/rigid_contact.h"
 #include "incise/contact/surface_contact.h"
+#include "incise/contact/suture_contact.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/boundary_surface.h"
 
@@ -35,11 +38,20 @@ class Contact final : public physics::VelocityProjection {
     /// @param tool  its number
     void move_tool(std::size_t tool, const cutting::ToolShape& shape, const Pose& before,
                    const Pose& after);
+    /// The same for a blade that feels a force.
+    void move_blade(std::size_t tool, const cutting::Blade& blade, const physics::Model& model,
+                    const Pose& before, const Pose& after, const TissueAt& tissue_at);
+    /// Passes a thread through the tissue.
+    void tie(std::size_t tool, const cutting::Suture& suture, const physics::Model& model);
+    /// Sets the length of a thread at the beginning and at the end of the next step, m.
+    void draw(std::size_t tool, double before, double after);
+    /// Returns the length of a thread without tension, m.
+    double thread_length(std::size_t tool) const;
     /// Closes or opens the jaws of a grasper.
     void close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
                const Pose& pose);
     void open(std::size_t tool);
-    /// Returns how many points a grasper holds.
+    /// Returns how many points a grasper holds, or a thread passes through.
     std::size_t num_held(std::size_t tool) const;
     /// Takes a tool away.
     void remove_tool(std::size_t tool) { tools_.erase(tool); }
@@ -60,6 +72,12 @@ class Contact final : public physics::VelocityProjection {
     double max_penetration() const { return max_penetration_; }
     /// Returns the energy that contact has taken since the start, J.
     double dissipation() const { return dissipation_; }
+    /// Returns the energy that it has taken to cut since the start, as far as blades have a
+    /// toughness, J. It is part of the balance of energy if the force of cutting is applied.
+    double fracture_energy() const { return fracture_energy_; }
+    /// Returns what the points of contact exerted in the last step, N, at the nodes of the mesh at
+    /// which it is not zero, in ascending order of the nodes.
+    const std::vector<std::pair<NodeId, Vec3>>& node_forces() const { return node_forces_; }
     const ContactSolver& solver() const { return solver_; }
 
     void save(ArchiveWriter& ar) const;
@@ -73,7 +91,7 @@ class Contact final : public physics::VelocityProjection {
 
   private:
     struct Tool {
-        std::variant<RigidContact, GraspContact> contact;
+        std::variant<RigidContact, GraspContact, SutureContact, BladeContact> contact;
         ToolImpulse impulse = {};
     };
     Tool& tool_of(std::size_t tool, const cutting::ToolShape& shape);
@@ -81,9 +99,12 @@ class Contact final : public physics::VelocityProjection {
     std::map<std::size_t, Tool> tools_;
     ContactSolver solver_{tissue_.size()};
     std::size_t num_points_ = 0;
-    double max_penetration_ = 0.0;                 // m
-    double tool_work_ = 0.0;                       // of the last step, J
-    double dissipation_ = 0.0;                     // J
+    double max_penetration_ = 0.0;  // m
+    double tool_work_ = 0.0;        // of the last step, J
+    double fracture_ = 0.0;         // of the last step, within the balance, J
+    double dissipation_ = 0.0;      // J
+    double fracture_energy_ = 0.0;  // J
+    std::vector<std::pair<NodeId, Vec3>> node_forces_;
     std::vector<Vec3> inverse_masses_, impulses_;  // scratch, by node of the fragments
 };
 

@@ -22,6 +22,11 @@ void ContactSolver::clear() {
     shares_.clear();
     impulses_.clear();
     std::ranges::fill(share_of_node_, -1);
+    surface_shares_.clear();
+    threads_.clear();
+    thread_begins_.clear();
+    pulls_.clear();
+    thread_impulses_.clear();
 }
 
 void ContactSolver::begin(const ContactPoint& point) {
@@ -40,20 +45,76 @@ void ContactSolver::add_share(NodeId node, double weight) {
     shares_.push_back({node, weight});
 }
 
+void ContactSolver::begin_thread(const Thread& thread) {
+    threads_.push_back(thread);
+    thread_begins_.push_back(pulls_.size());
+}
+
+void ContactSolver::add_pull(NodeId node, const Vec3& gradient) {
+    for (std::size_t p = thread_begins_.back(); p < pulls_.size(); ++p)
+        if (pulls_[p].node == node) {
+            pulls_[p].gradient += gradient;
+            return;
+        }
+    pulls_.push_back({node, gradient});
+}
+
+std::span<const Pull> ContactSolver::pulls(std::size_t thread) const {
+    const std::size_t begin = thread_begins_[thread];
+    const std::size_t end =
+        thread + 1 < thread_begins_.size() ? thread_begins_[thread + 1] : pulls_.size();
+    return std::span(pulls_).subspan(begin, end - begin);
+}
+
+void ContactSolver::sum_surface_impulses(std::vector<std::pair<NodeId, Vec3>>& sums) const {
+    sums.clear();
+    for (const auto& [point, share] : surface_shares_)
+        if (const Vec3& impulse = impulses_[point]; !impulse.isZero(0.0))
+            sums.emplace_back(share.node, share.weight * impulse);
+    std::ranges::stable_sort(sums, {}, &std::pair<NodeId, Vec3>::first);
+    std::size_t count = 0;
+    for (const auto& [node, impulse] : sums) {
+        if (count > 0 && sums[count - 1].first == node)
+            sums[count - 1].second += impulse;
+        else
+            sums[count++] = {node, impulse};
+    }
+    sums.resize(count);
+}
+
+Vec3 ContactSolver::velocity(std::size_t i) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t s = begins_[i], end = s + shares(i).size(); s < end; ++s)
+        sum += local_shares_[s].weight * nodes_[local_shares_[s].node].velocity;
+    return sum;
+}
+
+double ContactSolver::lengthening(std::size_t thread) const {
+    double sum = 0.0;
+    for (std::size_t p = thread_begins_[thread], end = p + pulls(thread).size(); p < end; ++p)
+        sum += pulls_[p].gradient.dot(nodes_[local_pulls_[p]].velocity);
+    return sum;
+}
+
 void ContactSolver::number_nodes(std::span<const Vec3> velocities,
                                  std::span<const Vec3> inverse_masses) {
     local_of_node_.resize(velocities.size(), -1);
     nodes_.clear();
     local_shares_.clear();
-    for (const Share& share : shares_) {
-        const std::size_t n = share.node.index();
+    local_pulls_.clear();
+    const auto number_of = [&](NodeId node) {
+        const std::size_t n = node.index();
         if (local_of_node_[n] < 0) {
             local_of_node_[n] = static_cast<std::int32_t>(nodes_.size());
             nodes_.push_back({velocities[n], inverse_masses[n]});
         }
-        local_shares_.push_back({static_cast<std::uint32_t>(local_of_node_[n]), share.weight});
-    }
+        return static_cast<std::uint32_t>(local_of_node_[n]);
+    };
+    for (const Share& share : shares_)
+        local_shares_.push_back({number_of(share.node), share.weight});
+    for (const Pull& pull : pulls_) local_pulls_.push_back(number_of(pull.node));
     for (const Share& share : shares_) local_of_node_[share.node.index()] = -1;
+    for (const Pull& pull : pulls_) local_of_node_[pull.node.index()] = -1;
 }
 
 /// Lists the points that can give way.
@@ -87,6 +148,7 @@ void ContactSolver::make_rows(double dt, double rest_step) {
                              : std::max(correction * point.gap, -largest_correction_) / rest_step;
         rows_.push_back(
             {i, begin, end, along_normal, softness.maxCoeff(), approach, rounding_of_length_ / dt});
+        rows_.back().largest_impulse = point.largest_force * dt;
     }
 }
 
@@ -111,7 +173,8 @@ void ContactSolver::relax(Row& row) {
         relative += local_shares_[s].weight * nodes_[local_shares_[s].node].velocity;
     const double parting = relative.dot(point.normal);
     const double before = row.normal_impulse;
-    const double normal = std::max(0.0, before - (parting + row.allowed) / row.along_normal);
+    const double normal =
+        std::clamp(before - (parting + row.allowed) / row.along_normal, 0.0, row.largest_impulse);
     if (before == 0.0 && parting + row.allowed > -row.rounding) return;
     Vec3 impulse = normal * point.normal;
     if (point.friction > 0.0) {
@@ -134,7 +197,7 @@ void ContactSolver::begin_with_impulse(Row& row) {
         const Vec3 start = (row.softness.array() > 0.0).select(share * point.impulse, 0.0);
         return change_impulse(row, start);
     }
-    row.normal_impulse = std::max(0.0, point.impulse.dot(point.normal));
+    row.normal_impulse = std::clamp(point.impulse.dot(point.normal), 0.0, row.largest_impulse);
     if (row.normal_impulse == 0.0) return;
     Vec3 tangential = point.impulse - point.impulse.dot(point.normal) * point.normal;
     const double most = point.friction * row.normal_impulse, length = tangential.norm();
@@ -152,14 +215,52 @@ void ContactSolver::change_impulse(const Row& row, const Vec3& to) {
     known = to;
 }
 
+void ContactSolver::make_thread_rows(double dt) {
+    thread_rows_.clear();
+    for (std::size_t t = 0; t < threads_.size(); ++t) {
+        const Thread& thread = threads_[t];
+        const std::size_t begin = thread_begins_[t], end = begin + pulls(t).size();
+        double softness = 0.0;
+        for (std::size_t p = begin; p < end; ++p)
+            softness += pulls_[p].gradient.cwiseAbs2().dot(nodes_[local_pulls_[p]].inverse_mass);
+        thread_rows_.push_back({begin, end, softness, 1.0 / (thread.stiffness * dt * dt),
+                                thread.stretch / dt - thread.rest_rate, thread.largest_force * dt});
+    }
+}
+
+/// Makes the tension that of the length that the thread then has at the end of the step.
+void ContactSolver::relax_thread(std::size_t thread) {
+    const ThreadRow& row = thread_rows_[thread];
+    const double known = thread_impulses_[thread];
+    const double missing = row.drift + lengthening(thread) - row.own_softness * known;
+    change_thread_impulse(thread, std::clamp(known + missing / (row.softness + row.own_softness),
+                                             0.0, row.largest_impulse));
+}
+
+void ContactSolver::change_thread_impulse(std::size_t thread, double to) {
+    const ThreadRow& row = thread_rows_[thread];
+    const double change = to - thread_impulses_[thread];
+    for (std::size_t p = row.begin; p < row.end; ++p) {
+        Node& node = nodes_[local_pulls_[p]];
+        node.velocity -= change * node.inverse_mass.cwiseProduct(pulls_[p].gradient);
+    }
+    thread_impulses_[thread] = to;
+}
+
 void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses,
                           double dt, double rest_step) {
     number_nodes(velocities, inverse_masses);
     impulses_.assign(points_.size(), Vec3::Zero());
+    thread_impulses_.assign(threads_.size(), 0.0);
     make_rows(dt, rest_step);
+    make_thread_rows(dt);
     for (Row& row : rows_) begin_with_impulse(row);
-    for (int sweep = 0; sweep < num_sweeps; ++sweep)
+    for (std::size_t t = 0; t < threads_.size(); ++t)
+        change_thread_impulse(t, std::min(threads_[t].impulse, thread_rows_[t].largest_impulse));
+    for (int sweep = 0; sweep < num_sweeps; ++sweep) {
         for (Row& row : rows_) relax(row);
+        for (std::size_t t = 0; t < threads_.size(); ++t) relax_thread(t);
+    }
 }
 
 }  // namespace incise::contact

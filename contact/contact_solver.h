@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "incise/base/types.h"
@@ -31,10 +32,27 @@ struct ContactPoint {
     /// `offset` is what it is now, m, and normal, gap and friction have no meaning.
     bool is_held = false;
     Vec3 offset = Vec3::Zero();
-    double largest_force = std::numeric_limits<double>::infinity();  ///< of a point that is held, N
+    /// Above it a point that is held slips, and another one is passed through, N.
+    double largest_force = std::numeric_limits<double>::infinity();
 };
 
-/// The points of contact of a step, and their impulses.
+/// A thread through points of bodies. Its length is a function of the positions of nodes, and it
+/// bears tension only.
+struct Thread {
+    double stretch = 0.0;    ///< length beyond that at rest, m; below 0: it is slack
+    double rest_rate = 0.0;  ///< at which its length at rest grows, m/s; below 0: it is drawn
+    double stiffness = 0.0;  ///< N/m, above 0
+    double largest_force = std::numeric_limits<double>::infinity();  ///< N
+    double impulse = 0.0;  ///< tension times time in the step before, N s: where the search begins
+};
+
+/// What moves the length of a thread: the derivative by the position of a node.
+struct Pull {
+    NodeId node;
+    Vec3 gradient = Vec3::Zero();
+};
+
+/// The points of contact and the threads of a step, and their impulses.
 class ContactSolver {
   public:
     /// @param size  mean length of an element, m. An approach by a trillionth of it in a step is
@@ -44,13 +62,22 @@ class ContactSolver {
     explicit ContactSolver(double size)
         : rounding_of_length_(1e-12 * size), largest_correction_(1e-3 * size) {}
 
-    /// Forgets all points.
+    /// Forgets all points and threads.
     void clear();
     /// Begins a point; its shares follow.
     void begin(const ContactPoint& point);
     /// Adds a share to the last point. Several shares of one node become one.
     void add_share(NodeId node, double weight);
-    bool is_empty() const { return points_.empty(); }
+    /// Notes that a node of the surface has such a weight in the last point. It is for
+    /// sum_surface_impulses() alone.
+    void note_surface_node(NodeId node, double weight) {
+        surface_shares_.push_back({points_.size() - 1, {node, weight}});
+    }
+    /// Begins a thread; its pulls follow.
+    void begin_thread(const Thread& thread);
+    /// Adds a pull to the last thread. Several pulls at one node become one.
+    void add_pull(NodeId node, const Vec3& gradient);
+    bool is_empty() const { return points_.empty() && threads_.empty(); }
     std::size_t size() const { return points_.size(); }
     const ContactPoint& point(std::size_t i) const { return points_[i]; }
     std::span<const Share> shares(std::size_t i) const {
@@ -61,8 +88,10 @@ class ContactSolver {
     /// Finds impulses such that gaps that are open do not become negative in the step, and overlaps
     /// shrink by a tenth of their depth in a stable step at rest, or
     /// less. Makes four sweeps of the method of Gauss and Seidel in the
-    /// order of the points, and begins with the impulses of the step before. Linear momentum is
-    /// kept to rounding: an impulse acts on the shares of a point by their weights.
+    /// order of the points and then of the threads, and begins with the impulses of the step
+    /// before. Linear momentum is kept to rounding: an impulse acts on the shares of a point by
+    /// their weights. The tension of a thread is that at the end of the step, so that no stiffness
+    /// is too large for the step.
     /// @param velocities      by node, at the end of the step without contact, m/s
     /// @param inverse_masses  by node and component, 1/kg; 0 for what is prescribed
     /// @param dt              s
@@ -72,6 +101,18 @@ class ContactSolver {
 
     /// Returns the impulse of point `i`, N s. It acts on shares by their weights.
     const Vec3& impulse(std::size_t i) const { return impulses_[i]; }
+    /// Sums what the points exert on the nodes of the surface, N s, where it is not zero, in
+    /// ascending order of the nodes.
+    void sum_surface_impulses(std::vector<std::pair<NodeId, Vec3>>& sums) const;
+    /// Returns the relative velocity of the shares of point `i` after solve(), m/s.
+    Vec3 velocity(std::size_t i) const;
+
+    std::size_t num_threads() const { return threads_.size(); }
+    std::span<const Pull> pulls(std::size_t thread) const;
+    /// Returns the tension of a thread times the step, N s.
+    double thread_impulse(std::size_t thread) const { return thread_impulses_[thread]; }
+    /// Returns the rate at which the length of a thread grows after solve(), m/s.
+    double lengthening(std::size_t thread) const;
 
   private:
     /// A node of shares, while the impulses are found.
@@ -91,7 +132,15 @@ class ContactSolver {
         double normal_impulse = 0.0;     // N s
         Vec3 softness = Vec3::Zero();    // of a point that is held: by component, 1/kg
         Vec3 drift = Vec3::Zero();       // of the same: velocity that removes its offset, m/s
-        double largest_impulse = 0.0;    // of the same, N s
+        double largest_impulse = 0.0;    // N s
+    };
+    /// The same for a thread.
+    struct ThreadRow {
+        std::size_t begin, end;  // of its pulls
+        double softness;         // change of the lengthening by an impulse, 1/kg
+        double own_softness;     // of the thread itself, 1/kg
+        double drift;            // lengthening that its stretch and the hand ask for, m/s
+        double largest_impulse;  // N s
     };
     void number_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
     void make_rows(double dt, double rest_step);
@@ -99,18 +148,29 @@ class ContactSolver {
     void relax(Row& row);
     void relax_held(Row& row);
     void change_impulse(const Row& row, const Vec3& to);
+    void make_thread_rows(double dt);
+    void relax_thread(std::size_t thread);
+    void change_thread_impulse(std::size_t thread, double to);
 
     double rounding_of_length_, largest_correction_;
     std::vector<ContactPoint> points_;
     std::vector<std::size_t> begins_;  // by point, of its shares
     std::vector<Share> shares_;
-    std::vector<std::int64_t> share_of_node_;  // by node, the last share of it
+    std::vector<std::int64_t> share_of_node_;                    // by node, the last share of it
+    std::vector<std::pair<std::size_t, Share>> surface_shares_;  // with their points
     std::vector<Vec3> impulses_;
     // Scratch of solve().
     std::vector<std::int32_t> local_of_node_;  // by node; -1 between calls
     std::vector<Node> nodes_;
     std::vector<LocalShare> local_shares_;
     std::vector<Row> rows_;
+    // Threads.
+    std::vector<Thread> threads_;
+    std::vector<std::size_t> thread_begins_;  // by thread, of its pulls
+    std::vector<Pull> pulls_;
+    std::vector<std::uint32_t> local_pulls_;  // by pull, number in nodes_
+    std::vector<double> thread_impulses_;
+    std::vector<ThreadRow> thread_rows_;  // by thread
 };
 
 }  // namespace incise::contact

@@ -79,7 +79,8 @@ void GraspContact::follow(const physics::Model& model) {
     });
 }
 
-void GraspContact::add_points(const physics::Model& model, double dt, ContactSolver& solver) {
+void GraspContact::add_points(const physics::Model& model, std::span<const Triangle> /*surface*/,
+                              double dt, ContactSolver& solver) {
     const std::span<const Vec3> positions = model.mesh_positions();
     first_point_ = solver.size();
     for (Held& held : held_) {

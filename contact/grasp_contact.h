@@ -43,11 +43,13 @@ class GraspContact {
 
     /// Adds the points that are held to the solver.
     /// @param dt  s
-    void add_points(const physics::Model& model, double dt, ContactSolver& solver);
+    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+                    ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added, and returns what the jaws exert by
     /// them.
     /// @param dt  s
     ToolImpulse take_impulses(const ContactSolver& solver, double dt);
+    double max_penetration() const { return 0.0; }
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.

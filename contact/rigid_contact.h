@@ -34,7 +34,7 @@ class RigidContact {
         after_ = after;
     }
     /// Takes note of an edit of the surface.
-    void forget_surface() { room_ = -1.0; }
+    void follow(const physics::Model&) { room_ = -1.0; }
 
     /// Finds the points of contact at the present positions, and adds them to the solver.
     /// Cost: that of the triangles near the tool. Now and then, when tool and tissue have moved by

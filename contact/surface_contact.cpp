@@ -30,6 +30,7 @@ constexpr double rounding = 1e-10;
 }  // namespace
 
 void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver) {
+    solver.note_surface_node(n, weight);
     const topology::Embedding& at = model.embedded_nodes()[n];
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
         solver.add_share(at.nodes[k], weight * at.weights[k]);

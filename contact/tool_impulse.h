@@ -10,11 +10,13 @@ namespace incise::contact {
 struct ToolImpulse {
     Vec3 force = Vec3::Zero();   ///< N s
     Vec3 torque = Vec3::Zero();  ///< N m s, about the origin of the tool
-    double work = 0.0;           ///< J
+    double work = 0.0;           ///< on the tissue, J
+    double fracture = 0.0;       ///< energy that it took to cut, J
     ToolImpulse& operator+=(const ToolImpulse& other) {
         force += other.force;
         torque += other.torque;
         work += other.work;
+        fracture += other.fracture;
         return *this;
     }
 };

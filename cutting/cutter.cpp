@@ -51,6 +51,27 @@ void Cutter::end_motion(const Mesh& mesh, std::span<const Vec3> positions, doubl
     boxes_.move(mesh, positions, largest_move);
 }
 
+std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
+                                                     std::span<const Vec3> positions, const Vec3& x,
+                                                     double moved) {
+    boxes_.refresh(mesh, positions);
+    const Box near(x - Vec3::Constant(moved), x + Vec3::Constant(moved));
+    std::optional<topology::CellPoint> found;
+    boxes_.for_each_near(
+        mesh, [&](const Box& box) { return box.intersects(near); },
+        [&](ElementId e) {
+            if (found) return;
+            Box box;
+            for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+            if (!box.contains(x)) return;
+            constexpr double rounding = 1e-9;  // of the size of the element
+            const topology::CellPoint point = topology::point_near(mesh, e, positions, x);
+            if ((point.position(mesh, positions) - x).norm() <= rounding * box.diagonal().norm())
+                found = point;
+        });
+    return found;
+}
+
 CutId Cutter::begin_cut(double snap) {
     const auto unused = std::ranges::find(cuts_, false, &Cut::is_in_use);
     const CutId id{static_cast<std::size_t>(unused - cuts_.begin())};

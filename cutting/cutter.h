@@ -12,6 +12,7 @@
 #include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
+#include "incise/topology/cell_point.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
@@ -54,6 +55,13 @@ class Cutter {
     /// Cost: O(n) when boxes are rebuilt, else O(1).
     void end_motion(const topology::Mesh& mesh, std::span<const Vec3> positions,
                     double largest_move);
+
+    /// Returns the point of the tissue that lies at `x`, m; nothing if there is none.
+    /// @param moved  how far a node may have moved since the last end_motion(), m
+    /// Cost: O(n / 1000), and that of the elements near `x`.
+    std::optional<topology::CellPoint> tissue_at(const topology::Mesh& mesh,
+                                                 std::span<const Vec3> positions, const Vec3& x,
+                                                 double moved);
 
     /// Begins a cut of a blade. Calls of split() continue the cut. For `snap`, see SplitOptions.
     CutId begin_cut(double snap);

@@ -83,12 +83,18 @@ void World::Parts::require_sound_pose(ToolId id, const Pose& pose) const {
                          "': its pose must have a finite position, m, and a rotation of length 1");
 }
 
+void World::Parts::require_pose(ToolId id) const {
+    if (std::holds_alternative<cutting::Suture>(tools[id.index].def.shape))
+        throw InputError("tool '" + tools[id.index].def.name +
+                         "' is a suture, which has no pose: use tie_suture()");
+}
+
 ToolId World::add_tool(ToolDef def) {
     require_sound(def);
     Parts& p = *parts_;
     if (cutting::feels_force(def.shape) && !p.contact)
         throw InputError("tool '" + def.name +
-                         "' touches tissue: it needs the explicit solver, with contact enabled");
+                         "' exerts a force: it needs the explicit solver, with contact enabled");
     Parts::Tool tool{std::move(def)};
     tool.surface = cutting::cut_surface_of(tool.def.shape);
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
@@ -100,6 +106,7 @@ ToolId World::add_tool(ToolDef def) {
 void World::place_tool(ToolId id, const Pose& pose) {
     Parts::Tool& tool = parts_->tool_of(id);
     parts_->require_sound_pose(id, pose);
+    parts_->require_pose(id);
     if (tool.cut && parts_->cutter.is_in_tissue(*tool.cut))
         throw InputError("tool '" + tool.def.name +
                          "' is in the tissue: withdraw it before it is put elsewhere");
@@ -112,6 +119,7 @@ void World::place_tool(ToolId id, const Pose& pose) {
 void World::set_tool_pose(ToolId id, const Pose& pose) {
     Parts::Tool& tool = parts_->tool_of(id);
     parts_->require_sound_pose(id, pose);
+    parts_->require_pose(id);
     if (!tool.is_present) tool.pose = pose;
     tool.is_present = true;
     tool.target = pose;
@@ -151,6 +159,50 @@ void World::open_grasper(ToolId id) {
 }
 
 bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed; }
+const cutting::Suture& World::Parts::suture_of(ToolId id) {
+    const Tool& tool = tool_of(id);
+    const auto* suture = std::get_if<cutting::Suture>(&tool.def.shape);
+    if (!suture) throw InputError("tool '" + tool.def.name + "' is no suture");
+    return *suture;
+}
+
+std::size_t World::tie_suture(ToolId id) {
+    Parts& p = *parts_;
+    p.contact->tie(id.index, p.suture_of(id), p.model);
+    Parts::Tool& tool = p.tool_of(id);
+    tool.is_present = true;
+    tool.is_leaving = false;
+    tool.length = tool.target_length = p.contact->thread_length(id.index);
+    return p.contact->num_held(id.index);
+}
+
+void World::set_suture_length(ToolId id, double length) {
+    parts_->suture_of(id);
+    Parts::Tool& tool = parts_->tool_of(id);
+    if (!tool.is_present) throw InputError("suture '" + tool.def.name + "' is not tied");
+    if (!(length >= 0.0 && std::isfinite(length)))
+        throw InputError("suture '" + tool.def.name + "': a length of " +
+                         io::format_number(length) + " m: it must be 0 or more");
+    tool.target_length = length;
+}
+
+double World::suture_length(ToolId id) const {
+    parts_->suture_of(id);
+    const Parts::Tool& tool = parts_->tool_of(id);
+    return tool.is_present ? tool.length : 0.0;
+}
+
+void World::untie_suture(ToolId id) {
+    parts_->suture_of(id);
+    parts_->contact->remove_tool(id.index);
+    parts_->tool_of(id).is_present = false;
+}
+
+bool World::is_suture_tied(ToolId id) const {
+    parts_->suture_of(id);
+    return parts_->tool_of(id).is_present && parts_->contact->num_held(id.index) >= 2;
+}
+
 bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present; }
 Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
 const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }

@@ -97,8 +97,10 @@ struct ToolState {
     ToolId tool;
     Pose pose;
     bool is_in_tissue = false;  ///< true if the tool splits elements and its cut ends inside one
-    /// What the tissue exerts on a probe or a grasper, mean over the step: force, N, and torque
-    /// about the origin of the tool at the end of the step, N m. Zero for other tools.
+    /// What the tissue exerts on a tool, mean over the step: force, N, and torque about the origin
+    /// of the tool at the end of the step, N m. For a suture, the force on its thread at its first
+    /// point, whose length is the tension, and no torque. Zero for carvers, cuts, and blades
+    /// without a toughness.
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
@@ -107,6 +109,7 @@ struct ContactState {
     std::size_t num_points = 0;    ///< points of contact with an impulse
     double max_penetration = 0.0;  ///< largest overlap before the step, m
     double dissipation = 0.0;      ///< energy that contact has taken since the start, J
+    double fracture_energy = 0.0;  ///< see contact::Contact::fracture_energy(), J
 };
 
 /// The report of one step.
@@ -114,8 +117,7 @@ struct StepReport {
     double from = 0.0, to = 0.0;  ///< s
     std::size_t num_parts = 1;    ///< explicit steps that the step was divided into
     std::vector<Edit> edits;      ///< in order of execution
-    /// Those present at the end of the step, and probes and graspers that were withdrawn at its
-    /// end.
+    /// Those present at the end of the step, and those with a force that were withdrawn at its end.
     std::vector<ToolState> tools;
     ContactState contact;  ///< in the last part of the step
 };
@@ -214,6 +216,20 @@ class World {
     void open_grasper(ToolId tool);
     /// True from close_grasper() to open_grasper(), also if all tissue has slipped out of the jaws.
     bool is_grasper_closed(ToolId tool) const;
+    /// Passes the thread of a suture through its points, at the present positions of the tissue
+    /// there. The thread is then as long as its way. Returns through how many points it passes:
+    /// points without tissue in reach are left out. Throws InputError if the tool is no suture.
+    std::size_t tie_suture(ToolId tool);
+    /// Sets the length that a thread has without tension at the end of the next step, m. Throws
+    /// InputError if the tool is no suture, is not tied, or for a length below 0.
+    void set_suture_length(ToolId tool, double length);
+    /// Returns the length of a thread without tension, m; 0 if it is not tied.
+    double suture_length(ToolId tool) const;
+    /// Takes a thread out of the tissue. Throws InputError if the tool is no suture.
+    void untie_suture(ToolId tool);
+    /// True from tie_suture() to untie_suture(), until the thread has torn or an edit has left it
+    /// fewer than two points.
+    bool is_suture_tied(ToolId tool) const;
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
@@ -281,7 +297,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 10;
+    static constexpr std::uint32_t state_format = 11;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are

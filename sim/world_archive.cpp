@@ -85,6 +85,9 @@ void World::Parts::prepare_tools() {
         require_sound_pose({i}, tool.pose);
         require_sound_pose({i}, tool.target);
         if (tool.pose_before_end) require_sound_pose({i}, *tool.pose_before_end);
+        if (!(tool.length >= 0.0 && tool.target_length >= 0.0 &&
+              std::isfinite(tool.length + tool.target_length)))
+            throw InputError("the length of a thread is not sound");
         const auto* blade = std::get_if<Blade>(&tool.def.shape);
         const bool splits = blade && blade->mode == CutMode::split;
         if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))

@@ -107,7 +107,31 @@ struct FaultOfShape {
         if (!std::ranges::all_of(blade.edge, is_finite)) return "a point of its edge is not finite";
         if (std::ranges::adjacent_find(blade.edge) != blade.edge.end())
             return "two points of its edge that follow each other are the same";
+        if (!(blade.toughness >= 0.0 && std::isfinite(blade.toughness)))
+            return "its toughness is " + io::format_number(blade.toughness) +
+                   " J/m2: it must be 0 or more";
+        if (blade.cutting_force != cutting::CuttingForce::report &&
+            blade.cutting_force != cutting::CuttingForce::apply)
+            return "there is no such cutting force";
+        if (blade.cutting_force == cutting::CuttingForce::apply && blade.toughness == 0.0)
+            return "its cutting force is applied: it needs a toughness above 0";
         return fault_of_snap(blade.snap);
+    }
+    std::string operator()(const cutting::Suture& suture) const {
+        if (suture.points.size() < 2)
+            return "a suture needs at least 2 points, and has " +
+                   std::to_string(suture.points.size());
+        if (!std::ranges::all_of(suture.points, is_finite))
+            return "a point of its thread is not finite";
+        if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
+            return "its stiffness is " + io::format_number(suture.stiffness) +
+                   " N/m: it must be above 0";
+        if (!(suture.max_force > 0.0))
+            return "its largest force is " + io::format_number(suture.max_force) +
+                   " N: it must be above 0";
+        if (!(suture.reach >= 0.0 && std::isfinite(suture.reach)))
+            return "its reach is " + io::format_number(suture.reach) + " m: it must be 0 or more";
+        return "";
     }
     std::string operator()(const Carver& carver) const {
         return std::visit([&](const auto& shape) { return fault_of(shape); }, carver.shape);

@@ -66,17 +66,19 @@ struct World::Parts {
         std::optional<cutting::CutId> cut = {};                   // only for a blade that splits
         std::shared_ptr<const cutting::CutSurface> surface = {};  // only for cuts at once
         bool is_present = false;
-        bool has_just_left = false;  // a probe or a grasper, in this step
-        bool is_closed = false;      // a grasper
-        Pose pose = {};              // at present
-        Pose target = {};            // at the end of the next step
+        bool has_just_left = false;                // a probe or a grasper, in this step
+        bool is_closed = false;                    // a grasper
+        double length = 0.0, target_length = 0.0;  // of a thread, as pose and target, m
+        Pose pose = {};                            // at present
+        Pose target = {};                          // at the end of the next step
         bool is_leaving = false;
         std::optional<Pose> pose_before_end = {};
         std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // only for a blade
 
         static void archive(auto& ar, auto& self) {
             ar(self.def.name, self.def.shape, self.cut, self.is_present, self.pose, self.target,
-               self.is_leaving, self.pose_before_end, self.edge_after, self.motion, self.is_closed);
+               self.is_leaving, self.pose_before_end, self.edge_after, self.motion, self.is_closed,
+               self.length, self.target_length);
         }
     };
 
@@ -109,8 +111,9 @@ struct World::Parts {
     std::size_t num_parts(double dt) const;
     /// Returns how many parts a step needs in which a tool moves to its target.
     double parts_for(const Tool& tool) const;
-    /// Sets the motion of probes and graspers in a part of a step, from one share of it to another.
-    void move_probes(double from, double to);
+    /// Sets the motion of what feels a force in a part of a step, from one share of it to another.
+    /// @param moved  how far the tissue may have moved in the step so far, m
+    void move_touching_tools(double from, double to, double moved);
     std::unique_ptr<contact::Contact> make_contact(const contact::ContactSettings& settings,
                                                    Solver with);
     void report_contact();
@@ -120,10 +123,14 @@ struct World::Parts {
     void follow(ToolId id, cutting::Split done, double end);
     Tool& tool_of(ToolId id);
     const cutting::Grasper& grasper_of(ToolId id);
+    const cutting::Suture& suture_of(ToolId id);
     topology::BoundarySurface& built_surface();
     void require_sound_pose(ToolId id, const Pose& pose) const;
-    bool is_any_tool_present() const {
-        return std::ranges::any_of(tools, [](const Tool& tool) { return tool.is_present; });
+    void require_pose(ToolId id) const;
+    bool is_any_cutter_present() const {
+        return std::ranges::any_of(tools, [](const Tool& tool) {
+            return tool.is_present && cutting::cuts(tool.def.shape);
+        });
     }
 
     topology::Mesh mesh;

@@ -89,7 +89,7 @@ void World::Parts::step_to(double end) {
     report.tools.clear();
     double largest_move = 0.0;
     const auto begin_motion = [&] {
-        if (is_any_tool_present()) cutter.begin_motion(model.mesh_positions());
+        if (is_any_cutter_present()) cutter.begin_motion(model.mesh_positions());
     };
     const auto end_motion = [&] {
         has_moved = true;
@@ -142,8 +142,8 @@ void World::Parts::report_tool(ToolId id) {
 
 void World::Parts::report_contact() {
     if (contact)
-        report.contact = {contact->num_points(), contact->max_penetration(),
-                          contact->dissipation()};
+        report.contact = {contact->num_points(), contact->max_penetration(), contact->dissipation(),
+                          contact->fracture_energy()};
 }
 
 double World::Parts::present_bound() const {
@@ -202,12 +202,22 @@ double World::Parts::parts_for(const Tool& tool) const {
                      (most * std::min(contact::half_width_of(probe->shape), contact->size())));
 }
 
-void World::Parts::move_probes(double from, double to) {
+void World::Parts::move_touching_tools(double from, double to, double moved) {
+    const auto tissue_at = [&](const Vec3& x) {
+        return cutter.tissue_at(mesh, model.mesh_positions(), x, moved);
+    };
     for (std::size_t i = 0; i < tools.size(); ++i) {
         const Tool& tool = tools[i];
-        if (cutting::feels_force(tool.def.shape) && tool.is_present)
-            contact->move_tool(i, tool.def.shape, interpolate(tool.pose, tool.target, from),
-                               interpolate(tool.pose, tool.target, to));
+        if (!cutting::feels_force(tool.def.shape) || !tool.is_present) continue;
+        const Pose before = interpolate(tool.pose, tool.target, from);
+        const Pose after = interpolate(tool.pose, tool.target, to);
+        if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
+            contact->move_blade(i, *blade, model, before, after, tissue_at);
+        else if (std::holds_alternative<cutting::Suture>(tool.def.shape))
+            contact->draw(i, std::lerp(tool.length, tool.target_length, from),
+                          std::lerp(tool.length, tool.target_length, to));
+        else
+            contact->move_tool(i, tool.def.shape, before, after);
     }
 }
 
@@ -220,8 +230,8 @@ double World::Parts::move_to(double end) {
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
         if (i > 0) model.compute_forces(time);
         if (contact)
-            move_probes(static_cast<double>(i) / static_cast<double>(n),
-                        static_cast<double>(i + 1) / static_cast<double>(n));
+            move_touching_tools(static_cast<double>(i) / static_cast<double>(n),
+                                static_cast<double>(i + 1) / static_cast<double>(n), largest_move);
         integrator->step(model, time, next - time);
         if (contact) contact->book_work(model);
         largest_move += model.largest_mesh_move();
@@ -235,8 +245,9 @@ double World::Parts::move_to(double end) {
 void World::Parts::cut_with(ToolId id, double end) {
     Tool& tool = tools[id.index];
     if (!tool.is_present) return;
-    if (cutting::feels_force(tool.def.shape)) {
+    if (!cutting::cuts(tool.def.shape)) {
         tool.pose = tool.target;
+        tool.length = tool.target_length;
         if (!tool.is_leaving) return;
         tool.has_just_left = true;
         tool.is_present = tool.is_leaving = tool.is_closed = false;
@@ -269,6 +280,7 @@ void World::Parts::cut_with(ToolId id, double end) {
                }),
                end);
     }
+    tool.has_just_left = cutting::feels_force(tool.def.shape);
     tool.is_present = tool.is_leaving = false;
 }
 

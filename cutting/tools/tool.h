@@ -19,12 +19,22 @@ namespace incise::cutting {
 /// opens the existing faces that lie nearest to its path.
 enum class CutMode { split, separate };
 
+/// What becomes of the force that it takes to cut. `report` only reports it: a blade then cuts all
+/// that it meets. `apply` exerts it on the tissue: a blade pushes the tissue in front of it, until
+/// the force is reached.
+enum class CuttingForce { report, apply };
+
 /// A tool that cuts along what its edge sweeps. The edge is in the frame of the tool.
 struct Blade {
     std::vector<Vec3> edge;         ///< a polyline of at least two points, m
     CutMode mode = CutMode::split;  ///< split is for tetrahedra only
     double snap = default_snap;     ///< for mode split: see SplitOptions
-    static void archive(auto& ar, auto& self) { ar(self.edge, self.mode, self.snap); }
+    /// Energy that it takes to open an area, J/m2; 0: not known. Areas are current ones.
+    double toughness = 0.0;
+    CuttingForce cutting_force = CuttingForce::report;  ///< only with a toughness
+    static void archive(auto& ar, auto& self) {
+        ar(self.edge, self.mode, self.snap, self.toughness, self.cutting_force);
+    }
 };
 
 /// A tool that removes the elements whose centre its shape covers.
@@ -66,11 +76,34 @@ struct Grasper {
     static void archive(auto& ar, auto& self) { ar(self.jaws, self.max_force); }
 };
 
-using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper>;
+/// A thread through points of the tissue, which it draws together. It slides through all of them,
+/// so that its tension is everywhere the same, and it bears no pressure.
+struct Suture {
+    std::vector<Vec3> points;  ///< in order, at least two, where the tissue is at rest, m
+    double stiffness = 0.0;    ///< of the whole thread, N/m
+    /// Above it the thread tears, N.
+    double max_force = std::numeric_limits<double>::infinity();
+    /// How far from a point the tissue may be, m; a point that lies outside moves to it. 0: the
+    /// mean length of an element.
+    double reach = 0.0;
+    static void archive(auto& ar, auto& self) {
+        ar(self.points, self.stiffness, self.max_force, self.reach);
+    }
+};
 
-/// True for tools that tissue exerts a force on: probes and graspers.
+using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper, Suture>;
+
+/// True for tools that edit the mesh.
+inline bool cuts(const ToolShape& shape) {
+    return !std::holds_alternative<Probe>(shape) && !std::holds_alternative<Grasper>(shape) &&
+           !std::holds_alternative<Suture>(shape);
+}
+
+/// True for tools that tissue exerts a known force on: those that do not cut, and blades with a
+/// toughness.
 inline bool feels_force(const ToolShape& shape) {
-    return std::holds_alternative<Probe>(shape) || std::holds_alternative<Grasper>(shape);
+    const auto* blade = std::get_if<Blade>(&shape);
+    return !cuts(shape) || (blade && blade->toughness > 0.0);
 }
 
 /// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/blade_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "incise/base/error.h"
+#include "incise/contact/surface_contact.h"
+
+namespace incise::contact {
+
+namespace {
+
+// Lengths are parts of the mean length of an element.
+constexpr double longest_piece = 0.25;
+constexpr double least_motion = 1e-12;  // a blade that moves by less stands still
+/// A piece that is nearer to the surface opens nothing: it is in a cut that is there already.
+constexpr double surface_layer = 0.02;
+
+/// True if a point is at most so far from a face of its cell that belongs to the surface.
+bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,
+                   const topology::CellPoint& at, const Vec3& x, double distance) {
+    const topology::CellTraits& traits = topology::traits(mesh.kind(at.cell));
+    const auto corners = mesh.corners(at.cell);
+    for (int f = 0; f < traits.num_faces; ++f) {
+        if (mesh.neighbor({at.cell, f}).is_valid()) continue;
+        const auto face = traits.face(f);
+        const auto corner = [&](std::size_t k) -> const Vec3& {
+            return positions[corners[static_cast<std::size_t>(face[k])].index()];
+        };
+        const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        if (std::abs(normal.dot(x - corner(0))) <= distance * normal.norm()) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+BladeContact::BladeContact(cutting::Blade blade, double size)
+    : blade_(std::move(blade)), size_(size) {
+    divide_edge();
+    directions_.resize(pieces_.size(), Vec3::Zero());
+    impulses_.resize(pieces_.size(), 0.0);
+}
+
+void BladeContact::divide_edge() {
+    pieces_.clear();
+    for (std::size_t i = 1; i < blade_.edge.size(); ++i) {
+        const Vec3 &from = blade_.edge[i - 1], way = blade_.edge[i] - from;
+        const double count = std::ceil(way.norm() / (longest_piece * size_));
+        for (double k = 0.5; k < count; k += 1.0)
+            pieces_.push_back({from + k / count * way, way / count});
+    }
+}
+
+void BladeContact::move(const physics::Model& model, const Pose& before, const Pose& after,
+                        const TissueAt& tissue_at) {
+    before_ = before;
+    cutting_.clear();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        const Vec3 x = before.to_world(pieces_[i].middle);
+        const Vec3 motion = after.to_world(pieces_[i].middle) - x;
+        if (const double distance = motion.norm(); distance > least_motion * size_)
+            directions_[i] = motion / distance;
+        if (directions_[i].isZero(0.0)) continue;
+        const auto tissue = tissue_at(x);
+        if (!tissue ||
+            is_at_surface(model.mesh(), model.mesh_positions(), *tissue, x, surface_layer * size_))
+            continue;
+        const double width = (before.rotation * pieces_[i].along).cross(directions_[i]).norm();
+        cutting_.push_back({i, *tissue, x, motion, width});
+    }
+}
+
+void BladeContact::add_points(const physics::Model& model, std::span<const Triangle> /*surface*/,
+                              double dt, ContactSolver& solver) {
+    reported_ = {};
+    first_point_ = solver.size();
+    for (const Cutting& cutting : cutting_) {
+        const Vec3& direction = directions_[cutting.piece];
+        const double force = blade_.toughness * cutting.width;
+        if (blade_.cutting_force == cutting::CuttingForce::report) {
+            const double distance = cutting.motion.norm();
+            if (!(distance > least_motion * size_)) continue;
+            const Vec3 impulse = force * dt * direction;
+            reported_.force += impulse;
+            reported_.torque += (cutting.place - before_.position).cross(impulse);
+            reported_.fracture += force * distance;
+            continue;
+        }
+        ContactPoint point;
+        point.normal = direction;
+        point.velocity = cutting.motion / dt;
+        point.impulse = impulses_[cutting.piece] * direction;
+        point.largest_force = force;
+        solver.begin(point);
+        const auto corners = model.mesh().corners(cutting.tissue.cell);
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            if (cutting.tissue.weights[k] != 0.0)
+                add_shares(model, corners[k], cutting.tissue.weights[k], solver);
+    }
+}
+
+ToolImpulse BladeContact::take_impulses(const ContactSolver& solver, double dt) {
+    ToolImpulse sum;
+    if (blade_.cutting_force == cutting::CuttingForce::report) return sum;
+    std::ranges::fill(impulses_, 0.0);
+    for (std::size_t i = 0; i < cutting_.size(); ++i) {
+        const Cutting& cutting = cutting_[i];
+        const Vec3& impulse = solver.impulse(first_point_ + i);
+        impulses_[cutting.piece] = impulse.dot(directions_[cutting.piece]);
+        sum.force += impulse;
+        sum.torque += (cutting.place - before_.position).cross(impulse);
+        const Vec3 velocity = cutting.motion / dt;
+        sum.work += impulse.dot(velocity);
+        sum.fracture += std::max(0.0, impulse.dot(velocity - solver.velocity(first_point_ + i)));
+    }
+    return sum;
+}
+
+void BladeContact::restore(ArchiveReader& ar) {
+    list(ar, *this);
+    if (!(size_ > 0.0)) throw InputError("a blade cuts another body");
+    divide_edge();
+    const bool fits =
+        directions_.size() == pieces_.size() && impulses_.size() == pieces_.size() &&
+        std::ranges::all_of(directions_, [](const Vec3& v) { return v.allFinite(); }) &&
+        std::ranges::all_of(impulses_, [](double v) { return std::isfinite(v); });
+    if (!fits) throw InputError("a blade cuts another body");
+}
+
+}  // namespace incise::contact

@@ -1,0 +1,83 @@
+// The pull of a thread through the tissue.
+// Source: docs/theory.md, Contact.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "incise/base/archive.h"
+#include "incise/contact/contact_solver.h"
+#include "incise/contact/surface_tree.h"
+#include "incise/contact/tool_impulse.h"
+#include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/model.h"
+#include "incise/topology/cell_point.h"
+#include "incise/topology/pose.h"
+
+namespace incise::contact {
+
+/// A thread that passes through points of the tissue without friction. It pulls them together as
+/// soon as its way is longer than it is itself.
+class SutureContact {
+  public:
+    /// @param size  mean length of an element at rest, m
+    SutureContact(cutting::Suture suture, double size) : suture_(std::move(suture)), size_(size) {}
+
+    /// A thread has no pose.
+    void move(const Pose&, const Pose&) {}
+    /// Passes the thread through the tissue. It is then as long as its way. A point without tissue
+    /// in reach is left out. Cost: O(n) for each point.
+    void tie(const physics::Model& model);
+    /// Sets the length at the beginning and at the end of the next step, m.
+    void draw(double before, double after) {
+        length_before_ = before;
+        length_ = after;
+    }
+    /// Returns the length of the thread without tension, m.
+    double length() const { return length_; }
+    /// Returns through how many points the thread passes. It pulls if there are two or more.
+    std::size_t num_held() const { return stitches_.size(); }
+    /// Follows an edit. A point that an edit has removed is left out from then on.
+    void follow(const physics::Model& model);
+
+    /// Adds the thread to the solver.
+    /// @param dt  s
+    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+                    ContactSolver& solver);
+    /// Takes the tension of the thread. Returns its pull on the first point. A thread that has
+    /// borne its largest force tears.
+    /// @param dt  s
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
+    double max_penetration() const { return 0.0; }
+
+    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    /// Restores what save() wrote. Throws InputError for the data of another body.
+    void restore(ArchiveReader& ar, const physics::Model& model);
+
+  private:
+    /// Where the thread passes through the tissue.
+    struct Stitch {
+        Vec3 rest;  ///< m
+        topology::CellPoint at;
+        static void archive(auto& ar, auto& self) { ar(self.rest, self.at); }
+    };
+    static void list(auto& ar, auto& self) {
+        ar(self.suture_, self.size_, self.stitches_, self.length_before_, self.length_,
+           self.impulse_);
+    }
+    std::vector<Vec3> way(const physics::Model& model) const;
+
+    cutting::Suture suture_;
+    double size_;
+    std::vector<Stitch> stitches_;
+    double length_before_ = 0.0, length_ = 0.0;  // m
+    double impulse_ = 0.0;                       // of the last step, N s
+    bool is_in_solver_ = false;
+    std::size_t thread_ = 0;         // in the solver
+    Vec3 direction_ = Vec3::Zero();  // of the thread at its first point
+};
+
+}  // namespace incise::contact
