@@ -151,7 +151,7 @@ void warn_of_idle_tools(const runner::Simulation& simulation) {
         const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
-        if (!has_cut && !scenario::feels_force(tool) && tool.path.front().time < simulation.time())
+        if (!has_cut && scenario::cuts(tool) && tool.path.front().time < simulation.time())
             print_warning("tool '" + tool.name + "' has cut nothing; look at a picture of where " +
                           "the tissue is when it passes");
     }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <sstream>
 
 #include "incise/base/error.h"
 #include "incise/contact/surface_contact.h"
@@ -12,7 +14,7 @@ namespace incise::contact {
 namespace {
 
 // Lengths are parts of the mean length of an element.
-constexpr double longest_piece = 0.25;
+constexpr double longest_piece = 0.125;
 constexpr double least_motion = 1e-12;  // a blade that moves by less stands still
 /// A piece that is nearer to the surface opens nothing: it is in a cut that is there already.
 constexpr double surface_layer = 0.02;
@@ -35,6 +37,39 @@ bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,
 }
 
 }  // namespace
+
+namespace {
+
+/// Young's modulus at rest, Pa.
+struct YoungAtRest {
+    double operator()(const physics::HyperElasticLinks& links) const {
+        const double mu = physics::rest_mu(links.law), lambda = physics::rest_lambda(links.law);
+        return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+    }
+    double operator()(const physics::MassSprings& springs) const { return springs.young; }
+    /// That of Poisson's ratio 1/4, the least that the method has.
+    double operator()(const physics::HybridSprings& springs) const {
+        return 2.5 * springs.shear_modulus;
+    }
+};
+
+}  // namespace
+
+std::string fault_of_toughness(const cutting::Blade& blade, const physics::MaterialTable& materials,
+                               double size) {
+    if (blade.cutting_force == cutting::CuttingForce::report) return "";
+    constexpr double largest_dent = 1.5;  // of an element
+    double young = std::numeric_limits<double>::infinity();
+    for (const physics::Material& material : materials.materials)
+        young = std::min(young, std::visit(YoungAtRest{}, material.method));
+    const double largest = largest_dent * young * size;
+    if (blade.toughness <= largest) return "";
+    std::ostringstream text;
+    text << "a toughness of " << blade.toughness << " J/m2 cannot be applied: up to " << largest
+         << " J/m2 the softest material bears it at elements of " << size
+         << " m; use larger elements, a lower toughness, or report the force";
+    return text.str();
+}
 
 BladeContact::BladeContact(cutting::Blade blade, double size)
     : blade_(std::move(blade)), size_(size) {
@@ -113,7 +148,7 @@ ToolImpulse BladeContact::take_impulses(const ContactSolver& solver, double dt) 
         sum.torque += (cutting.place - before_.position).cross(impulse);
         const Vec3 velocity = cutting.motion / dt;
         sum.work += impulse.dot(velocity);
-        sum.fracture += std::max(0.0, impulse.dot(velocity - solver.velocity(first_point_ + i)));
+        sum.fracture += impulse.dot(velocity - solver.velocity(first_point_ + i));
     }
     return sum;
 }

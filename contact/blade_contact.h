@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,14 @@ namespace incise::contact {
 
 /// Finds the point of the tissue that is at a position, m; nothing if there is none.
 using TissueAt = std::function<std::optional<topology::CellPoint>(const Vec3&)>;
+
+/// Returns why the force of a blade cannot be applied to a body; empty if it can, or if it is only
+/// reported. The toughness may be 1.5 times the least Young's modulus at rest of the materials,
+/// times the mean length of an element. Above it the tissue at the edge gives way by more than an
+/// element before it is cut, and elements are crushed.
+/// @param size  mean length of an element at rest, m
+std::string fault_of_toughness(const cutting::Blade& blade, const physics::MaterialTable& materials,
+                               double size);
 
 /// The force of the tissue on the edge of a blade. A piece of the edge that opens an area takes the
 /// toughness times that area. So its force against its way is the toughness times its width, seen

@@ -94,7 +94,7 @@ void GraspContact::add_points(const physics::Model& model, std::span<const Trian
         solver.begin(point);
         for (std::size_t k = 0; k < 3; ++k)
             if (const double weight = held.weights[static_cast<int>(k)]; weight != 0.0)
-                add_shares(model, held.nodes[k], weight, solver);
+                add_surface_shares(model, held.nodes[k], weight, solver);
     }
 }
 

@@ -89,7 +89,7 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
         solver.begin(point);
         for (std::size_t k = 0; k < 3; ++k)
             if (const double weight = touch.weights[static_cast<int>(k)]; weight != 0.0)
-                add_shares(model, surface[t][k], weight, solver);
+                add_surface_shares(model, surface[t][k], weight, solver);
     }
 }
 

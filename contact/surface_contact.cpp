@@ -30,10 +30,15 @@ constexpr double rounding = 1e-10;
 }  // namespace
 
 void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver) {
-    solver.note_surface_node(n, weight);
     const topology::Embedding& at = model.embedded_nodes()[n];
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
         solver.add_share(at.nodes[k], weight * at.weights[k]);
+}
+
+void add_surface_shares(const physics::Model& model, NodeId n, double weight,
+                        ContactSolver& solver) {
+    solver.note_surface_node(n, weight);
+    add_shares(model, n, weight, solver);
 }
 
 void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solver) {
@@ -281,11 +286,11 @@ void SurfaceContact::add_point(std::size_t i, const physics::Model& model, Conta
     point.impulse = near.impulse;
     nodes_of_points_.push_back(i);
     solver.begin(point);
-    add_shares(model, pairs_.nodes()[i], 1.0, solver);
+    add_surface_shares(model, pairs_.nodes()[i], 1.0, solver);
     const Triangle& triangle = triangles_[static_cast<std::size_t>(near.touched)];
     for (std::size_t k = 0; k < 3; ++k)
         if (const double weight = at.weights[static_cast<int>(k)]; weight != 0.0)
-            add_shares(model, triangle[k], -weight, solver);
+            add_surface_shares(model, triangle[k], -weight, solver);
 }
 
 }  // namespace incise::contact

@@ -28,6 +28,9 @@ struct ContactSettings {
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
 void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver);
+/// The same for a node of the surface, with what sum_surface_impulses() needs.
+void add_surface_shares(const physics::Model& model, NodeId n, double weight,
+                        ContactSolver& solver);
 
 /// Points of contact of the surface of a body with itself.
 ///

@@ -2,6 +2,7 @@
 #include "incise/runner/frame_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -44,7 +45,7 @@ bool FrameBuilder::has(scenario::Field field) const {
 }
 
 FrameBuilder::FrameBuilder(const physics::Model& model, double time,
-                           std::span<const scenario::Field> fields)
+                           std::span<const scenario::Field> fields, const ContactForces* contact)
     : fields_(fields.begin(), fields.end()) {
     const topology::Mesh& mesh = model.mesh();
     std::vector<NodeId> nodes;
@@ -79,6 +80,8 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     points.push_back(
         field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
 
+    if (contact) add_contact(model, nodes, *contact);
+
     auto& cells = frame_.cell_fields;
     cells.push_back(field<std::int64_t>("element_id", 1, elements_,
                                         [&](ElementId e) { return mesh.label(e); }));
@@ -92,6 +95,45 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
         snapshot_.emplace(model);
     if (snapshot_)
         for (const ElementId e : elements_) fragments_.push_back(fragments.fragment_of_cell(e));
+}
+
+/// Adds the force of contact at each node, and its part against the surface over the area of the
+/// node: a third of the triangles there that face the force, at present.
+void FrameBuilder::add_contact(const physics::Model& model, const std::vector<NodeId>& nodes,
+                               const ContactForces& forces) {
+    const topology::Mesh& mesh = model.mesh();
+    const auto positions = model.mesh_positions();
+    std::vector<Vec3> force(mesh.node_capacity(), Vec3::Zero());
+    std::vector<Vec3> area(mesh.node_capacity(), Vec3::Zero());
+    for (const auto& [n, f] : forces) force[n.index()] = f;
+    constexpr double least_cosine = 0.3;  // a face that is more oblique bears none of the force
+    const auto add_area = [&](const std::array<std::size_t, 3>& triangle) {
+        const Vec3 &a = positions[triangle[0]], &b = positions[triangle[1]],
+                   &c = positions[triangle[2]];
+        const Vec3 third = (b - a).cross(c - a) / 6.0;
+        for (const std::size_t n : triangle)
+            if (-force[n].dot(third) > least_cosine * force[n].norm() * third.norm())
+                area[n] += third;
+    };
+    if (!forces.empty())
+        for (const ElementId e : mesh.elements())
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                if (mesh.neighbor({e, f}).is_valid()) continue;
+                const auto corners = mesh.corners(e);
+                const auto face = topology::traits(mesh.kind(e)).face(f);
+                const auto node = [&](std::size_t k) {
+                    return corners[static_cast<std::size_t>(face[k])].index();
+                };
+                for (std::size_t k = 2; k < face.size(); ++k)
+                    add_area({node(0), node(k - 1), node(k)});
+            }
+    auto& points = frame_.point_fields;
+    points.push_back(
+        field<float>("contact_force", 3, nodes, [&](NodeId n) { return force[n.index()]; }));
+    points.push_back(field<float>("contact_pressure", 1, nodes, [&](NodeId n) {
+        const double square = area[n.index()].squaredNorm();
+        return square > 0.0 ? -force[n.index()].dot(area[n.index()]) / square : 0.0;
+    }));
 }
 
 io::Frame FrameBuilder::finish() {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "incise/io/vtk/frame.h"
@@ -12,6 +13,9 @@
 #include "incise/scenario/scenario.h"
 
 namespace incise::runner {
+
+/// The forces of contact on the nodes of a mesh, N, at which they are not zero, in ascending order.
+using ContactForces = std::vector<std::pair<NodeId, Vec3>>;
 
 /// A builder of one frame. The points of the frame are the current positions. It has the fields
 /// rest_position, node_id, element_id and region, and the requested fields. If a material has
@@ -28,7 +32,9 @@ class FrameBuilder {
     /// @param model   the body
     /// @param time    time of the frame, s
     /// @param fields  the requested fields
-    FrameBuilder(const physics::Model& model, double time, std::span<const scenario::Field> fields);
+    /// @param contact  if not null, the frame has contact_force and contact_pressure
+    FrameBuilder(const physics::Model& model, double time, std::span<const scenario::Field> fields,
+                 const ContactForces* contact = nullptr);
 
     /// Returns the frame. Cost: O(#nodes + #elements), as the constructor.
     /// @pre  finish() was not called before
@@ -36,6 +42,8 @@ class FrameBuilder {
 
   private:
     bool has(scenario::Field field) const;
+    void add_contact(const physics::Model& model, const std::vector<NodeId>& nodes,
+                     const ContactForces& forces);
 
     std::vector<scenario::Field> fields_;
     std::vector<ElementId> elements_, fragments_;       // by row
@@ -45,8 +53,9 @@ class FrameBuilder {
 
 /// Builds a frame in one call.
 inline io::Frame build_frame(const physics::Model& model, double time,
-                             std::span<const scenario::Field> fields) {
-    return FrameBuilder(model, time, fields).finish();
+                             std::span<const scenario::Field> fields,
+                             const ContactForces* contact = nullptr) {
+    return FrameBuilder(model, time, fields, contact).finish();
 }
 
 }  // namespace incise::runner

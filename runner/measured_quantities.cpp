@@ -56,7 +56,8 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
                       simulation.world().stable_step(),
                       static_cast<double>(contact.num_points),
                       contact.max_penetration,
-                      contact.dissipation});
+                      contact.dissipation,
+                      contact.fracture_energy});
     for (std::size_t s = 0; s < model.num_constraints(); ++s) {
         const auto& [reaction, torque] = body_totals.reactions[s];
         append(row, scenario::reaction_quantities(model.constraint_name(s)),

@@ -151,7 +151,8 @@ void RunWriter::on_edit(const Simulation& simulation, const sim::EditRecord& edi
 void RunWriter::on_frame(const Simulation& simulation) {
     wait();
     frame_builder_.emplace(simulation.model(), simulation.time(),
-                           simulation.scenario().output.fields);
+                           simulation.scenario().output.fields,
+                           simulation.world().contact_forces());
     write_later([this] {
         const io::Frame frame = frame_builder_->finish();
         is_frame_built_ = true;

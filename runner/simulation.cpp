@@ -56,8 +56,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
       warned_step_(ledger().initial().stable_step) {
     for (scenario::ScriptedTool& tool : body.tools) {
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
-        paths_.push_back(std::move(tool.path));
-        jaws_.push_back({tool.close, tool.open});
+        scripts_.push_back({std::move(tool.path), tool.close, tool.open, tool.over, tool.length});
     }
     // Refuses a fixed step that is too large before anything is written.
     scenario::step_limit(scenario_, model(), world_.stable_step(), num_steps());
@@ -87,6 +86,7 @@ void Simulation::step() {
     }
     last_step_ = step.to - step.from;
     report_edits();
+    warn_of_torn_sutures();
     for (Observer* observer : observers_) observer->on_step(*this);
     if (is_finished()) warn_of_lost_elements();
     report_frame();
@@ -95,10 +95,14 @@ void Simulation::step() {
 
 /// Places the tools that act in the step, and withdraws those whose path ends in it.
 void Simulation::move_tools(Interval step) {
-    for (std::size_t i = 0; i < paths_.size(); ++i) {
-        const scenario::ToolPath& path = paths_[i];
-        if (!path.is_present(step.from, step.to)) continue;
+    for (std::size_t i = 0; i < scripts_.size(); ++i) {
+        const scenario::ToolPath& path = scripts_[i].path;
         const sim::ToolId tool{i};
+        if (std::holds_alternative<cutting::Suture>(world_.tool(tool).shape)) {
+            draw_suture(tool, step);
+            continue;
+        }
+        if (!path.is_present(step.from, step.to)) continue;
         if (!world_.is_tool_present(tool)) world_.place_tool(tool, path.pose(step.from));
         move_jaws(tool, step.from);
         world_.set_tool_pose(tool, path.pose(step.to));
@@ -110,7 +114,7 @@ void Simulation::move_tools(Interval step) {
 
 /// Closes or opens the jaws of a grasper at the beginning of a step.
 void Simulation::move_jaws(sim::ToolId tool, double time) {
-    const auto& [close, open] = jaws_[tool.index];
+    const auto& [path, close, open, over, length] = scripts_[tool.index];
     if (!close) return;
     const bool is_to_be_closed = time >= *close && !(open && time >= *open);
     if (is_to_be_closed == world_.is_grasper_closed(tool)) return;
@@ -119,6 +123,42 @@ void Simulation::move_jaws(sim::ToolId tool, double time) {
         warnings_.push_back("grasper '" + world_.tool(tool).name +
                             "' closes on nothing at t = " + io::format_number(time) +
                             " s; check where its path and the tissue are then");
+}
+
+/// Ties a suture at its time, and draws its thread.
+void Simulation::draw_suture(sim::ToolId tool, Interval step) {
+    const Script& script = scripts_[tool.index];
+    const double begin = script.path.first_time(), end = begin + script.over;
+    // The first step that begins at its time, or the last one that can.
+    if (!world_.is_tool_present(tool)) {
+        if (step.to <= begin) return;
+        const std::size_t num_points =
+            std::get<cutting::Suture>(world_.tool(tool).shape).points.size();
+        if (const std::size_t num_found = world_.tie_suture(tool); num_found < num_points)
+            warnings_.push_back("suture '" + world_.tool(tool).name +
+                                "', at t = " + io::format_number(step.from) + " s: of its " +
+                                std::to_string(num_points) + " points, " +
+                                std::to_string(num_points - num_found) +
+                                " have no tissue any more, and are left out");
+    }
+    const double now = world_.suture_length(tool);
+    if (!script.length || now == *script.length) return;
+    const double from = std::max(begin, step.from);
+    const double part = step.to >= end ? 1.0 : (step.to - from) / (end - from);
+    world_.set_suture_length(tool, now + part * (*script.length - now));
+}
+
+void Simulation::warn_of_torn_sutures() {
+    for (std::size_t i = 0; i < scripts_.size(); ++i) {
+        const bool is_suture = std::holds_alternative<cutting::Suture>(world_.tool({i}).shape);
+        if (!is_suture || !world_.is_tool_present({i}) || world_.is_suture_tied({i}) ||
+            std::ranges::find(torn_, i) != torn_.end())
+            continue;
+        torn_.push_back(i);
+        warnings_.push_back("suture '" + world_.tool({i}).name +
+                            "' holds nothing from t = " + io::format_number(time()) +
+                            " s on: its thread has torn at max_force, or its tissue was removed");
+    }
 }
 
 void Simulation::report_edits() {
@@ -138,10 +178,12 @@ void Simulation::restore(ArchiveReader& ar) {
     ar(edits_, last_step_, num_frames_);
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
-    if (world_.num_tools() != paths_.size()) throw InputError("its tools are not those of the run");
+    if (world_.num_tools() != scripts_.size())
+        throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
     for (const sim::EditRecord& edit : edits_) warn_of_short_steps(edit);
+    warn_of_torn_sutures();
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");

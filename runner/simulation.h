@@ -110,14 +110,19 @@ class Simulation {
     StepPolicy policy_;
     std::vector<std::string> warnings_;
     sim::World world_;
-    /// When the jaws of a grasper close and open, s.
-    struct Jaws {
-        std::optional<double> close, open;
+    /// What a tool does when.
+    struct Script {
+        scenario::ToolPath path;
+        std::optional<double> close, open;  // of a grasper, s
+        double over;                        // of a suture, s
+        std::optional<double> length;       // of a suture, m
     };
     void move_jaws(sim::ToolId tool, double time);
+    void draw_suture(sim::ToolId tool, Interval step);
+    void warn_of_torn_sutures();
 
-    std::vector<scenario::ToolPath> paths_;  // by the number of the tool in the world
-    std::vector<Jaws> jaws_;                 // likewise
+    std::vector<Script> scripts_;    // by the number of the tool in the world
+    std::vector<std::size_t> torn_;  // sutures that a warning has named
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "incise/base/error.h"
+#include "incise/contact/blade_contact.h"
 #include "incise/io/files/number_format.h"
 #include "incise/scenario/body_problems.h"
 #include "incise/scenario/elastic_constants.h"
@@ -17,6 +18,7 @@
 #include "incise/scenario/single_precision.h"
 #include "incise/scenario/step_limit.h"
 #include "incise/sim/selection.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::scenario {
 
@@ -317,6 +319,7 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
         problems.try_to(cut ? cut->location : spec.location, [&] {
             tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
+                require_tissue(tools.back(), *mesh);
                 require_divisible(tools.back(), *mesh, end_time);
                 if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
                     warnings.push_back(located(spec.location, *near));
@@ -344,6 +347,20 @@ bool is_known(const MeshSpec& mesh) {
     return !path || !path->empty();
 }
 
+/// Adds the problems of blades whose force is applied.
+void check_toughness(const Scenario& scenario, Parts& parts) {
+    const double size = topology::mean_element_length(parts.source->mesh);
+    for (const ScriptedTool& tool : parts.tools) {
+        const auto* blade = std::get_if<cutting::Blade>(&tool.shape);
+        if (!blade) continue;
+        const auto spec = std::ranges::find(scenario.tools, tool.name, &ToolSpec::name);
+        parts.problems.try_to(spec->location, [&] {
+            const std::string fault = contact::fault_of_toughness(*blade, *parts.materials, size);
+            if (!fault.empty()) throw InputError("tool '" + tool.name + "': " + fault);
+        });
+    }
+}
+
 Parts build_parts(const Scenario& scenario) {
     Parts parts;
     BodyProblems& problems = parts.problems;
@@ -366,6 +383,7 @@ Parts build_parts(const Scenario& scenario) {
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }
     parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
+    if (parts.source && parts.materials) check_toughness(scenario, parts);
     return parts;
 }
 

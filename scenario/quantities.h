@@ -12,7 +12,7 @@
 namespace incise::scenario {
 
 /// The first columns of history.csv, in order. The reactions of the constraints follow them.
-inline constexpr std::array<std::string_view, 23> history_quantities = {"time",
+inline constexpr std::array<std::string_view, 24> history_quantities = {"time",
                                                                         "step",
                                                                         "nodes",
                                                                         "elements",
@@ -34,7 +34,8 @@ inline constexpr std::array<std::string_view, 23> history_quantities = {"time",
                                                                         "stable_step",
                                                                         "contacts",
                                                                         "max_penetration",
-                                                                        "contact_dissipation"};
+                                                                        "contact_dissipation",
+                                                                        "fracture_energy"};
 
 /// The quantities of summary.json that are not columns of history.csv.
 inline constexpr std::array<std::string_view, 12> run_quantities = {
@@ -46,7 +47,7 @@ inline constexpr std::array<std::string_view, 12> run_quantities = {
 /// moment about x, y and z.
 std::array<std::string, 6> reaction_quantities(std::string_view constraint);
 
-/// Returns the names of the columns for what the tissue exerts on a probe: force along x, y and z,
+/// Returns the names of the columns for what the tissue exerts on a tool: force along x, y and z,
 /// then torque about x, y and z.
 std::array<std::string, 6> force_quantities(std::string_view probe);
 

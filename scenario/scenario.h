@@ -139,6 +139,8 @@ struct BladeSpec {
     std::vector<Vec3> edge;       ///< polyline in the frame of the tool, m, at least two points
     std::optional<CutMode> mode;  ///< if not set, usual_mode() of the mesh (tool_build.h)
     std::optional<double> snap;   ///< for CutMode::split; see cutting::SplitOptions
+    double toughness = 0.0;       ///< J/m2; 0 if not known
+    cutting::CuttingForce cutting_force = cutting::CuttingForce::report;
 };
 
 /// The points x with (x - point) . normal = 0.
@@ -161,21 +163,35 @@ struct GrasperSpec {
     std::optional<double> open;  ///< if not set, the jaws open at the end of the path
 };
 
+/// A suture, tied at the one time of its path.
+struct SutureSpec {
+    cutting::Suture suture;
+    double over = 0.0;             ///< how long it is drawn, s
+    std::optional<double> length;  ///< to which it is drawn, m; if not set, it stays as it is
+};
+
 /// A [[tool]] section. The tool is present from the first to the last key of its path. A cut has
-/// one key, the time of the cut.
+/// one key, the time of the cut; so has a suture.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe, GrasperSpec> kind;
+    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe, GrasperSpec, SutureSpec> kind;
     bool is_obstacle = false;  ///< an [[obstacle]]: a probe that is always present
     /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path;
     std::string location = {};  ///< for messages: FILE:line:column
 };
 
-/// True for probes, graspers and obstacles: they cut nothing, and tissue exerts a force on them.
+/// True for blades, cuts and carvers.
+inline bool cuts(const ToolSpec& tool) {
+    return !std::holds_alternative<cutting::Probe>(tool.kind) &&
+           !std::holds_alternative<GrasperSpec>(tool.kind) &&
+           !std::holds_alternative<SutureSpec>(tool.kind);
+}
+
+/// True for tools whose force is reported: those that do not cut, and blades with a toughness.
 inline bool feels_force(const ToolSpec& tool) {
-    return std::holds_alternative<cutting::Probe>(tool.kind) ||
-           std::holds_alternative<GrasperSpec>(tool.kind);
+    const auto* blade = std::get_if<BladeSpec>(&tool.kind);
+    return !cuts(tool) || (blade && blade->toughness > 0.0);
 }
 
 /// The fields that a frame can hold in addition to points, rest positions, ids and regions.

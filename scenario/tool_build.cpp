@@ -11,7 +11,10 @@
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/io/files/number_format.h"
 #include "incise/io/surface/surface_reader.h"
+#include "incise/topology/cell_point.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::scenario {
 
@@ -69,7 +72,8 @@ Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
 
 cutting::ToolShape shape_of(const BladeSpec& blade) {
     return cutting::Blade{blade.edge, blade.mode.value_or(CutMode::split),
-                          blade.snap.value_or(cutting::default_snap)};
+                          blade.snap.value_or(cutting::default_snap), blade.toughness,
+                          blade.cutting_force};
 }
 
 cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnings) {
@@ -114,6 +118,8 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     if (const auto* probe = std::get_if<cutting::Probe>(&spec.kind)) shape = *probe;
     const auto* grasper = std::get_if<GrasperSpec>(&spec.kind);
     if (grasper) shape = grasper->grasper;
+    const auto* suture = std::get_if<SutureSpec>(&spec.kind);
+    if (suture) shape = suture->suture;
     auto surface = cutting::cut_surface_of(shape);
     ScriptedTool tool{spec.name, std::move(shape), ToolPath(spec.path, spec.is_obstacle),
                       std::move(surface)};
@@ -121,11 +127,32 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
         tool.close = grasper->close;
         tool.open = grasper->open;
     }
+    if (suture) {
+        tool.over = suture->over;
+        tool.length = suture->length;
+    }
     return tool;
+}
+
+void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh) {
+    const auto* suture = std::get_if<cutting::Suture>(&tool.shape);
+    if (!suture) return;
+    const double reach = suture->reach > 0.0 ? suture->reach : topology::mean_element_length(mesh);
+    for (std::size_t i = 0; i < suture->points.size(); ++i) {
+        const Vec3& x = suture->points[i];
+        if (topology::find_point(mesh, mesh.rest_positions(), x, reach)) continue;
+        std::ostringstream text;
+        text << "tool '" << tool.name << "': point " << i << " (from 0), [" << x.x() << ", "
+             << x.y() << ", " << x.z() << "], is farther than its reach, "
+             << io::format_number(reach)
+             << " m, from the body at rest; check its coordinates and units";
+        throw InputError(text.str());
+    }
 }
 
 bool may_meet(const ScriptedTool& tool, const Box& box) {
     if (tool.surface) return tool.surface->may_meet(box);
+    if (std::holds_alternative<cutting::Suture>(tool.shape)) return true;  // see require_tissue()
     const auto* probe = std::get_if<cutting::Probe>(&tool.shape);
     if (probe && std::holds_alternative<cutting::HalfSpace>(probe->shape)) return true;
     const Extent extent = extent_of_tool(tool.shape);
@@ -214,7 +241,7 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
 bool divides(const cutting::ToolShape& shape) {
     if (const auto* blade = std::get_if<cutting::Blade>(&shape))
         return blade->mode == CutMode::split;
-    return !std::holds_alternative<Carver>(shape) && !cutting::feels_force(shape);
+    return !std::holds_alternative<Carver>(shape) && cutting::cuts(shape);
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {

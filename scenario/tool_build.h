@@ -30,12 +30,17 @@ struct ScriptedTool {
     ToolPath path;
     std::shared_ptr<const cutting::CutSurface> surface;  ///< of a CutSpec; null for other tools
     std::optional<double> close = {}, open = {};         ///< of a grasper, s
+    double over = 0.0;                                   ///< of a suture, see SutureSpec, s
+    std::optional<double> length = {};                   ///< of a suture, m
 };
 
 /// Builds a tool, and reads the file of its surface if it has one. A blade without a mode splits.
 /// If the path is not known, the tool has a path without keys. Warnings name the file.
 /// Throws InputError if the file cannot be read.
 ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings);
+
+/// Throws InputError if a point of a suture is farther from the body at rest than its reach.
+void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh);
 
 /// Returns false only if no part of the tool is ever in the box.
 /// Cost: proportional to the size of its path or of its surface.

@@ -4,6 +4,7 @@
 
 #include "incise/io/files/number_format.h"
 #include "incise/scenario/scenario_sections.h"
+#include "incise/scenario/touching_tools.h"
 
 namespace incise::scenario {
 
@@ -12,22 +13,18 @@ namespace {
 using io::format_number;
 using Keys = std::string_view;
 
-constexpr Keys tool_keys[] = {"kind",  "name",     "path",  "shape", "edge",
-                              "mode",  "snap",     "time",  "plane", "surface",
-                              "scale", "friction", "close", "open",  "max_force"};
+constexpr Keys tool_keys[] = {
+    "kind",      "name",      "path",          "shape",  "edge",     "mode",      "snap",
+    "time",      "plane",     "surface",       "scale",  "friction", "close",     "open",
+    "max_force", "toughness", "cutting_force", "points", "tighten",  "stiffness", "reach"};
 constexpr Keys obstacle_keys[] = {"name", "shape", "friction", "path"};
-constexpr Keys kinds[] = {"carver", "blade", "cut", "probe", "grasper"};
-constexpr Keys modes[] = {"split", "separate"};  // in the order of CutMode
+constexpr Keys kinds[] = {"carver", "blade", "cut", "probe", "grasper", "suture"};
+constexpr Keys modes[] = {"split", "separate"};         // in the order of CutMode
+constexpr Keys cutting_forces[] = {"report", "apply"};  // in the order of CuttingForce
 constexpr Limits snap_limits{.low = 0.0, .high = 0.5, .includes_low = true, .includes_high = true};
 constexpr Keys plane_keys[] = {"point", "normal"};
 constexpr Keys pose_keys[] = {"time", "at", "rotate"};
 constexpr Keys rotation_keys[] = {"axis", "angle"};
-constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
-constexpr Keys obstacle_shape_keys[] = {"half_space", "sphere", "capsule", "box"};
-constexpr Keys half_space_keys[] = {"point", "normal"};
-constexpr Keys shape_sphere_keys[] = {"radius"};
-constexpr Keys capsule_keys[] = {"from", "to", "radius"};
-constexpr Keys shape_box_keys[] = {"size"};
 
 Pose read_pose(const TableReader& row) {
     Pose pose;
@@ -42,83 +39,10 @@ Pose read_pose(const TableReader& row) {
     return pose;
 }
 
-/// Reads the shape that one of the keys sphere, capsule and box of a table gives. Returns nothing
-/// without one.
-std::optional<cutting::CarverShape> read_shape(const TableReader& shape) {
-    std::optional<cutting::CarverShape> found;
-    const auto radius_of = [](const TableReader& table) {
-        table.require("radius", "a length, as in radius = 0.008");
-        return table.number("radius", 1.0, limits::positive);
-    };
-    if (const auto sphere = shape.table("sphere", {shape_sphere_keys}))
-        found = cutting::Sphere{radius_of(*sphere)};
-    if (const auto capsule = shape.table("capsule", {capsule_keys})) {
-        capsule->require("from", "one end of its axis, as in from = [0, 0, 0]");
-        capsule->require("to", "the other end of its axis, as in to = [0, 0, 0.1]");
-        found =
-            cutting::Capsule{capsule->vector("from"), capsule->vector("to"), radius_of(*capsule)};
-    }
-    if (const auto box = shape.table("box", {shape_box_keys})) {
-        box->require("size", "edge lengths, as in size = [0.01, 0.01, 0.02]");
-        const Vec3 size = box->vector("size", Vec3::Ones());
-        if (!(size.minCoeff() > 0.0))
-            box->error("size", "is not allowed: all three lengths must be above 0");
-        found = cutting::Cuboid{size};
-    }
-    return found;
-}
-
-/// Reads the key `shape` of a tool. Returns nothing if it is missing or faulty.
-std::optional<cutting::CarverShape> read_shape_of(const TableReader& tool) {
-    const auto shape = tool.table("shape", {shape_keys});
-    if (!shape) return std::nullopt;
-    shape->one_of({"sphere", "capsule", "box"});
-    return read_shape(*shape);
-}
-
 Carver read_carver(const TableReader& tool) {
     Carver carver;
     if (const auto shape = read_shape_of(tool)) carver.shape = *shape;
     return carver;
-}
-
-cutting::Probe read_probe(const TableReader& tool) {
-    cutting::Probe probe;
-    probe.friction = tool.number("friction", probe.friction, limits::non_negative);
-    if (const auto shape = read_shape_of(tool))
-        std::visit([&](const auto& one) { probe.shape = one; }, *shape);
-    return probe;
-}
-
-cutting::Probe read_obstacle(const TableReader& obstacle) {
-    cutting::Probe probe;
-    probe.friction = obstacle.number("friction", probe.friction, limits::non_negative);
-    const auto shape = obstacle.table("shape", {obstacle_shape_keys});
-    if (!shape) return probe;
-    shape->one_of({"half_space", "sphere", "capsule", "box"});
-    if (const auto found = read_shape(*shape))
-        std::visit([&](const auto& one) { probe.shape = one; }, *found);
-    if (const auto half_space = shape->table("half_space", {half_space_keys})) {
-        half_space->require("point", "a point of its surface, as in point = [0, 0, 0]");
-        half_space->require("normal", "towards the free side, as in normal = [0, 0, 1]");
-        probe.shape = cutting::HalfSpace{half_space->vector("point"),
-                                         half_space->direction("normal", Vec3::UnitZ())};
-    }
-    return probe;
-}
-
-GrasperSpec read_grasper(const TableReader& tool) {
-    GrasperSpec spec;
-    spec.grasper.max_force =
-        tool.number("max_force", spec.grasper.max_force, {.low = 0.0, .includes_high = true});
-    spec.close = tool.number("close", 0.0, limits::non_negative);
-    spec.open = tool.number_if_given("open", limits::non_negative);
-    if (spec.open && *spec.open <= spec.close && tool.is_sound("open") && tool.is_sound("close"))
-        tool.error("open", format_number(*spec.open) +
-                               " is not allowed: must be after 'close', at " +
-                               format_number(spec.close) + " s");
-    if (const auto shape = read_shape_of(tool)) spec.grasper.jaws = *shape;
-    return spec;
 }
 
 BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
@@ -133,6 +57,11 @@ BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
                                    " (from 0) are the same: leave one out");
     if (const auto mode = tool.has("mode") ? tool.choice("mode", {modes}) : std::nullopt)
         blade.mode = static_cast<CutMode>(*mode);
+    blade.toughness = tool.number("toughness", 0.0, limits::positive);
+    if (const auto force = tool.choice("cutting_force", {cutting_forces}))
+        blade.cutting_force = static_cast<cutting::CuttingForce>(*force);
+    if (tool.has("cutting_force"))
+        tool.require("toughness", "energy to open an area, J/m2, as in toughness = 160");
     blade.snap = snap;
     if (blade.snap && blade.mode == CutMode::separate)
         tool.error("snap", "belongs to mode = \"split\": leave it out");
@@ -174,38 +103,42 @@ void check_keys(const TableReader& tool, Keys kind) {
     if (kind == "grasper")
         tool.require("close", "when its jaws close, seconds, as in close = 0.2");
     else
-        refuse(tool, {"close", "open", "max_force"}, "a grasper");
+        refuse(tool, {"close", "open"}, "a grasper");
+    if (kind != "grasper" && kind != "suture") refuse(tool, {"max_force"}, "a grasper or a suture");
+    if (kind == "suture") {
+        tool.require("points",
+                     "a line of points at rest, as in points = [[0, 0, 0], [0.01, 0, 0]]");
+        tool.require("stiffness", "of the thread, N/m, as in stiffness = 200");
+    } else {
+        refuse(tool, {"points", "tighten", "stiffness", "reach"}, "a suture");
+    }
     if (kind != "probe") refuse(tool, {"friction"}, "a probe");
     if (kind == "blade")
         tool.require("edge", "a line of points, as in edge = [[-0.01, 0, 0], [0.01, 0, 0]]");
     else
-        refuse(tool, {"edge", "mode"}, "a blade");
+        refuse(tool, {"edge", "mode", "toughness", "cutting_force"}, "a blade");
     if (kind != "blade" && kind != "cut") refuse(tool, {"snap"}, "a blade");
     if (kind == "cut") {
         tool.one_of({"plane", "surface"});
         refuse(tool, {"path"}, "a blade");
         tool.require("time", "when it cuts, seconds, as in time = 0.5");
+        return;
+    }
+    refuse(tool, {"plane", "surface", "scale"}, "a cut");
+    if (kind == "suture") {
+        refuse(tool, {"path"}, "a blade");
+        tool.require("time", "when it is tied, seconds, as in time = 0.5");
     } else {
-        refuse(tool, {"time", "plane", "surface", "scale"}, "a cut");
+        refuse(tool, {"time"}, "a cut or a suture");
         tool.require("path",
                      "as in path = [{ time = 0, at = [0, 0, 0.1] }, { time = 1, at = [0, 0, 0] }]");
     }
 }
 
 bool knows_where(const TableReader& tool, Keys kind) {
-    constexpr Keys keys[] = {"path", "shape", "edge", "plane", "surface", "scale"};
+    constexpr Keys keys[] = {"path", "shape", "edge", "plane", "surface", "scale", "points"};
     return std::ranges::all_of(keys, [&](Keys key) { return tool.is_sound(key); }) &&
            (kind != "cut" || tool.has("plane") != tool.has("surface"));
-}
-
-/// Reports times of jaws that are not within the path.
-void check_jaws(const TableReader& tool, const GrasperSpec& grasper, double first, double last) {
-    const auto within = " is not allowed: must be within the path, from " + format_number(first) +
-                        " to " + format_number(last) + " s";
-    if (tool.is_sound("close") && !(grasper.close >= first && grasper.close < last))
-        tool.error("close", format_number(grasper.close) + within);
-    if (tool.is_sound("open") && grasper.open && !(*grasper.open <= last))
-        tool.error("open", format_number(*grasper.open) + within);
 }
 
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
@@ -247,21 +180,28 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
             index ? std::string(kind) + "_" + std::to_string(++counts[*index]) : "";
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
         if (index) check_keys(tool, kind);
-        if ((kind == "probe" || kind == "grasper") && !why_no_contact.empty())
+        const bool touches = kind == "probe" || kind == "grasper" || kind == "suture";
+        if (touches && !why_no_contact.empty())
             tool.error("kind", in_quotes(kind) + " touches tissue, but " + why_no_contact);
+        if (kind == "blade" && tool.has("toughness") && !why_no_contact.empty())
+            tool.error("toughness",
+                       "gives a force of cutting, which needs contact, but " + why_no_contact);
         std::optional<double> snap;
         if (kind.empty() || kind == "blade" || kind == "cut")
             snap = tool.number_if_given("snap", snap_limits);
         if (may_be("carver")) spec.kind = read_carver(tool);
         if (kind == "probe") spec.kind = read_probe(tool);
         if (kind == "grasper") spec.kind = read_grasper(tool);
+        if (kind == "suture") spec.kind = read_suture(tool);
         if (may_be("blade")) spec.kind = read_blade(tool, snap);
         if (may_be("cut")) {
             spec.kind = read_cut(tool, snap, folder);
+        }
+        if (may_be("cut") || kind == "suture") {
             const double time = tool.number("time", 0.0, limits::non_negative);
             if (tool.is_sound("time")) spec.path = {{time, {}}};
         }
-        if (kind != "cut")
+        if (kind != "cut" && kind != "suture")
             spec.path = read_time_keys<Pose>(tool, "path", {pose_keys}, end_time, read_pose);
         // Without a known kind, only the file of a surface can be checked further.
         if (!index && !tool.has("surface")) continue;

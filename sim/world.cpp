@@ -95,6 +95,11 @@ ToolId World::add_tool(ToolDef def) {
     if (cutting::feels_force(def.shape) && !p.contact)
         throw InputError("tool '" + def.name +
                          "' exerts a force: it needs the explicit solver, with contact enabled");
+    if (const auto* blade = std::get_if<Blade>(&def.shape); blade && p.contact)
+        if (const std::string fault = contact::fault_of_toughness(
+                *blade, p.model.elements().materials(), p.contact->size());
+            !fault.empty())
+            throw InputError("tool '" + def.name + "': " + fault);
     Parts::Tool tool{std::move(def)};
     tool.surface = cutting::cut_surface_of(tool.def.shape);
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
@@ -303,6 +308,9 @@ std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velo
 std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
+const std::vector<std::pair<NodeId, Vec3>>* World::contact_forces() const {
+    return parts_->contact ? &parts_->contact->node_forces() : nullptr;
+}
 const Ledger& World::ledger() const { return parts_->ledger; }
 
 }  // namespace incise::sim

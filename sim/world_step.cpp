@@ -8,7 +8,7 @@
 #include "incise/cutting/exact/undividable.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
-#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {
 
@@ -34,19 +34,6 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     return table;
 }
 
-/// Returns the edge of a cube of which the elements would be sixths, if they are tetrahedra, m.
-double mean_element_length(const Mesh& mesh) {
-    double volume = 0.0, num_sixths = 0.0;
-    std::vector<Vec3> x;
-    for (const ElementId e : mesh.elements()) {
-        x.clear();
-        for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
-        volume += topology::signed_volume(mesh.kind(e), x);
-        num_sixths += mesh.kind(e) == topology::CellKind::tetrahedron ? 1.0 : 6.0;
-    }
-    return std::cbrt(6.0 * volume / num_sixths);
-}
-
 }  // namespace
 
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Contact* contact) {
@@ -60,7 +47,7 @@ std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Con
 std::unique_ptr<contact::Contact> World::Parts::make_contact(
     const contact::ContactSettings& settings, Solver with) {
     if (!settings.enabled || with != Solver::semi_implicit_euler) return nullptr;
-    return std::make_unique<contact::Contact>(settings, mean_element_length(mesh));
+    return std::make_unique<contact::Contact>(settings, topology::mean_element_length(mesh));
 }
 
 World::Parts::Parts(WorldDef def)
@@ -77,7 +64,7 @@ World::Parts::Parts(WorldDef def)
       constraints("constraint", model.num_constraints()),
       loads("load", model.loads().all().size()),
       stable_step(model.stable_step()),
-      bound_interval{mean_element_length(mesh)} {
+      bound_interval{topology::mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
     if (contact) contact->follow(model, built_surface());
 }

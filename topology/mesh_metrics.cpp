@@ -143,6 +143,18 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
 
 }  // namespace
 
+double mean_element_length(const Mesh& mesh) {
+    double volume = 0.0, num_sixths = 0.0;
+    std::vector<Vec3> x;
+    for (const ElementId e : mesh.elements()) {
+        x.clear();
+        for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+        volume += signed_volume(mesh.kind(e), x);
+        num_sixths += mesh.kind(e) == CellKind::tetrahedron ? 1.0 : 6.0;
+    }
+    return std::cbrt(6.0 * volume / num_sixths);
+}
+
 double min_altitude(CellKind kind, std::span<const Vec3> corners) {
     MeshMetrics metrics;
     metrics.min_altitude = std::numeric_limits<double>::infinity();

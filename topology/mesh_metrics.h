@@ -9,6 +9,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
@@ -35,6 +36,10 @@ struct MeshMetrics {
     /// the edge.
     double min_dihedral_angle = 0.0;
 };
+
+/// Returns the edge of a cube of which the elements would be sixths, if they are tetrahedra, or the
+/// whole, if not, m: a mean length of the elements at rest. Cost: O(n).
+double mean_element_length(const Mesh& mesh);
 
 /// Returns MeshMetrics::min_altitude of one cell.
 double min_altitude(CellKind kind, std::span<const Vec3> corners);

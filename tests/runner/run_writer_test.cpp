@@ -74,8 +74,8 @@ TEST_F(RunFiles, HistoryHasARowPerFrameAndEdit) {
               "time,step,nodes,elements,components,mass,volume,kinetic_energy,elastic_energy,"
               "external_work,dissipated_energy,momentum_x,momentum_y,momentum_z,"
               "angular_momentum_x,angular_momentum_y,angular_momentum_z,min_J,time_step,"
-              "stable_step,contacts,max_penetration,contact_dissipation,reaction_floor_x,reaction_"
-              "floor_y,reaction_floor_z,"
+              "stable_step,contacts,max_penetration,contact_dissipation,fracture_energy,"
+              "reaction_floor_x,reaction_floor_y,reaction_floor_z,"
               "torque_floor_x,torque_floor_y,torque_floor_z");
     const auto& edits = simulation_.edits();
     ASSERT_GT(edits.size(), 2u);
@@ -228,6 +228,8 @@ TEST_F(RunFiles, FramesDeclareTheArraysOfTheContract) {
                                                     {"rest_position", {"Float64", 3}},
                                                     {"velocity", {"Float32", 3}},
                                                     {"force", {"Float32", 3}},
+                                                    {"contact_force", {"Float32", 3}},
+                                                    {"contact_pressure", {"Float32", 1}},
                                                     {"mass", {"Float64", 1}},
                                                     {"node_id", {"Int64", 1}}}));
     EXPECT_NE(section("PointData").find("Vectors=\"displacement\""), std::string::npos);

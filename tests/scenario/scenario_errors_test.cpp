@@ -9,15 +9,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-/// The one error of the minimal scenario with `text` added: `text` begins on line 9.
-std::string error_of(const std::string& text) {
-    const auto errors = ScenarioFile(minimal + text).errors();
-    std::string all;
-    for (const auto& error : errors) all += (all.empty() ? "" : " | ") + error;
-    return all;
-}
-
-/// The same with one line for the material.
+/// The errors of a scenario with these lines for the material, in one line.
 std::string material_error(const std::string& lines) {
     const auto errors = ScenarioFile("[[material]]\n" + lines +
                                      "\n[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\n"
@@ -381,74 +373,6 @@ TEST(ScenarioErrors, OfLoads) {
               "table");
 }
 
-TEST(ScenarioErrors, OfTools) {
-    const std::string grasper =
-        "[[tool]]\nkind = \"grasper\"\nshape = { sphere = { radius = 0.1 } }\nclose = 0.1\n";
-    EXPECT_EQ(error_of(grasper + "path = [{ time = 0, at = [0, 0, 0] }]\n"),
-              "scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a grasper is there "
-              "from the first to the last");
-    EXPECT_EQ(
-        error_of(grasper + "open = 3\npath = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = "
-                           "[0, 0, 1] }]\n"),
-        "scene.toml:13:8: key 'tool[0].open': 3 is not allowed: must be within the path, from "
-        "0 to 1 s");
-    EXPECT_EQ(
-        error_of("[[obstacle]]\nshape = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] "
-                 "} }\n[contact]\nenabled = false\n"),
-        "scene.toml:9:1: key 'obstacle[0]': an obstacle touches tissue, but [contact] has "
-        "enabled = false");
-    EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
-              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, "
-              "probe, grasper");
-    const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
-    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
-              "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
-              "scene.toml:12:9: key 'tool[0].shape': must have exactly one of sphere, capsule, "
-              "box");
-    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nshape = { sphere = { radius = 0 } }\n" + path),
-              "scene.toml:11:31: key 'tool[0].shape.sphere.radius': 0 is not allowed: must be "
-              "above 0");
-    EXPECT_EQ(error_of("[[tool]]\nkind = \"blade\"\nmode = \"separate\"\n"
-                       "edge = [[0, 0, 1], [0, 0, 1]]\n" +
-                       path),
-              "scene.toml:12:8: key 'tool[0].edge': points 0 and 1 (from 0) are the same: leave "
-              "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a blade "
-              "cuts where it moves");
-    const std::string blade =
-        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
-        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
-    EXPECT_EQ(error_of(blade), "");
-    EXPECT_EQ(error_of(blade + "mode = \"slit\"\n"),
-              "scene.toml:13:8: key 'tool[0].mode': 'slit': is not known; did you mean 'split'? "
-              "Known here: split, separate");
-    EXPECT_EQ(error_of(blade + "snap = 1.5\n"),
-              "scene.toml:13:8: key 'tool[0].snap': 1.5 is not allowed: must be at least 0 and "
-              "at most 0.5");
-    EXPECT_EQ(error_of(blade + "mode = \"separate\"\nsnap = 0.1\n"),
-              "scene.toml:14:8: key 'tool[0].snap': belongs to mode = \"split\": leave it out");
-    EXPECT_EQ(error_of(blade + "time = 1\n"),
-              "scene.toml:13:8: key 'tool[0].time': belongs to a cut: leave it out");
-}
-
-TEST(ScenarioErrors, OfCuts) {
-    const std::string cut = "[[tool]]\nkind = \"cut\"\n";
-    EXPECT_EQ(error_of(cut),
-              "scene.toml:9:1: key 'tool[0]': must have exactly one of plane, surface | "
-              "scene.toml:9:1: key 'tool[0].time': is missing: when it cuts, seconds, as in time = "
-              "0.5");
-    EXPECT_EQ(error_of(cut + "time = -1\nplane = { point = [0, 0, 0], normal = [0, 0, 0] }\n"),
-              "scene.toml:11:8: key 'tool[0].time': -1 is not allowed: must be at least 0 | "
-              "scene.toml:12:39: key 'tool[0].plane.normal': is not allowed: a direction must have "
-              "a length above 0");
-    EXPECT_NE(error_of(cut + "time = 1\nsurface = \"none.stl\"\n").find("there is no file"),
-              std::string::npos);
-    EXPECT_EQ(error_of(cut + "time = 1\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\n"
-                             "path = []\nedge = [[0, 0, 0], [1, 0, 0]]\nscale = 2\n"),
-              "scene.toml:13:8: key 'tool[0].path': belongs to a blade: leave it out | "
-              "scene.toml:14:8: key 'tool[0].edge': belongs to a blade: leave it out | "
-              "scene.toml:15:9: key 'tool[0].scale': is for surfaces: leave it out");
-}
-
 TEST(ScenarioErrors, OfOutputAndExpect) {
     EXPECT_EQ(error_of("[output]\nfields = [\"mass\", \"strain\", \"mass\"]\n"
                        "compression = \"zip\"\n"),
@@ -472,7 +396,7 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
         "Known here: time, step, nodes, elements, components, mass, volume, kinetic_energy, "
         "elastic_energy, external_work, dissipated_energy, momentum_x, momentum_y, momentum_z, "
         "angular_momentum_x, angular_momentum_y, angular_momentum_z, min_J, time_step, "
-        "stable_step, contacts, max_penetration, contact_dissipation, ";
+        "stable_step, contacts, max_penetration, contact_dissipation, fracture_energy, ";
     const std::string more =
         "gravity_energy, edits, elements_removed, elements_split, elements_added, faces_opened, "
         "cut_area, mass_removed, mass_error, energy_error, volume_change, max_displacement";
@@ -497,17 +421,6 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
                   "reaction_floor_x, reaction_floor_y, reaction_floor_z, torque_floor_x, "
                   "torque_floor_y, torque_floor_z, " +
                   more);
-}
-
-TEST(ScenarioErrors, OfAToolsKindHideNoSurface) {
-    for (const std::string kind : {"", "kind = 'cat'\n"}) {
-        const auto errors =
-            ScenarioFile(minimal + "[[tool]]\n" + kind + "time = 0.1\nsurface = 'liver.vtu'\n")
-                .all_errors();
-        ASSERT_EQ(errors.size(), 2u) << kind;
-        EXPECT_NE(errors[0].find("key 'tool[0].kind': "), std::string::npos) << errors[0];
-        EXPECT_NE(errors[1].find(": liver.vtu: "), std::string::npos) << errors[1];
-    }
 }
 
 }  // namespace

@@ -65,4 +65,12 @@ class ScenarioFile {
     std::filesystem::path path_;
 };
 
+/// The errors of the minimal scenario with `text` added, in one line: `text` begins on line 9.
+inline std::string error_of(const std::string& text) {
+    const auto errors = ScenarioFile(minimal + text).errors();
+    std::string all;
+    for (const auto& error : errors) all += (all.empty() ? "" : " | ") + error;
+    return all;
+}
+
 }  // namespace incise::scenario

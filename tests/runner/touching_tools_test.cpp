@@ -1,0 +1,116 @@
+// Tools that touch tissue, in runs of scenarios.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "incise/runner/frame_builder.h"
+#include "incise/runner/measured_quantities.h"
+#include "run_folder.h"
+
+namespace incise::runner {
+namespace {
+
+/// A thread between two points below the top of the cube.
+std::string suture(const std::string& more) {
+    return R"(
+[[tool]]
+kind = "suture"
+name = "thread"
+points = [[0.02, 0.05, 0.09], [0.08, 0.05, 0.09]]
+stiffness = 20
+time = 0.02
+)" + more;
+}
+
+void run_to(Simulation& simulation, double time) {
+    if (simulation.num_steps() == 0) simulation.start();
+    while (simulation.time() < time) simulation.step();
+}
+
+double value_of(const Simulation& simulation, const std::string& name) {
+    const Quantities row = history_row(simulation, simulation.ledger().body_totals());
+    return std::ranges::find(row, name, &Quantities::value_type::first)->second;
+}
+
+TEST(TouchingTools, ASutureIsTiedAndDrawnAtItsTimes) {
+    const RunFolder folder;
+    Simulation simulation(folder.scenario(soft_cube + dynamics(0.3, "damping = 20\n") +
+                                          suture("tighten = { over = 0.1, length = 0.05 }\n") +
+                                          "[output]\ninterval = 0.01\n"));
+    const ToolId thread{0};
+    run_to(simulation, 0.019);
+    EXPECT_FALSE(simulation.world().is_suture_tied(thread));
+    run_to(simulation, 0.07);
+    EXPECT_TRUE(simulation.world().is_suture_tied(thread));
+    EXPECT_NEAR(simulation.world().suture_length(thread), 0.055, 1e-12);
+    EXPECT_GT(value_of(simulation, "force_thread_x"), -1.0);
+    run_to(simulation, 0.3);
+    EXPECT_NEAR(simulation.world().suture_length(thread), 0.05, 1e-15);
+    // The tissue pulls the thread back at its first point, to the left.
+    EXPECT_LT(value_of(simulation, "force_thread_x"), -1e-3);
+    EXPECT_NEAR(value_of(simulation, "force_thread_y"), 0.0,
+                0.1 * -value_of(simulation, "force_thread_x"));
+    EXPECT_EQ(simulation.warnings(), std::vector<std::string>{});
+}
+
+TEST(TouchingTools, ASutureThatTearsIsReportedOnce) {
+    const RunFolder folder;
+    Simulation simulation(
+        folder.scenario(soft_cube + dynamics(0.2) +
+                        suture("max_force = 0.001\ntighten = { over = 0.1, length = 0.03 }\n")));
+    run_to(simulation, 0.2);
+    ASSERT_EQ(simulation.warnings().size(), 1u);
+    EXPECT_NE(simulation.warnings()[0].find("suture 'thread' holds nothing from t = "),
+              std::string::npos);
+}
+
+const std::vector<float>& floats(const io::Frame& frame, const std::string& name) {
+    return std::get<std::vector<float>>(
+        std::ranges::find(frame.point_fields, name, &io::Field::name)->values);
+}
+
+TEST(TouchingTools, FramesHaveTheForcesAndPressuresOfContact) {
+    const RunFolder folder;
+    // Without lateral contraction the pressure is the same everywhere.
+    std::string cube = soft_cube;
+    cube.replace(cube.find("poisson = 0.4"), 13, "poisson = 0.0");
+    Simulation simulation(folder.scenario(cube + dynamics(0.4, "damping = 30\n") + R"(
+[[tool]]
+kind = "probe"
+name = "plate"
+shape = { box = { size = [0.3, 0.3, 0.02] } }
+path = [{ time = 0, at = [0.05, 0.05, 0.11] }, { time = 0.2, at = [0.05, 0.05, 0.107] },
+        { time = 1, at = [0.05, 0.05, 0.107] }]
+)"));
+    const auto frame_now = [&] {
+        return build_frame(simulation.model(), simulation.time(), {},
+                           simulation.world().contact_forces());
+    };
+    const io::Frame first = frame_now();
+    EXPECT_EQ(std::ranges::count(floats(first, "contact_force"), 0.0f), 3 * 64);
+    run_to(simulation, 0.4);
+    const io::Frame frame = frame_now();
+    const std::vector<float>& forces = floats(frame, "contact_force");
+    const std::vector<float>& pressures = floats(frame, "contact_pressure");
+    const double force = value_of(simulation, "force_plate_z");
+    double sum = 0.0;
+    for (std::size_t n = 0; n < frame.mesh.points.size(); ++n) {
+        sum += forces[3 * n + 2];
+        const bool is_on_top = simulation.mesh().rest_position(NodeId(n)).z() > 0.09;
+        EXPECT_NEAR(pressures[n], is_on_top ? force / 0.01 : 0.0, 0.02 * force / 0.01);
+    }
+    EXPECT_GT(force, 0.1);
+    EXPECT_NEAR(-sum, force, 1e-5 * force);
+}
+
+TEST(TouchingTools, FramesOfRunsWithoutContactHaveNoSuchFields) {
+    const RunFolder folder;
+    const Simulation simulation(
+        folder.scenario(soft_cube + dynamics(0.1) + "[contact]\nenabled = false\n"));
+    EXPECT_EQ(simulation.world().contact_forces(), nullptr);
+}
+
+}  // namespace
+}  // namespace incise::runner

@@ -1,0 +1,145 @@
+// Bad tools of scenarios: every problem is found, at its location, in words that help.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "scenario_file.h"
+
+namespace incise::scenario {
+namespace {
+
+TEST(ToolErrors, OfPathsAndKinds) {
+    const std::string grasper =
+        "[[tool]]\nkind = \"grasper\"\nshape = { sphere = { radius = 0.1 } }\nclose = 0.1\n";
+    EXPECT_EQ(error_of(grasper + "path = [{ time = 0, at = [0, 0, 0] }]\n"),
+              "scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a grasper is there "
+              "from the first to the last");
+    EXPECT_EQ(
+        error_of(grasper + "open = 3\npath = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = "
+                           "[0, 0, 1] }]\n"),
+        "scene.toml:13:8: key 'tool[0].open': 3 is not allowed: must be within the path, from "
+        "0 to 1 s");
+    EXPECT_EQ(
+        error_of("[[obstacle]]\nshape = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] "
+                 "} }\n[contact]\nenabled = false\n"),
+        "scene.toml:9:1: key 'obstacle[0]': an obstacle touches tissue, but [contact] has "
+        "enabled = false");
+    EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
+              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, "
+              "probe, grasper, suture");
+    const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
+              "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
+              "scene.toml:12:9: key 'tool[0].shape': must have exactly one of sphere, capsule, "
+              "box");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nshape = { sphere = { radius = 0 } }\n" + path),
+              "scene.toml:11:31: key 'tool[0].shape.sphere.radius': 0 is not allowed: must be "
+              "above 0");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"blade\"\nmode = \"separate\"\n"
+                       "edge = [[0, 0, 1], [0, 0, 1]]\n" +
+                       path),
+              "scene.toml:12:8: key 'tool[0].edge': points 0 and 1 (from 0) are the same: leave "
+              "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a blade "
+              "cuts where it moves");
+    const std::string blade =
+        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
+        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
+    EXPECT_EQ(error_of(blade), "");
+    EXPECT_EQ(error_of(blade + "mode = \"slit\"\n"),
+              "scene.toml:13:8: key 'tool[0].mode': 'slit': is not known; did you mean 'split'? "
+              "Known here: split, separate");
+    EXPECT_EQ(error_of(blade + "snap = 1.5\n"),
+              "scene.toml:13:8: key 'tool[0].snap': 1.5 is not allowed: must be at least 0 and "
+              "at most 0.5");
+    EXPECT_EQ(error_of(blade + "mode = \"separate\"\nsnap = 0.1\n"),
+              "scene.toml:14:8: key 'tool[0].snap': belongs to mode = \"split\": leave it out");
+    EXPECT_EQ(error_of(blade + "time = 1\n"),
+              "scene.toml:13:8: key 'tool[0].time': belongs to a cut or a suture: leave it out");
+}
+
+TEST(ToolErrors, OfTheForceOfCutting) {
+    const std::string blade =
+        "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
+        "path = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = [0, 0, 1] }]\n";
+    EXPECT_EQ(error_of(blade + "toughness = 160\ncutting_force = \"report\"\n"), "");
+    EXPECT_EQ(error_of(blade + "toughness = 0\n"),
+              "scene.toml:13:13: key 'tool[0].toughness': 0 is not allowed: must be above 0");
+    EXPECT_EQ(error_of(blade + "cutting_force = \"apply\"\n"),
+              "scene.toml:9:1: key 'tool[0].toughness': is missing: energy to open an area, J/m2, "
+              "as in toughness = 160");
+    EXPECT_EQ(error_of(blade + "toughness = 1\n[contact]\nenabled = false\n"),
+              "scene.toml:13:13: key 'tool[0].toughness': gives a force of cutting, which needs "
+              "contact, but [contact] has enabled = false");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"cut\"\ntime = 0\nplane = { point = [0, 0, 0], normal "
+                       "= [0, 0, 1] }\ntoughness = 1\n"),
+              "scene.toml:13:13: key 'tool[0].toughness': belongs to a blade: leave it out");
+    // Elements of 0.5 m of 1,600 Pa bear up to 1,200 J/m2.
+    const auto too_tough =
+        ScenarioFile(minimal + blade + "toughness = 1300\ncutting_force = \"apply\"\n")
+            .all_errors();
+    ASSERT_EQ(too_tough.size(), 1u);
+    EXPECT_EQ(too_tough[0],
+              "scene.toml:9:1: tool 'blade_1': a toughness of 1300 J/m2 cannot be applied: up to "
+              "1200 J/m2 the softest material bears it at elements of 0.5 m; use larger elements, "
+              "a lower toughness, or report the force");
+}
+
+TEST(ToolErrors, OfSutures) {
+    const std::string suture = "[[tool]]\nkind = \"suture\"\nstiffness = 200\n";
+    const std::string points = "points = [[0.2, 0.2, 1.1], [0.8, 0.2, 1.0]]\n";
+    EXPECT_EQ(error_of(suture + points + "time = 0.1\n"), "");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"suture\"\n"),
+              "scene.toml:9:1: key 'tool[0].points': is missing: a line of points at rest, as in "
+              "points = [[0, 0, 0], [0.01, 0, 0]] | scene.toml:9:1: key 'tool[0].stiffness': is "
+              "missing: of the thread, N/m, as in stiffness = 200 | scene.toml:9:1: key "
+              "'tool[0].time': is missing: when it is tied, seconds, as in time = 0.5");
+    EXPECT_EQ(error_of(suture + "points = [[0, 0, 0]]\ntime = 0\n"),
+              "scene.toml:12:10: key 'tool[0].points': must have at least 2 points");
+    EXPECT_EQ(error_of(suture + points + "time = 0\ntighten = { over = -1 }\n"),
+              "scene.toml:14:11: key 'tool[0].tighten.length': is missing: to which the thread is "
+              "drawn, m, as in length = 0.001 | scene.toml:14:20: key 'tool[0].tighten.over': -1 "
+              "is not allowed: must be at least 0");
+    EXPECT_EQ(error_of(suture + points + "time = 0\npath = []\n"),
+              "scene.toml:14:8: key 'tool[0].path': belongs to a blade: leave it out");
+    EXPECT_EQ(error_of(suture + points + "time = 0\n[contact]\nenabled = false\n"),
+              "scene.toml:10:8: key 'tool[0].kind': 'suture' touches tissue, but [contact] has "
+              "enabled = false");
+    const auto far =
+        ScenarioFile(minimal + suture + points + "time = 0\nreach = 0.05\n").all_errors();
+    ASSERT_EQ(far.size(), 1u);
+    EXPECT_EQ(far[0],
+              "scene.toml:9:1: tool 'suture_1': point 0 (from 0), [0.2, 0.2, 1.1], is farther than "
+              "its reach, 0.05 m, from the body at rest; check its coordinates and units");
+}
+
+TEST(ToolErrors, OfCuts) {
+    const std::string cut = "[[tool]]\nkind = \"cut\"\n";
+    EXPECT_EQ(error_of(cut),
+              "scene.toml:9:1: key 'tool[0]': must have exactly one of plane, surface | "
+              "scene.toml:9:1: key 'tool[0].time': is missing: when it cuts, seconds, as in time = "
+              "0.5");
+    EXPECT_EQ(error_of(cut + "time = -1\nplane = { point = [0, 0, 0], normal = [0, 0, 0] }\n"),
+              "scene.toml:11:8: key 'tool[0].time': -1 is not allowed: must be at least 0 | "
+              "scene.toml:12:39: key 'tool[0].plane.normal': is not allowed: a direction must have "
+              "a length above 0");
+    EXPECT_NE(error_of(cut + "time = 1\nsurface = \"none.stl\"\n").find("there is no file"),
+              std::string::npos);
+    EXPECT_EQ(error_of(cut + "time = 1\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\n"
+                             "path = []\nedge = [[0, 0, 0], [1, 0, 0]]\nscale = 2\n"),
+              "scene.toml:13:8: key 'tool[0].path': belongs to a blade: leave it out | "
+              "scene.toml:14:8: key 'tool[0].edge': belongs to a blade: leave it out | "
+              "scene.toml:15:9: key 'tool[0].scale': is for surfaces: leave it out");
+}
+
+TEST(ToolErrors, OfAKindHideNoSurface) {
+    for (const std::string kind : {"", "kind = 'cat'\n"}) {
+        const auto errors =
+            ScenarioFile(minimal + "[[tool]]\n" + kind + "time = 0.1\nsurface = 'liver.vtu'\n")
+                .all_errors();
+        ASSERT_EQ(errors.size(), 2u) << kind;
+        EXPECT_NE(errors[0].find("key 'tool[0].kind': "), std::string::npos) << errors[0];
+        EXPECT_NE(errors[1].find(": liver.vtu: "), std::string::npos) << errors[1];
+    }
+}
+
+}  // namespace
+}  // namespace incise::scenario
