@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/cutting/tools/solid.h"
 
 namespace incise::contact {
 
@@ -19,6 +20,13 @@ constexpr double probe_skin =
     0.5;  // by which triangles are found that are not within probe_reach yet
 
 }  // namespace
+
+void RigidContact::prepare_shape() {
+    reach_ = reach_of(probe_.shape);
+    solid_ = nullptr;
+    if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
+        solid_ = std::make_shared<const RigidSolid>(*solid);
+}
 
 RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const Vec3& weights) {
     constexpr double rounding = 1e-9;
@@ -33,7 +41,7 @@ RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const V
 /// Returns the largest distance by which a point of the tool moves in the step, m, at most.
 double RigidContact::largest_move() const {
     return (after_.position - before_.position).norm() +
-           reach_of(probe_.shape) * before_.rotation.angularDistance(after_.rotation);
+           reach_ * before_.rotation.angularDistance(after_.rotation);
 }
 
 void RigidContact::find_triangles(std::span<const Vec3> positions,
@@ -67,7 +75,10 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = before_.to_tool(positions[triangle[k].index()]);
         found_.clear();
-        append_touches(probe_.shape, corners, probe_reach * size_, found_);
+        if (solid_)
+            solid_->append_touches(corners, probe_reach * size_, found_);
+        else
+            append_touches(probe_.shape, corners, probe_reach * size_, found_);
         for (const RigidTouch& touch : found_) {
             const auto [it, is_new] =
                 touches.try_emplace(feature_of(triangle, touch.weights), touch, t);
@@ -118,6 +129,9 @@ ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt
 
 void RigidContact::restore(ArchiveReader& ar, std::size_t num_triangles) {
     list(ar, *this);
+    if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
+        if (!cutting::fault_of(*solid).empty()) throw InputError("a tool has no sound shape");
+    prepare_shape();
     const bool fits =
         std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; }) &&
         std::isfinite(room_) && last_features_.size() == last_impulses_.size() &&

@@ -6,12 +6,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
+#include "incise/contact/rigid_solid.h"
 #include "incise/contact/rigid_touch.h"
 #include "incise/contact/surface_contact.h"
 #include "incise/contact/tool_impulse.h"
@@ -26,7 +28,9 @@ namespace incise::contact {
 class RigidContact {
   public:
     /// @param size  mean length of an element at rest, m: distances are parts of it
-    RigidContact(cutting::Probe probe, double size) : probe_(std::move(probe)), size_(size) {}
+    RigidContact(cutting::Probe probe, double size) : probe_(std::move(probe)), size_(size) {
+        prepare_shape();
+    }
 
     /// Sets the motion of the tool in the next step.
     void move(const Pose& before, const Pose& after) {
@@ -58,6 +62,7 @@ class RigidContact {
     static void list(auto& ar, auto& self) {
         ar(self.probe_, self.triangles_, self.room_, self.last_features_, self.last_impulses_);
     }
+    void prepare_shape();
     static Feature feature_of(const Triangle& triangle, const Vec3& weights);
     Vec3 last_impulse_at(const Feature& feature) const;
     double largest_move() const;
@@ -65,6 +70,8 @@ class RigidContact {
 
     cutting::Probe probe_;
     double size_;
+    std::shared_ptr<const RigidSolid> solid_;  // if the shape is one
+    double reach_ = 0.0;                       // of the shape, m
     Pose before_, after_;
     std::vector<std::uint32_t> triangles_;  // near the tool
     double room_ = -1.0;  // how far both may move before triangles_ is out of date, m

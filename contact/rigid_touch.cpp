@@ -6,25 +6,12 @@
 #include <limits>
 #include <optional>
 
+#include "incise/cutting/tools/solid.h"
+
 namespace incise::contact {
 
-namespace {
-
-using cutting::Capsule;
-using cutting::Cuboid;
-using cutting::HalfSpace;
-using cutting::Sphere;
-using Corners = std::array<Vec3, 3>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Vec3 point_of(const Corners& x, const Vec3& weights) {
-    return weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
-}
-
-/// Returns the weights of the point of a triangle that is closest to `p`.
-/// Source: Ericson 2005, Real-Time Collision Detection, closest point on a triangle by regions.
-Vec3 closest_weights(const Corners& x, const Vec3& p) {
+// Source: Ericson 2005, Real-Time Collision Detection, closest point on a triangle by regions.
+Vec3 closest_weights(const std::array<Vec3, 3>& x, const Vec3& p) {
     const Vec3 ab = x[1] - x[0], ac = x[2] - x[0], ap = p - x[0], bp = p - x[1], cp = p - x[2];
     const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp),
                  d5 = ab.dot(cp), d6 = ac.dot(cp);
@@ -46,6 +33,21 @@ Vec3 closest_weights(const Corners& x, const Vec3& p) {
     }
     const double sum = va + vb + vc;
     return {1.0 - (vb + vc) / sum, vb / sum, vc / sum};
+}
+
+namespace {
+
+using cutting::Capsule;
+using cutting::Cuboid;
+using cutting::HalfSpace;
+using cutting::Solid;
+using cutting::Sphere;
+using Corners = std::array<Vec3, 3>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vec3 point_of(const Corners& x, const Vec3& weights) {
+    return weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
 }
 
 /// Returns the part of the way from p to q at which the segment is closest to another one, a to b,
@@ -202,6 +204,11 @@ Box box_of(const cutting::ProbeShape& shape) {
                 capsule->from.cwiseMax(capsule->to) + radius};
     }
     if (const auto* box = std::get_if<Cuboid>(&shape)) return {-0.5 * box->size, 0.5 * box->size};
+    if (const auto* solid = std::get_if<Solid>(&shape)) {
+        Box round;
+        for (const Vec3& x : solid->surface.points) round.extend(x);
+        return round;
+    }
     return {Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 }
 
@@ -209,6 +216,16 @@ double half_width_of(const cutting::ProbeShape& shape) {
     if (const auto* ball = std::get_if<Sphere>(&shape)) return ball->radius;
     if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
     if (const auto* box = std::get_if<Cuboid>(&shape)) return 0.5 * box->size.minCoeff();
+    if (const auto* solid = std::get_if<Solid>(&shape)) {
+        // Half the thickness of a plate; a third of the radius of a ball.
+        double area = 0.0;
+        const auto at = [&](std::int64_t p) -> const Vec3& {
+            return solid->surface.points[static_cast<std::size_t>(p)];
+        };
+        for (const auto& [a, b, c] : solid->surface.triangles)
+            area += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+        return cutting::volume_of(solid->surface) / area;
+    }
     return infinity;
 }
 
@@ -217,6 +234,11 @@ double reach_of(const cutting::ProbeShape& shape) {
     if (const auto* capsule = std::get_if<Capsule>(&shape))
         return std::max(capsule->from.norm(), capsule->to.norm()) + capsule->radius;
     if (const auto* box = std::get_if<Cuboid>(&shape)) return 0.5 * box->size.norm();
+    if (const auto* solid = std::get_if<Solid>(&shape)) {
+        double square = 0.0;
+        for (const Vec3& x : solid->surface.points) square = std::max(square, x.squaredNorm());
+        return std::sqrt(square);
+    }
     return 0.0;
 }
 

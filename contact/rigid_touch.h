@@ -26,9 +26,13 @@ double half_width_of(const cutting::ProbeShape& shape);
 /// Returns the largest distance of the shape from the origin of its frame, m; 0 for a half space.
 double reach_of(const cutting::ProbeShape& shape);
 
+/// Returns the weights of the corners of a triangle of its point that is closest to `x`.
+Vec3 closest_weights(const std::array<Vec3, 3>& corners, const Vec3& x);
+
 /// Appends where a shape and a triangle are closest, if that is not farther than `farthest`, m, and
 /// the triangle has an area. For shapes with flat sides, so far as they are within that distance,
 /// appends the corners of the triangle as well.
+/// @param shape    any but a solid: see RigidSolid
 /// @param corners  in the frame of the shape, anticlockwise as seen from outside the tissue. If the
 ///                 axis of a ball or a capsule is within the tissue, the normal is that of the
 ///                 triangle.

@@ -316,7 +316,12 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
                 suits_mesh = true;
             });
         const auto* cut = std::get_if<CutSpec>(&spec.kind);
-        problems.try_to(cut ? cut->location : spec.location, [&] {
+        const auto* probe = std::get_if<ProbeSpec>(&spec.kind);
+        const bool has_surface = probe && !probe->surface.empty();
+        const std::string& place = cut           ? cut->location
+                                   : has_surface ? probe->location
+                                                 : spec.location;
+        problems.try_to(place, [&] {
             tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
                 require_tissue(tools.back(), *mesh);

@@ -156,6 +156,15 @@ struct CutSpec {
     std::string location = {};   ///< for messages: FILE:line:column of the key `surface`
 };
 
+/// A probe or an obstacle.
+struct ProbeSpec {
+    /// With a surface, its shape is read from there when the tool is built.
+    cutting::Probe probe;
+    std::filesystem::path surface;  ///< empty for other shapes
+    double scale = 1.0;             ///< factor of all coordinates of the surface
+    std::string location = {};      ///< for messages: FILE:line:column of the surface
+};
+
 /// A grasper, with the times at which its jaws close and open, s.
 struct GrasperSpec {
     cutting::Grasper grasper;
@@ -174,7 +183,7 @@ struct SutureSpec {
 /// one key, the time of the cut; so has a suture.
 struct ToolSpec {
     std::string name;
-    std::variant<Carver, BladeSpec, CutSpec, cutting::Probe, GrasperSpec, SutureSpec> kind;
+    std::variant<Carver, BladeSpec, CutSpec, ProbeSpec, GrasperSpec, SutureSpec> kind;
     bool is_obstacle = false;  ///< an [[obstacle]]: a probe that is always present
     /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path;
@@ -183,7 +192,7 @@ struct ToolSpec {
 
 /// True for blades, cuts and carvers.
 inline bool cuts(const ToolSpec& tool) {
-    return !std::holds_alternative<cutting::Probe>(tool.kind) &&
+    return !std::holds_alternative<ProbeSpec>(tool.kind) &&
            !std::holds_alternative<GrasperSpec>(tool.kind) &&
            !std::holds_alternative<SutureSpec>(tool.kind);
 }

@@ -11,6 +11,7 @@
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/tools/solid.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/topology/cell_point.h"
@@ -34,6 +35,9 @@ Extent extent_of(const auto& shape) {
     if (const auto* capsule = std::get_if<cutting::Capsule>(&shape))
         return {{capsule->from, capsule->to}, capsule->radius};
     Extent extent;
+    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, cutting::ProbeShape>)
+        if (const auto* solid = std::get_if<cutting::Solid>(&shape))
+            return {solid->surface.points, 0.0};
     const auto* box = std::get_if<cutting::Cuboid>(&shape);
     const Vec3 half = box ? Vec3(0.5 * box->size) : Vec3(Vec3::Zero());
     for (const double x : {-half.x(), half.x()})
@@ -76,6 +80,20 @@ cutting::ToolShape shape_of(const BladeSpec& blade) {
                           blade.cutting_force};
 }
 
+cutting::ToolShape shape_of(const ProbeSpec& spec, std::vector<std::string>& warnings) {
+    if (spec.surface.empty()) return spec.probe;
+    io::SurfaceFile file = io::read_surface(spec.surface);
+    for (Vec3& x : file.surface.points) x *= spec.scale;
+    bool was_turned = false;
+    cutting::Solid solid = cutting::make_solid(file.surface, was_turned);
+    if (was_turned) file.warnings.push_back("its triangles face inwards, and are turned");
+    if (const std::string fault = cutting::fault_of(solid); !fault.empty())
+        throw InputError(spec.surface.string() + ": " + fault);
+    for (const auto& warning : file.warnings)
+        warnings.push_back(spec.surface.string() + ": " + warning);
+    return cutting::Probe{std::move(solid), spec.probe.friction};
+}
+
 cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnings) {
     const double snap = cut.snap.value_or(cutting::default_snap);
     if (const auto* plane = std::get_if<PlaneSpec>(&cut.along))
@@ -115,7 +133,7 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     if (const auto* carver = std::get_if<Carver>(&spec.kind)) shape = *carver;
     if (const auto* blade = std::get_if<BladeSpec>(&spec.kind)) shape = shape_of(*blade);
     if (const auto* cut = std::get_if<CutSpec>(&spec.kind)) shape = shape_of(*cut, warnings);
-    if (const auto* probe = std::get_if<cutting::Probe>(&spec.kind)) shape = *probe;
+    if (const auto* probe = std::get_if<ProbeSpec>(&spec.kind)) shape = shape_of(*probe, warnings);
     const auto* grasper = std::get_if<GrasperSpec>(&spec.kind);
     if (grasper) shape = grasper->grasper;
     const auto* suture = std::get_if<SutureSpec>(&spec.kind);

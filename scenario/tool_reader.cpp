@@ -151,7 +151,7 @@ void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) 
         if (spec.path.size() > 1)
             check_jaws(tool, *grasper, spec.path.front().time, spec.path.back().time);
     }
-    if (std::holds_alternative<cutting::Probe>(spec.kind) && spec.path.size() == 1)
+    if (std::holds_alternative<ProbeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path",
                    "must have at least 2 keys: a probe is there from the first to the last; "
                    "for one that is always there, write an [[obstacle]]");
@@ -190,7 +190,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         if (kind.empty() || kind == "blade" || kind == "cut")
             snap = tool.number_if_given("snap", snap_limits);
         if (may_be("carver")) spec.kind = read_carver(tool);
-        if (kind == "probe") spec.kind = read_probe(tool);
+        if (kind == "probe") spec.kind = read_probe(tool, folder);
         if (kind == "grasper") spec.kind = read_grasper(tool);
         if (kind == "suture") spec.kind = read_suture(tool);
         if (may_be("blade")) spec.kind = read_blade(tool, snap);
@@ -212,7 +212,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
     int count = 0;
     for (const auto& obstacle : root.tables("obstacle", {obstacle_keys})) {
         ToolSpec spec;
-        spec.kind = read_obstacle(obstacle);
+        spec.kind = read_obstacle(obstacle, folder);
         spec.is_obstacle = true;
         spec.location = obstacle.location_text();
         spec.name = read_name(obstacle, "obstacle_" + std::to_string(++count), names);

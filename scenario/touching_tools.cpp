@@ -4,6 +4,7 @@
 #include <string>
 
 #include "incise/io/files/number_format.h"
+#include "incise/scenario/scenario_sections.h"
 
 namespace incise::scenario {
 
@@ -13,7 +14,9 @@ using io::format_number;
 using Keys = std::string_view;
 
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};
-constexpr Keys obstacle_shape_keys[] = {"half_space", "sphere", "capsule", "box"};
+constexpr Keys probe_shape_keys[] = {"sphere", "capsule", "box", "surface"};
+constexpr Keys obstacle_shape_keys[] = {"half_space", "sphere", "capsule", "box", "surface"};
+constexpr Keys surface_keys[] = {"file", "scale"};
 constexpr Keys half_space_keys[] = {"point", "normal"};
 constexpr Keys shape_sphere_keys[] = {"radius"};
 constexpr Keys capsule_keys[] = {"from", "to", "radius"};
@@ -55,29 +58,49 @@ std::optional<cutting::CarverShape> read_shape_of(const TableReader& tool) {
     return read_shape(*shape);
 }
 
-cutting::Probe read_probe(const TableReader& tool) {
-    cutting::Probe probe;
-    probe.friction = tool.number("friction", probe.friction, limits::non_negative);
-    if (const auto shape = read_shape_of(tool))
-        std::visit([&](const auto& one) { probe.shape = one; }, *shape);
-    return probe;
+namespace {
+
+/// Reads the key `shape` of a probe or an obstacle. Without a sound one, the shape is that of a
+/// default probe.
+ProbeSpec read_solid(const TableReader& tool, const Names& keys,
+                     const std::filesystem::path& folder) {
+    ProbeSpec spec;
+    spec.probe.friction = tool.number("friction", spec.probe.friction, limits::non_negative);
+    const auto shape = tool.table("shape", keys);
+    if (!shape) return spec;
+    if (keys.supported.size() == std::size(obstacle_shape_keys))
+        shape->one_of({"half_space", "sphere", "capsule", "box", "surface"});
+    else
+        shape->one_of({"sphere", "capsule", "box", "surface"});
+    if (const auto found = read_shape(*shape))
+        std::visit([&](const auto& one) { spec.probe.shape = one; }, *found);
+    if (const auto surface = shape->table("surface", {surface_keys})) {
+        surface->require("file", "a closed surface, as in file = \"probe.stl\"");
+        spec.location = surface->location_text("file");
+        auto file = read_file_name(*surface, "file", folder, "surface file (STL, OBJ, PLY or OFF)");
+        if (surface->has("file") && surface->is_sound("file")) spec.surface = std::move(file);
+        spec.scale = surface->number("scale", 1.0, limits::positive);
+    }
+    return spec;
 }
 
-cutting::Probe read_obstacle(const TableReader& obstacle) {
-    cutting::Probe probe;
-    probe.friction = obstacle.number("friction", probe.friction, limits::non_negative);
+}  // namespace
+
+ProbeSpec read_probe(const TableReader& tool, const std::filesystem::path& folder) {
+    return read_solid(tool, {probe_shape_keys}, folder);
+}
+
+ProbeSpec read_obstacle(const TableReader& obstacle, const std::filesystem::path& folder) {
+    ProbeSpec spec = read_solid(obstacle, {obstacle_shape_keys}, folder);
     const auto shape = obstacle.table("shape", {obstacle_shape_keys});
-    if (!shape) return probe;
-    shape->one_of({"half_space", "sphere", "capsule", "box"});
-    if (const auto found = read_shape(*shape))
-        std::visit([&](const auto& one) { probe.shape = one; }, *found);
+    if (!shape) return spec;
     if (const auto half_space = shape->table("half_space", {half_space_keys})) {
         half_space->require("point", "a point of its surface, as in point = [0, 0, 0]");
         half_space->require("normal", "towards the free side, as in normal = [0, 0, 1]");
-        probe.shape = cutting::HalfSpace{half_space->vector("point"),
-                                         half_space->direction("normal", Vec3::UnitZ())};
+        spec.probe.shape = cutting::HalfSpace{half_space->vector("point"),
+                                              half_space->direction("normal", Vec3::UnitZ())};
     }
-    return probe;
+    return spec;
 }
 
 GrasperSpec read_grasper(const TableReader& tool) {

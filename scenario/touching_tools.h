@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "incise/cutting/tools/tool.h"
@@ -14,8 +15,9 @@ namespace incise::scenario {
 /// faulty.
 std::optional<cutting::CarverShape> read_shape_of(const TableReader& tool);
 
-cutting::Probe read_probe(const TableReader& tool);
-cutting::Probe read_obstacle(const TableReader& obstacle);
+/// @param folder  of the scenario, to which the name of a surface file is relative
+ProbeSpec read_probe(const TableReader& tool, const std::filesystem::path& folder);
+ProbeSpec read_obstacle(const TableReader& obstacle, const std::filesystem::path& folder);
 GrasperSpec read_grasper(const TableReader& tool);
 SutureSpec read_suture(const TableReader& tool);
 

@@ -102,6 +102,7 @@ ToolId World::add_tool(ToolDef def) {
             throw InputError("tool '" + def.name + "': " + fault);
     Parts::Tool tool{std::move(def)};
     tool.surface = cutting::cut_surface_of(tool.def.shape);
+    Parts::measure(tool);
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
         if (blade->mode == CutMode::split) tool.cut = p.cutter.begin_cut(blade->snap);
     p.tools.push_back(std::move(tool));

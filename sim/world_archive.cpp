@@ -93,6 +93,7 @@ void World::Parts::prepare_tools() {
         if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))
             throw InputError("the cut of a tool is not there");
         tool.surface = cutting::cut_surface_of(tool.def.shape);
+        measure(tool);
         shapes.push_back(&tool.def.shape);
         if (cutting::feels_force(tool.def.shape) && !contact)
             throw InputError("a tool needs contact, and it has none");

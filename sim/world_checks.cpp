@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/cutting/tools/solid.h"
 #include "incise/io/files/number_format.h"
 #include "incise/physics/elements/workers.h"
 
@@ -173,6 +174,7 @@ struct FaultOfShape {
         return "its normal has a length of " + io::format_number(half_space.normal.norm()) +
                ": it must be 1";
     }
+    static std::string fault_of(const cutting::Solid& solid) { return cutting::fault_of(solid); }
     static std::string fault_of(const cutting::Sphere& sphere) {
         return fault_of_length("it has a radius", sphere.radius);
     }

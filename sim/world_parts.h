@@ -68,6 +68,7 @@ struct World::Parts {
         bool is_present = false;
         bool has_just_left = false;                // a probe or a grasper, in this step
         bool is_closed = false;                    // a grasper
+        double half_width = 0.0, reach = 0.0;      // of a probe, m: see rigid_touch.h
         double length = 0.0, target_length = 0.0;  // of a thread, as pose and target, m
         Pose pose = {};                            // at present
         Pose target = {};                          // at the end of the next step
@@ -87,6 +88,9 @@ struct World::Parts {
         Pose pose, target;
         static void archive(auto& ar, auto& self) { ar(self.pose, self.target); }
     };
+
+    /// Finds how thick and how large a probe is.
+    static void measure(Tool& tool);
 
     explicit Parts(WorldDef def);
     /// Restores what save() wrote of a world that was built with the materials and the solver of

@@ -178,15 +178,20 @@ std::size_t World::Parts::num_parts(double dt) const {
     return static_cast<std::size_t>(std::min(parts, 1e9));
 }
 
+void World::Parts::measure(Tool& tool) {
+    const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
+    if (!probe) return;
+    tool.half_width = contact::half_width_of(probe->shape);
+    tool.reach = contact::reach_of(probe->shape);
+}
+
 double World::Parts::parts_for(const Tool& tool) const {
     const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
     if (!probe || !tool.is_present) return 1.0;
     constexpr double most = 0.25;  // of an element, or of the probe
-    const double move =
-        (tool.target.position - tool.pose.position).norm() +
-        contact::reach_of(probe->shape) * tool.pose.rotation.angularDistance(tool.target.rotation);
-    return std::ceil(move /
-                     (most * std::min(contact::half_width_of(probe->shape), contact->size())));
+    const double move = (tool.target.position - tool.pose.position).norm() +
+                        tool.reach * tool.pose.rotation.angularDistance(tool.target.rotation);
+    return std::ceil(move / (most * std::min(tool.half_width, contact->size())));
 }
 
 void World::Parts::move_touching_tools(double from, double to, double moved) {

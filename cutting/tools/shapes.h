@@ -3,6 +3,7 @@
 #pragma once
 
 #include "incise/base/types.h"
+#include "incise/topology/surface_data.h"
 
 namespace incise::cutting {
 
@@ -21,6 +22,11 @@ struct Capsule {
 struct Cuboid {
     Vec3 size;  ///< edge lengths, centred at the origin
     static void archive(auto& ar, auto& self) { ar(self.size); }
+};
+/// What a closed surface encloses, m. See make_solid().
+struct Solid {
+    topology::SurfaceData surface;  ///< its triangles face outwards
+    static void archive(auto& ar, auto& self) { ar(self.surface); }
 };
 /// All points x with (x - point) . normal <= 0: a table, a wall.
 struct HalfSpace {

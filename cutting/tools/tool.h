@@ -59,7 +59,7 @@ struct SurfaceCut {
     static void archive(auto& ar, auto& self) { ar(self.surface, self.snap); }
 };
 
-using ProbeShape = std::variant<Sphere, Capsule, Cuboid, HalfSpace>;
+using ProbeShape = std::variant<Sphere, Capsule, Cuboid, HalfSpace, Solid>;
 
 /// A rigid tool that pushes tissue and cuts nothing.
 struct Probe {

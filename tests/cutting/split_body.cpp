@@ -222,45 +222,6 @@ NodesOfCut nodes_of_cut(const Mesh& mesh) {
     return {{parted.begin(), parted.end()}, {joined.begin(), joined.end()}};
 }
 
-SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions) {
-    const double g = 0.5 * (1.0 + std::sqrt(5.0));
-    SurfaceData s;
-    s.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-    s.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                   {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                   {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                   {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-    for (int i = 0; i < num_divisions; ++i) {
-        std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> middles;
-        const auto middle = [&](std::int64_t a, std::int64_t b) {
-            const auto next = static_cast<std::int64_t>(s.points.size());
-            const auto [place, is_new] = middles.try_emplace(std::minmax(a, b), next);
-            if (is_new)
-                s.points.push_back(0.5 * (s.points[static_cast<std::size_t>(a)] +
-                                          s.points[static_cast<std::size_t>(b)]));
-            return place->second;
-        };
-        std::vector<std::array<std::int64_t, 3>> finer;
-        for (const auto& [a, b, c] : s.triangles) {
-            const auto ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-            finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-        }
-        s.triangles = std::move(finer);
-    }
-    for (Vec3& x : s.points) x = centre + radius * x.normalized();
-    return s;
-}
-
-SurfaceData box_surface(const Box& box) {
-    SurfaceData s;
-    for (int i = 0; i < 8; ++i)
-        s.points.push_back(box.corner(static_cast<Box::CornerType>(i)));  // x runs first, then y
-    s.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return s;
-}
-
 SurfaceData sheet(const Vec3& centre, const Vec3& u, const Vec3& v, int n,
                   const std::function<Vec3(double, double)>& height) {
     SurfaceData surface;

@@ -11,8 +11,12 @@
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/surface_data.h"
+#include "support/surfaces.h"
 
 namespace incise::cutting {
+
+using test::box_surface;
+using test::icosphere;
 
 /// What one cut consists of: a surface, or those that a blade sweeps step by step.
 using Stroke = std::vector<std::unique_ptr<CutSurface>>;
@@ -79,10 +83,6 @@ struct PlaneOfCut {
 void expect_parted(const topology::Mesh& mesh, std::span<const Vec3> positions,
                    const PlaneOfCut& plane, double off);
 
-/// A sphere of 20 * 4^n triangles with their corners on it.
-topology::SurfaceData icosphere(const Vec3& centre, double radius, int num_divisions);
-/// Twelve triangles.
-topology::SurfaceData box_surface(const Box& box);
 /// A rectangle about `centre` from -u - v to u + v in n x n squares, raised by height(s, t), s and
 /// t from -1 to 1.
 topology::SurfaceData sheet(const Vec3& centre, const Vec3& u, const Vec3& v, int n,

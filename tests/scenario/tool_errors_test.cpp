@@ -83,6 +83,30 @@ TEST(ToolErrors, OfTheForceOfCutting) {
               "a lower toughness, or report the force");
 }
 
+TEST(ToolErrors, OfTheSurfaceOfAProbe) {
+    const std::string probe =
+        "[[obstacle]]\nshape = { surface = { file = \"liver.vtu\", scale = 0 } }\n";
+    EXPECT_EQ(error_of(probe),
+              "scene.toml:10:51: key 'obstacle[0].shape.surface.scale': 0 is not allowed: must be "
+              "above 0");
+    EXPECT_NE(error_of("[[obstacle]]\nshape = { surface = { file = \"none.stl\" } }\n")
+                  .find("there is no file"),
+              std::string::npos);
+    EXPECT_EQ(error_of("[[obstacle]]\nshape = { surface = {} }\n"),
+              "scene.toml:10:21: key 'obstacle[0].shape.surface.file': is missing: a closed "
+              "surface, as in file = \"probe.stl\"");
+    const support::TemporaryFolder folder;
+    const auto file = folder / "open.off";
+    std::ofstream(file) << "OFF\n3 1 0\n0 0 2\n1 0 2\n0 1 2\n3 0 1 2\n";
+    const auto errors = ScenarioFile(minimal + "[[obstacle]]\nshape = { surface = { file = \"" +
+                                     file.string() + "\" } }\n")
+                            .all_errors();
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0], "scene.toml:10:30: " + file.string() +
+                             ": its surface is open: it ends at [0.5, 0, 2]; close it, as a probe "
+                             "is solid");
+}
+
 TEST(ToolErrors, OfSutures) {
     const std::string suture = "[[tool]]\nkind = \"suture\"\nstiffness = 200\n";
     const std::string points = "points = [[0.2, 0.2, 1.1], [0.8, 0.2, 1.0]]\n";

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/num_cases.h"
+#include "support/surfaces.h"
 #include "tests/sim/soft_world.h"
 
 namespace incise::sim {
@@ -140,6 +141,25 @@ TEST(Contact, OfASlidingBallHasItsFriction) {
     };
     EXPECT_NEAR(drag(0.0), 0.0, 0.08);  // soft tissue tilts in front of the ball
     EXPECT_NEAR(drag(0.3), 0.3, 0.08);
+}
+
+// A ball of 1,280 triangles exerts what a ball exerts.
+TEST(Contact, OfASolidIsThatOfItsShape) {
+    const auto force_on = [](const cutting::ProbeShape& shape) {
+        WorldDef def = cube_at_rest();
+        def.mesh = cube(8);
+        def.damping = 20.0;
+        World world = held(World(std::move(def)));
+        const ToolId tool = world.add_tool({"ball", cutting::Probe{shape}});
+        world.place_tool(tool, at({0.052, 0.049, size + 0.02}));
+        move_tool(world, tool, {0.052, 0.049, size + 0.012}, 0.3);
+        move_tool(world, tool, {0.052, 0.049, size + 0.012}, 0.5);
+        EXPECT_LT(world.report().contact.max_penetration, 2e-5);
+        return world.report().tools[0].force.z();
+    };
+    const double of_ball = force_on(cutting::Sphere{0.02});
+    const double of_solid = force_on(cutting::Solid{test::icosphere(Vec3::Zero(), 0.02, 3)});
+    EXPECT_NEAR(of_solid, of_ball, 0.04 * of_ball);
 }
 
 // The parts of a step are so short that the ball does not pass through the surface.

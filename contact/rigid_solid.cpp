@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/rigid_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace incise::contact {
+
+namespace {
+
+Vec3 combined(const std::array<Vec3, 3>& x, const Vec3& weights) {
+    return weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
+}
+
+const NormalCone all_directions{Vec3::UnitZ(), std::numbers::pi};
+
+Box box_round(const Vec3& x, double distance) {
+    const Vec3 margin = Vec3::Constant(distance);
+    return {x - margin, x + margin};
+}
+
+}  // namespace
+
+// Source: Baerentzen, Aanaes 2005: with normals that are weighted by angles, the side of the
+// nearest point tells what is inside.
+RigidSolid::RigidSolid(const cutting::Solid& solid) : points_(solid.surface.points) {
+    for (const auto& [a, b, c] : solid.surface.triangles)
+        triangles_.push_back({NodeId(static_cast<std::size_t>(a)),
+                              NodeId(static_cast<std::size_t>(b)),
+                              NodeId(static_cast<std::size_t>(c))});
+    tree_.set_triangles(triangles_, points_);
+    tree_.fit(points_);
+    point_normals_.assign(points_.size(), Vec3::Zero());
+    std::map<std::pair<NodeId, NodeId>, Vec3> of_edge;
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const NodeId a = triangles_[t][k], b = triangles_[t][(k + 1) % 3],
+                         c = triangles_[t][(k + 2) % 3];
+            const Vec3 to_b = (points_[b.index()] - points_[a.index()]).normalized();
+            const Vec3 to_c = (points_[c.index()] - points_[a.index()]).normalized();
+            const double angle = std::acos(std::clamp(to_b.dot(to_c), -1.0, 1.0));
+            point_normals_[a.index()] += angle * tree_.normal(t);
+            const auto [it, is_new] = of_edge.try_emplace(std::minmax(a, b), tree_.normal(t));
+            if (!is_new) it->second += tree_.normal(t);
+        }
+    for (const Triangle& triangle : triangles_) {
+        auto& normals = edge_normals_.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            normals[k] = of_edge.at(std::minmax(triangle[k], triangle[(k + 1) % 3]));
+    }
+}
+
+RigidSolid::Corners RigidSolid::corners_of(std::uint32_t triangle) const {
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = points_[triangles_[triangle][k].index()];
+    return corners;
+}
+
+/// Finds the nearest point of the surface within a distance. Returns false if there is none.
+bool RigidSolid::find_nearest(const Vec3& x, double farthest, Nearest& nearest) const {
+    constexpr double rounding = 1e-9;
+    double least = farthest * farthest;
+    bool is_found = false;
+    tree_.for_each_against(box_round(x, farthest), all_directions, [&](std::uint32_t t) {
+        const Corners corners = corners_of(t);
+        const Vec3 weights = closest_weights(corners, x);
+        const Vec3 point = combined(corners, weights);
+        const double square = (point - x).squaredNorm();
+        if (square >= least) return;
+        least = square;
+        is_found = true;
+        nearest.point = point;
+        std::size_t num_zero = 0, zero = 0, one = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const bool is_zero = weights[static_cast<int>(k)] <= rounding;
+            num_zero += is_zero;
+            (is_zero ? zero : one) = k;
+        }
+        if (num_zero == 0)
+            nearest.normal = tree_.normal(t);
+        else if (num_zero == 1)
+            nearest.normal = edge_normals_[t][(zero + 1) % 3];
+        else
+            nearest.normal = point_normals_[triangles_[t][one].index()];
+    });
+    return is_found;
+}
+
+void RigidSolid::append_corner(const Corners& corners, int k, double farthest,
+                               std::vector<RigidTouch>& touches) const {
+    const Vec3& x = corners[static_cast<std::size_t>(k)];
+    Nearest nearest;
+    if (!find_nearest(x, farthest, nearest)) return;
+    const Vec3 away = x - nearest.point;
+    const double distance = away.norm();
+    const bool is_outside = away.dot(nearest.normal) >= 0.0;
+    // On the surface itself, only the normal tells the direction.
+    const Vec3 normal = distance > 1e-9 * farthest ? Vec3((is_outside ? away : -away) / distance)
+                                                   : nearest.normal.normalized();
+    touches.push_back({Vec3::Unit(k), nearest.point, normal, is_outside ? distance : -distance});
+}
+
+void RigidSolid::append_points(const Corners& corners, double farthest,
+                               std::vector<RigidTouch>& touches) const {
+    const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!(area.squaredNorm() > 0.0)) return;
+    const Vec3 outward = area.normalized();
+    Box box;
+    for (const Vec3& x : corners) box.extend(x);
+    const Vec3 margin = Vec3::Constant(farthest);
+    const Box near(box.min() - margin, box.max() + margin);
+    const auto look = [&](std::uint32_t t) {
+        for (const NodeId p : triangles_[t]) {
+            const Vec3& x = points_[p.index()];
+            // A point that faces the same way is on the other side of the tool.
+            if (!near.contains(x) || point_normals_[p.index()].dot(outward) >= 0.0) continue;
+            const Vec3 weights = closest_weights(corners, x);
+            const Vec3 away = combined(corners, weights) - x;
+            const double distance = away.norm();
+            const bool is_inside = away.dot(outward) > 0.0;
+            // Beside the triangle, others decide whether a point is in the tissue.
+            if (distance > farthest ||
+                (is_inside && distance > away.dot(outward) * (1.0 + 1e-6) + 1e-12 * farthest))
+                continue;
+            const Vec3 normal =
+                is_inside || !(distance > 1e-9 * farthest) ? Vec3(-outward) : Vec3(away / distance);
+            touches.push_back({weights, x, normal, is_inside ? -distance : distance});
+        }
+    };
+    tree_.for_each_against(near, all_directions, look);
+}
+
+void RigidSolid::append_touches(const Corners& corners, double farthest,
+                                std::vector<RigidTouch>& touches) const {
+    for (int k = 0; k < 3; ++k) append_corner(corners, k, farthest, touches);
+    append_points(corners, farthest, touches);
+}
+
+}  // namespace incise::contact
