@@ -26,6 +26,10 @@ double half_width_of(const cutting::ProbeShape& shape);
 /// Returns the largest distance of the shape from the origin of its frame, m; 0 for a half space.
 double reach_of(const cutting::ProbeShape& shape);
 
+/// True if a point, m, in the frame of the shape, is within the shape. Cost for a solid: O(n) in
+/// its triangles.
+bool is_inside(const cutting::ProbeShape& shape, const Vec3& x);
+
 /// Returns the weights of the corners of a triangle of its point that is closest to `x`.
 Vec3 closest_weights(const std::array<Vec3, 3>& corners, const Vec3& x);
 

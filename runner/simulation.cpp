@@ -13,6 +13,7 @@
 #include "incise/scenario/body.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/step_limit.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::runner {
 
@@ -90,8 +91,12 @@ void Simulation::step() {
     last_step_ = step.to - step.from;
     report_edits();
     warn_of_torn_sutures();
+    note_overlap();
     for (Observer* observer : observers_) observer->on_step(*this);
-    if (is_finished()) warn_of_lost_elements();
+    if (is_finished()) {
+        warn_of_lost_elements();
+        warn_of_overlaps();
+    }
     report_frame();
     report_pause();
 }
@@ -151,6 +156,25 @@ void Simulation::draw_suture(sim::ToolId tool, Interval step) {
     world_.set_suture_length(tool, now + part * (*script.length - now));
 }
 
+void Simulation::note_overlap() {
+    const double depth = world_.report().contact.max_penetration;
+    if (depth > overlap_.depth) overlap_ = {depth, time()};
+}
+
+void Simulation::warn_of_overlaps() {
+    // Contact keeps overlaps to some thousandths of an element.
+    constexpr double large = 0.2;
+    const double size = topology::mean_element_length(mesh());
+    if (!(overlap_.depth > large * size)) return;
+    std::ostringstream text;
+    text.precision(2);
+    text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size
+         << " of an element, at t = " << io::format_number(overlap_.time)
+         << " s: bodies or tools that begin in each other, thin parts that are pressed hard, or a "
+            "tool that is too fast; see max_penetration in history.csv";
+    warnings_.push_back(text.str());
+}
+
 void Simulation::warn_of_torn_sutures() {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
         const bool is_suture = std::holds_alternative<cutting::Suture>(world_.tool({i}).shape);
@@ -173,12 +197,12 @@ void Simulation::report_edits() {
 }
 
 void Simulation::save(ArchiveWriter& ar) const {
-    ar(world_.save(), edits_, last_step_, num_frames_);
+    ar(world_.save(), edits_, last_step_, num_frames_, overlap_);
 }
 
 void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
-    ar(edits_, last_step_, num_frames_);
+    ar(edits_, last_step_, num_frames_, overlap_);
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
     if (world_.num_tools() != scripts_.size())

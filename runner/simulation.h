@@ -120,8 +120,16 @@ class Simulation {
     void move_jaws(sim::ToolId tool, double time);
     void draw_suture(sim::ToolId tool, Interval step);
     void warn_of_torn_sutures();
+    void note_overlap();
+    void warn_of_overlaps();
 
-    std::vector<Script> scripts_;    // by the number of the tool in the world
+    std::vector<Script> scripts_;  // by the number of the tool in the world
+    /// The largest overlap of surfaces so far.
+    struct Overlap {
+        double depth = 0.0, time = 0.0;  // m, s
+        static void archive(auto& ar, auto& self) { ar(self.depth, self.time); }
+    };
+    Overlap overlap_;
     std::vector<std::size_t> torn_;  // sutures that a warning has named
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;

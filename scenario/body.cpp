@@ -325,6 +325,8 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
             tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
                 require_tissue(tools.back(), *mesh);
+                if (const auto inside = warning_of_tissue_inside(tools.back(), *mesh))
+                    warnings.push_back(located(spec.location, *inside));
                 require_divisible(tools.back(), *mesh, end_time);
                 if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
                     warnings.push_back(located(spec.location, *near));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/contact/rigid_touch.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
@@ -166,6 +167,35 @@ void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh) {
              << " m, from the body at rest; check its coordinates and units";
         throw InputError(text.str());
     }
+}
+
+std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
+                                                    const topology::Mesh& mesh) {
+    const auto* probe = std::get_if<cutting::Probe>(&tool.shape);
+    if (!probe || tool.path.keys().empty()) return std::nullopt;
+    const Pose& pose = tool.path.keys().front().value;
+    const double size = topology::mean_element_length(mesh);
+    const Vec3 margin = Vec3::Constant(1e-3 * size);
+    const Box box = contact::box_of(probe->shape);
+    std::size_t count = 0;
+    Vec3 first = Vec3::Zero();
+    for (const NodeId n : mesh.nodes()) {
+        const Vec3 x = pose.to_tool(mesh.rest_position(n));
+        // What lies on the surface is not inside.
+        if (!Box(box.min() + margin, box.max() - margin).contains(x)) continue;
+        if (!contact::is_inside(probe->shape, x)) continue;
+        if (const auto* half_space = std::get_if<cutting::HalfSpace>(&probe->shape);
+            half_space && half_space->normal.dot(x - half_space->point) > -1e-3 * size)
+            continue;
+        if (count++ == 0) first = mesh.rest_position(n);
+    }
+    if (count == 0) return std::nullopt;
+    std::ostringstream text;
+    text << "tool '" << tool.name << "' has " << count << (count == 1 ? " point" : " points")
+         << " of the body at rest inside it where its path begins, one of them at [" << first.x()
+         << ", " << first.y() << ", " << first.z()
+         << "]: such tissue is pushed out slowly or not at all; let the path begin outside";
+    return text.str();
 }
 
 bool may_meet(const ScriptedTool& tool, const Box& box) {

@@ -42,6 +42,11 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
 /// Throws InputError if a point of a suture is farther from the body at rest than its reach.
 void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh);
 
+/// Returns a warning if points of the body at rest are inside a probe where its path begins.
+/// Cost: O(#nodes).
+std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
+                                                    const topology::Mesh& mesh);
+
 /// Returns false only if no part of the tool is ever in the box.
 /// Cost: proportional to the size of its path or of its surface.
 /// @pre  the tool has a surface, or a path with a key

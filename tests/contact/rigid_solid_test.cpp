@@ -108,6 +108,15 @@ TEST(RigidSolid, SeesASharpPointOnTheMiddleOfATriangle) {
     }
 }
 
+TEST(RigidSolid, KnowsWhatIsInside) {
+    const cutting::ProbeShape shape = solid_of(test::box_surface(brick));
+    for (std::uint64_t seed = 0; seed < test::num_cases(500); ++seed) {
+        test::Random random(seed);
+        const Vec3 x = random.vector(0.6);
+        EXPECT_EQ(is_inside(shape, x), distance_to_brick(x) < 0.0) << x.transpose();
+    }
+}
+
 TEST(RigidSolid, IsSoundOnlyIfItIsClosed) {
     topology::SurfaceData surface = test::box_surface(brick);
     EXPECT_EQ(cutting::fault_of(Solid{surface}), "");

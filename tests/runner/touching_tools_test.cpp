@@ -66,6 +66,26 @@ TEST(TouchingTools, ASutureThatTearsIsReportedOnce) {
               std::string::npos);
 }
 
+TEST(TouchingTools, WarnOfTissueThatIsInsideThem) {
+    const RunFolder folder;
+    const auto warnings_with = [&](const std::string& shape) {
+        return Simulation(folder.scenario(soft_cube + dynamics(0.1) +
+                                          "[[obstacle]]\nname = \"stone\"\nshape = { " + shape +
+                                          " }\n"))
+            .warnings();
+    };
+    EXPECT_TRUE(warnings_with("half_space = { point = [0, 0, 0], normal = [0, 0, 1] }").empty());
+    for (const std::string shape :
+         {"half_space = { point = [0, 0, 0.05], normal = [0, 0, 1] }", "sphere = { radius = 0.05 }",
+          "capsule = { from = [0, 0, 0], to = [0, 0, 0.1], radius = 0.01 }",
+          "box = { size = [0.1, 0.1, 0.1] }"}) {
+        SCOPED_TRACE(shape);
+        ASSERT_EQ(warnings_with(shape).size(), 1u);
+        EXPECT_NE(warnings_with(shape)[0].find("tool 'stone' has "), std::string::npos);
+        EXPECT_NE(warnings_with(shape)[0].find("of the body at rest inside it"), std::string::npos);
+    }
+}
+
 const std::vector<float>& floats(const io::Frame& frame, const std::string& name) {
     return std::get<std::vector<float>>(
         std::ranges::find(frame.point_fields, name, &io::Field::name)->values);
