@@ -33,6 +33,48 @@ namespace detail {
 template <class Number, std::size_t n>
 using Square = std::array<std::array<Number, n>, n>;
 
+/// A number as the unevaluated sum of two, which has twice the digits of a double.
+/// Source: [Shewchuk 1997].
+struct Twofold {
+    double high = 0.0, low = 0.0;
+    Twofold() = default;
+    explicit Twofold(double value) : high(value) {}
+    Twofold(double high_part, double low_part) : high(high_part), low(low_part) {}
+};
+
+/// Returns the exact sum of two doubles.
+inline Twofold exact_sum(double a, double b) {
+    const double sum = a + b, part_of_b = sum - a;
+    return {sum, (a - (sum - part_of_b)) + (b - part_of_b)};
+}
+
+/// Returns the exact product of two doubles, unless it overflows or underflows.
+inline Twofold exact_product(double a, double b) {
+    constexpr double split = 0x1.0p27 + 1.0;
+    const double shifted_a = split * a, shifted_b = split * b;
+    const double a_high = shifted_a - (shifted_a - a), b_high = shifted_b - (shifted_b - b);
+    const double a_low = a - a_high, b_low = b - b_high, product = a * b;
+    return {product,
+            ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+/// Returns the sum, with an error of less than 2^-100 of the sum of the absolute values.
+inline Twofold operator+(const Twofold& a, const Twofold& b) {
+    const Twofold sum = exact_sum(a.high, b.high);
+    const double rest = sum.low + (a.low + b.low), high = sum.high + rest;
+    return {high, rest - (high - sum.high)};
+}
+inline Twofold operator-(const Twofold& a, const Twofold& b) {
+    return a + Twofold{-b.high, -b.low};
+}
+
+/// Returns the product, with an error of less than 2^-100 of its absolute value.
+inline Twofold operator*(const Twofold& a, const Twofold& b) {
+    const Twofold product = exact_product(a.high, b.high);
+    const double rest = product.low + (a.high * b.low + a.low * b.high), high = product.high + rest;
+    return {high, rest - (high - product.high)};
+}
+
 /// Returns the matrix of the determinant, without the row of ones. That row is eliminated by
 /// subtracting the last column. If `axis` is not negative, the row of this axis has 1 for tissue
 /// and 0 for other points. The determinant is then the derivative with respect to the shift along
@@ -107,6 +149,22 @@ std::optional<ShiftedSign> rounded_sign(const std::array<const ShiftedPoint<n>*,
     return std::nullopt;
 }
 
+/// Returns the sign as rounded_sign() does, from twice the digits.
+template <std::size_t n>
+std::optional<int> twofold_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
+    const auto m = reduced<double, n>(points, axis);
+    // Differences are exact, as is what products lose unless they underflow. With entries that are
+    // not huge, underflows stay below the least uncertainty.
+    for (const auto& row : m)
+        for (const double entry : row)
+            if (!(std::abs(entry) < 0x1.0p40)) return std::nullopt;
+    constexpr double bound = 64.0 * 0x1.0p-100;
+    const double uncertainty = bound * permanent(m);
+    const double value = determinant(reduced<Twofold, n>(points, axis)).high;
+    if (std::abs(value) > uncertainty && uncertainty > 0x1.0p-900) return value > 0.0 ? 1 : -1;
+    return std::nullopt;
+}
+
 template <std::size_t n>
 ShiftedSign exact_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, int axis) {
     const CGAL::Mpzf exact = determinant(reduced<CGAL::Mpzf, n>(points, axis));
@@ -116,23 +174,32 @@ ShiftedSign exact_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points, 
 }  // namespace detail
 
 /// Returns the orientation of n + 1 points in n dimensions (3, or 4 with time as the last). Returns
-/// nothing if this needs exact arithmetic, which takes about a hundred times as long.
+/// nothing if this needs more digits, which takes ten to a hundred times as long.
 template <std::size_t n>
 std::optional<ShiftedSign> clear_orientation(
     const std::array<const ShiftedPoint<n>*, n + 1>& points) {
     return detail::rounded_sign<n>(points, -1);
 }
 
-/// Returns the orientation of n + 1 points, by exact arithmetic where necessary.
+/// Returns the sign of the orientation of n + 1 points, by exact arithmetic where necessary.
 template <std::size_t n>
-ShiftedSign orientation(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
+int orientation_sign(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
     const auto sign = [&](int axis) {
-        const auto rounded = detail::rounded_sign<n>(points, axis);
-        return rounded ? *rounded : detail::exact_sign<n>(points, axis);
+        if (const auto rounded = detail::rounded_sign<n>(points, axis)) return rounded->sign;
+        if (const auto finer = detail::twofold_sign<n>(points, axis)) return *finer;
+        return detail::exact_sign<n>(points, axis).sign;
     };
-    ShiftedSign result = sign(-1);
-    for (int axis = 0; axis < 3 && result.sign == 0; ++axis) result.sign = sign(axis).sign;
+    int result = sign(-1);
+    for (int axis = 0; axis < 3 && result == 0; ++axis) result = sign(axis);
     return result;
+}
+
+/// Returns the value of the orientation of n + 1 points, without the shift. Where near zero, it is
+/// the exact value rounded to double.
+template <std::size_t n>
+double orientation_value(const std::array<const ShiftedPoint<n>*, n + 1>& points) {
+    const auto rounded = detail::rounded_sign<n>(points, -1);
+    return rounded ? rounded->value : detail::exact_sign<n>(points, -1).value;
 }
 
 }  // namespace incise::cutting

@@ -17,27 +17,69 @@ using EventTriangle = std::array<const Event*, 3>;
 /// whose coefficients are the minors with alternating signs. The triangles meet if the coefficients
 /// of the first are all of one sign and those of the second all of the other. The first three
 /// coefficients are then the weights of the meeting point in the first triangle.
-bool triangles_meet(const EventTriangle& s, const EventTriangle& t,
+/// @param num_unknown  6, or 3 if the signs of the last three are known to agree with the others
+bool triangles_meet(const EventTriangle& s, const EventTriangle& t, std::size_t num_unknown,
                     std::array<double, 3>& weights) {
     const std::array<const Event*, 6> events = {s[0], s[1], s[2], t[0], t[1], t[2]};
+    const auto minor = [&](std::size_t k) {
+        std::array<const Event*, 5> others{};
+        for (std::size_t i = 0, n = 0; i < 6; ++i)
+            if (i != k) others[n++] = events[i];
+        return others;
+    };
     int common_sign = 0;
-    std::array<bool, 6> is_known{};
+    std::array<bool, 6> is_clear{};
+    const auto agrees = [&](std::size_t k, int sign) {
+        if ((k % 2 == 1) != (k >= 3)) sign = -sign;
+        if (sign == 0 || sign == -common_sign) return false;
+        common_sign = sign;
+        return true;
+    };
     // Exact arithmetic only where necessary: mostly, the clear signs already exclude a meeting.
-    for (const bool is_exact : {false, true})
-        for (std::size_t k = 0; k < 6; ++k) {
-            if (is_known[k]) continue;
-            std::array<const Event*, 5> others{};
-            for (std::size_t i = 0, n = 0; i < 6; ++i)
-                if (i != k) others[n++] = events[i];
-            const std::optional<ShiftedSign> minor =
-                is_exact ? orientation<4>(others) : clear_orientation<4>(others);
-            if (!minor) continue;
-            const int sign = (k % 2 == 1) != (k >= 3) ? -minor->sign : minor->sign;
-            if (sign == 0 || sign == -common_sign) return false;
-            common_sign = sign;
-            is_known[k] = true;
-            if (k < 3) weights[k] = std::abs(minor->value);
+    for (std::size_t k = 0; k < num_unknown; ++k)
+        if (const auto clear = clear_orientation<4>(minor(k))) {
+            if (!agrees(k, clear->sign)) return false;
+            is_clear[k] = true;
+            if (k < 3) weights[k] = std::abs(clear->value);
         }
+    for (std::size_t k = 0; k < num_unknown; ++k)
+        if (!is_clear[k] && !agrees(k, orientation_sign<4>(minor(k)))) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!is_clear[k]) weights[k] = std::abs(orientation_value<4>(minor(k)));
+    return true;
+}
+
+using Place = ShiftedPoint<3>;
+
+Place place(const Vec3& x, bool is_tissue) { return {{x.x(), x.y(), x.z()}, is_tissue}; }
+
+/// True if a segment passes through a triangle in space. The ends are on different sides of the
+/// triangle, and the triangle's edges are all on the same side of the segment.
+bool passes_through(const std::array<Place, 2>& ends, const std::array<Place, 3>& triangle) {
+    const auto& [from, to] = ends;
+    const auto& [u, v, w] = triangle;
+    const std::array<std::array<const Place*, 4>, 5> tetrahedra = {
+        {{&from, &u, &v, &w},
+         {&to, &w, &v, &u},  // turned round, so that the signs are equal
+         {&from, &to, &u, &v},
+         {&from, &to, &v, &w},
+         {&from, &to, &w, &u}}};
+    std::array<int, 2> common_sign{};  // of the first two, and of the others
+    const auto agrees = [&](std::size_t k, int sign) {
+        int& common = common_sign[k < 2 ? 0 : 1];
+        if (sign == 0 || sign == -common) return false;
+        common = sign;
+        return true;
+    };
+    std::array<bool, 5> is_clear{};
+    // Exact arithmetic only where necessary, as in triangles_meet().
+    for (std::size_t k = 0; k < 5; ++k)
+        if (const auto clear = clear_orientation<3>(tetrahedra[k])) {
+            if (!agrees(k, clear->sign)) return false;
+            is_clear[k] = true;
+        }
+    for (std::size_t k = 0; k < 5; ++k)
+        if (!is_clear[k] && !agrees(k, orientation_sign<3>(tetrahedra[k]))) return false;
     return true;
 }
 
@@ -52,11 +94,24 @@ std::array<Event, 4> corners(const MovingSegment& s, bool is_tissue) {
 template <class Visit>
 void for_crossings(const MovingSegment& tissue, const MovingSegment& blade, Visit visit) {
     const auto p = corners(tissue, true), q = corners(blade, false);
+    const auto in_space = [](const Event& e) {
+        return Place{{e.x[0], e.x[1], e.x[2]}, e.is_tissue};
+    };
+    const bool is_at_rest = tissue.a[0] == tissue.a[1] && tissue.b[0] == tissue.b[1];
     std::array<double, 3> weights;
+    // Tissue at rest can only meet what the blade sweeps where it passes through that in space:
+    // docs/theory.md.
+    const auto may_meet = [&](std::size_t j) {
+        return !is_at_rest || passes_through({in_space(p[0]), in_space(p[1])},
+                                             {in_space(q[0]), in_space(q[j]), in_space(q[j + 1])});
+    };
+    const std::array<bool, 2> may_meet_triangle{may_meet(1), may_meet(2)};
     // Both triangles of a surface contain its diagonal from (a, before) to (b, after).
     for (const std::size_t i : {1u, 2u})
         for (const std::size_t j : {1u, 2u}) {
-            if (!triangles_meet({&p[0], &p[i], &p[i + 1]}, {&q[0], &q[j], &q[j + 1]}, weights))
+            if (!may_meet_triangle[j - 1] ||
+                !triangles_meet({&p[0], &p[i], &p[i + 1]}, {&q[0], &q[j], &q[j + 1]},
+                                is_at_rest ? 3 : 6, weights))
                 continue;
             // Corners 1 and 2 are those of b.
             const double towards_b = i == 1 ? weights[1] + weights[2] : weights[1];
@@ -90,18 +145,9 @@ bool cross(const MovingSegment& tissue, const MovingSegment& blade) {
 }
 
 bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& triangle) {
-    using Point = ShiftedPoint<3>;
-    const auto point = [](const Vec3& x, bool is_tissue) {
-        return Point{{x.x(), x.y(), x.z()}, is_tissue};
-    };
-    const Point from = point(p, false), to = point(q, false);
-    const Point u = point(triangle[0], true), v = point(triangle[1], true),
-                w = point(triangle[2], true);
-    const int side = orientation<3>({&from, &u, &v, &w}).sign;
-    if (side == 0 || orientation<3>({&to, &u, &v, &w}).sign != -side) return false;
-    const int turn = orientation<3>({&from, &to, &u, &v}).sign;
-    return turn != 0 && orientation<3>({&from, &to, &v, &w}).sign == turn &&
-           orientation<3>({&from, &to, &w, &u}).sign == turn;
+    return passes_through(
+        {place(p, false), place(q, false)},
+        {place(triangle[0], true), place(triangle[1], true), place(triangle[2], true)});
 }
 
 }  // namespace incise::cutting

@@ -30,16 +30,15 @@ double crossing(const Vec3& a, const Vec3& b, const Triangle& triangle) {
     const auto from = point(a, true), to = point(b, true);
     const auto u = point(triangle[0], false), v = point(triangle[1], false),
                w = point(triangle[2], false);
-    const ShiftedSign below = orientation<3>({&from, &u, &v, &w});
-    if (below.sign == 0) return -1.0;
-    const ShiftedSign above = orientation<3>({&to, &u, &v, &w});
-    if (above.sign != -below.sign) return -1.0;
-    const int turn = orientation<3>({&from, &to, &u, &v}).sign;
-    if (turn == 0 || orientation<3>({&from, &to, &v, &w}).sign != turn ||
-        orientation<3>({&from, &to, &w, &u}).sign != turn)
+    const int below = orientation_sign<3>({&from, &u, &v, &w});
+    if (below == 0 || orientation_sign<3>({&to, &u, &v, &w}) != -below) return -1.0;
+    const int turn = orientation_sign<3>({&from, &to, &u, &v});
+    if (turn == 0 || orientation_sign<3>({&from, &to, &v, &w}) != turn ||
+        orientation_sign<3>({&from, &to, &w, &u}) != turn)
         return -1.0;
-    const double height = std::abs(below.value) + std::abs(above.value);
-    return height > 0.0 ? std::abs(below.value) / height : 0.5;
+    const double depth = std::abs(orientation_value<3>({&from, &u, &v, &w})),
+                 height = depth + std::abs(orientation_value<3>({&to, &u, &v, &w}));
+    return height > 0.0 ? depth / height : 0.5;
 }
 
 /// Returns the squared distance of x from the triangle: from its inside if x is over it, else from
