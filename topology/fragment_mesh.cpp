@@ -274,6 +274,13 @@ void FragmentMesh::star(NodeId n, std::vector<ElementId>& elements) const {
     std::sort(elements.begin(), elements.end());
 }
 
+bool FragmentMesh::has_element_at(NodeId n) const {
+    return std::ranges::any_of(carriers_at(origins_[n.index()]), [&](ElementId carrier) {
+        return std::ranges::any_of(fragments_of(carrier),
+                                   [&](ElementId e) { return corner_of(e, n) >= 0; });
+    });
+}
+
 ElementId FragmentMesh::incident_element(NodeId n) const {
     std::vector<ElementId> elements;
     star(n, elements);

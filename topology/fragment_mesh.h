@@ -205,6 +205,8 @@ class FragmentMesh {
     /// Drops the entry of a list that has become what an absent entry means.
     static void drop_if_trivial(std::unordered_map<ElementId, std::vector<ElementId>>& lists,
                                 ElementId key);
+    /// True if star() is not empty.
+    bool has_element_at(NodeId n) const;
     std::span<const ElementId> fragments_of(const ElementId& carrier) const;
     std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
     int region_of_carrier(ElementId carrier) const { return regions_[carrier.index()]; }

@@ -2,6 +2,7 @@
 #include "incise/topology/fragment_parts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "incise/base/disjoint_set.h"
@@ -63,7 +64,7 @@ void FragmentParts::add(ElementId carrier, std::span<const ElementId> cells, dou
     part.volume = volume;
     part.master = index;
     part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
-    part.is_held = is_held(cells);
+    part.is_held = part.is_light && is_held(cells);
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());
     part.is_element = fragments_.carrier(part.fragment) == carrier;
@@ -77,7 +78,8 @@ void FragmentParts::find(ElementId carrier) {
             add(carrier, {&carrier, 1}, rest_volume(material_, carrier));
         return;
     }
-    std::vector<ElementId> cells;
+    std::vector<ElementId>& cells = cells_;
+    cells.clear();
     for (const ElementId cell : fragments_.cells_of_carrier(carrier))
         if (material_.is_alive(cell)) cells.push_back(cell);
     DisjointSet groups(cells.size());
@@ -91,19 +93,25 @@ void FragmentParts::find(ElementId carrier) {
             groups.join(static_cast<std::int32_t>(i),
                         static_cast<std::int32_t>(it - cells.begin()));
         }
-    std::vector<std::vector<ElementId>> members(cells.size());
-    std::vector<double> volumes(cells.size(), 0.0);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const auto first = static_cast<std::size_t>(groups.find(static_cast<std::int32_t>(i)));
-        members[first].push_back(cells[i]);
-        volumes[first] += rest_volume(material_, cells[i]);
+    std::vector<ElementId>& members = members_;
+    for (std::size_t first = 0; first < cells.size(); ++first) {
+        if (groups.find(static_cast<std::int32_t>(first)) != static_cast<std::int32_t>(first))
+            continue;
+        members.clear();
+        double volume = 0.0;
+        for (std::size_t i = first; i < cells.size(); ++i) {
+            if (groups.find(static_cast<std::int32_t>(i)) != static_cast<std::int32_t>(first))
+                continue;
+            members.push_back(cells[i]);
+            volume += rest_volume(material_, cells[i]);
+        }
+        add(carrier, members, volume);
     }
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        if (!members[i].empty()) add(carrier, members[i], volumes[i]);
 }
 
 std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t index) {
     Part& part = *parts_[index];
+    assert(part.is_light);
     if (part.has_neighbors) return part.neighbors;
     part.has_neighbors = true;
     for (const ElementId cell : part.cells)
@@ -111,17 +119,29 @@ std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t in
             const ElementId other = material_.neighbor({cell, f}).element;
             if (!other.is_valid() || fragments_.carrier_of_cell(other) == part.carrier) continue;
             const std::size_t neighbor = of_cell(other);
-            const double area = part.is_light ? rest_area(material_, {cell, f}) : 0.0;
+            const double area = rest_area(material_, {cell, f});
             const auto known = std::ranges::find(part.neighbors, neighbor, &Neighbor::part);
             if (known == part.neighbors.end())
                 part.neighbors.push_back({neighbor, area});
             else
                 known->area += area;
         }
-    if (part.is_light)
-        std::ranges::sort(part.neighbors, {},
-                          [&](const Neighbor& n) { return parts_[n.part]->head(); });
+    std::ranges::sort(part.neighbors, {},
+                      [&](const Neighbor& n) { return parts_[n.part]->head(); });
     return part.neighbors;
+}
+
+/// Returns the cells of other carriers that share faces with a part, one for each face.
+std::span<const ElementId> FragmentParts::cells_beyond(Part& part) {
+    if (part.has_beyond) return part.beyond;
+    part.has_beyond = true;
+    for (const ElementId cell : part.cells)
+        for (int f = 0; f < material_.num_faces(cell); ++f) {
+            const ElementId other = material_.neighbor({cell, f}).element;
+            if (other.is_valid() && fragments_.carrier_of_cell(other) != part.carrier)
+                part.beyond.push_back(other);
+        }
+    return part.beyond;
 }
 
 bool FragmentParts::is_undivided(ElementId carrier, std::span<const ElementId> parted) {
@@ -142,7 +162,7 @@ std::vector<std::size_t> FragmentParts::light_cluster(std::span<const ElementId>
         cluster.push_back(part);
     };
     const auto add_beside = [&](std::size_t part) {
-        for (const Neighbor& neighbor : neighbors(part)) add(neighbor.part);
+        for (const ElementId cell : cells_beyond(*parts_[part])) add(of_cell(cell));
     };
     for (const ElementId carrier : touched) {
         if (is_undivided(carrier, parted)) continue;
@@ -287,11 +307,13 @@ DisjointSet FragmentParts::connected_elements(const std::vector<std::size_t>& ne
                 static_cast<std::int32_t>(end - begin);
         DisjointSet groups(static_cast<std::size_t>(end - begin));
         for (auto it = begin; it != end; ++it)
-            for (const Neighbor& next : neighbors(near[static_cast<std::size_t>(it->second)]))
-                if (const std::int32_t local = parts_[next.part]->local; local >= 0)
-                    if (const std::int32_t place = place_of[static_cast<std::size_t>(local)];
-                        place >= 0)
-                        groups.join(static_cast<std::int32_t>(it - begin), place);
+            for_each_known_neighbor(
+                near[static_cast<std::size_t>(it->second)], [&](std::size_t next) {
+                    const std::int32_t local = parts_[next]->local;
+                    if (local < 0 || local > it->second) return;  // the other one joins them
+                    const std::int32_t place = place_of[static_cast<std::size_t>(local)];
+                    if (place >= 0) groups.join(static_cast<std::int32_t>(it - begin), place);
+                });
         std::vector<std::int32_t> first(static_cast<std::size_t>(end - begin), -1);
         for (auto it = begin; it != end; ++it) {
             place_of[static_cast<std::size_t>(it->second)] = -1;

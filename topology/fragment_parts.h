@@ -20,26 +20,30 @@ class FragmentParts {
   public:
     struct Neighbor {
         std::size_t part;
-        double area;  // of the shared faces, at rest, m2; only found for light parts
+        double area;  // of the shared faces, at rest, m2
     };
     struct Part {
         ElementId carrier;
         std::pmr::vector<ElementId> cells;     // in ascending order
         std::pmr::vector<Neighbor> neighbors;  // see neighbors()
+        std::pmr::vector<ElementId> beyond;    // see for_each_known_neighbor()
         double volume = 0.0;                   // at rest, m3
         std::size_t master = 0;   // the part whose fragment carries it; see join_light()
         ElementId fragment;       // that carries it
         std::int32_t local = -1;  // scratch of users
         bool is_light = false;
-        bool is_held = false;           // has material at a node that is held
+        bool is_held = false;           // is light, and has material at a node that is held
         bool is_element = false;        // carried by a fragment of its own carrier
         bool has_neighbors = false;     // found
+        bool has_beyond = false;        // found
         bool is_in_cluster = false;     // see light_cluster()
         bool is_kept_together = false;  // see keep_bridges()
         bool is_waiting = false;        // see join_in_rounds()
+        bool is_open = false;           // of a carrier that join_light() returned; set by users
         ElementId head() const { return cells.front(); }
 
-        explicit Part(std::pmr::memory_resource& memory) : cells(&memory), neighbors(&memory) {}
+        explicit Part(std::pmr::memory_resource& memory)
+            : cells(&memory), neighbors(&memory), beyond(&memory) {}
     };
     /// The parts from `begin` to before `end`.
     struct Range {
@@ -61,9 +65,18 @@ class FragmentParts {
     /// Returns the volume of a part over that of its carrier. The shares of all parts of a carrier
     /// that no edit has taken anything from add up to 1.
     double share_of(std::size_t part);
-    /// Returns the parts of other carriers that share faces with a part; those of a light part in
-    /// the order of their heads.
+    /// Returns the parts of other carriers that share faces with a light part, in the order of
+    /// their heads.
     std::span<const Neighbor> neighbors(std::size_t index);
+    /// Calls visit(part) for the parts of other carriers that share faces with a part, in no
+    /// particular order and for some of them several times. Leaves out those of carriers whose
+    /// parts have not been asked for yet.
+    template <class Visit>
+    void for_each_known_neighbor(std::size_t index, Visit visit) {
+        for (const ElementId cell : cells_beyond(*parts_[index]))
+            if (const std::int32_t part = fragments_.part_of_cell_[cell.index()]; part >= 0)
+                visit(static_cast<std::size_t>(part));
+    }
 
     /// Sets the masters of all parts of touched carriers, and of the light parts whose masters the
     /// edit may change. Returns the carriers of these parts, in ascending order.
@@ -77,6 +90,7 @@ class FragmentParts {
   private:
     void find(ElementId carrier);
     bool is_held(std::span<const ElementId> cells) const;
+    std::span<const ElementId> cells_beyond(Part& part);
     void add(ElementId carrier, std::span<const ElementId> cells, double volume);
     std::vector<std::size_t> light_cluster(std::span<const ElementId> touched,
                                            std::span<const ElementId> parted);
@@ -100,6 +114,7 @@ class FragmentParts {
     std::vector<ElementId> carriers_found_;       // whose parts are known
     std::pmr::monotonic_buffer_resource memory_;  // of the parts
     std::vector<Part*> parts_;                    // those of a carrier follow each other
+    std::vector<ElementId> cells_, members_;      // scratch of find()
 };
 
 }  // namespace incise::topology

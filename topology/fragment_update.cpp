@@ -124,6 +124,7 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
     std::vector<ElementId> now;
     for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
         Part& part = parts_[i];
+        part.is_open = true;
         part.is_element = part.master == i;
         if (!part.is_element) continue;
         ElementId own;
@@ -222,7 +223,19 @@ NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
         const bool is_own = fragments_.carrier(parent) == fragments_.carrier(fragment);
         return is_own ? node_before(parent, origin) : NodeId();
     }
-    for (const NodeId n : corners_before(fragment))
+    return node_at(corners_before(fragment), origin);
+}
+
+/// Returns the node of an element at a corner before the edit. Fragments of carriers that are not
+/// open are as they were.
+NodeId FragmentUpdate::node_before(const Part& part, NodeId origin) const {
+    return part.is_open ? node_before(part.fragment, origin)
+                        : node_at(fragments_.corners(part.fragment), origin);
+}
+
+/// Returns the one of some corners that is a node before any cut, or a copy of it.
+NodeId FragmentUpdate::node_at(std::span<const NodeId> corners, NodeId origin) const {
+    for (const NodeId n : corners)
         if (fragments_.origins_[n.index()] == origin) return n;
     return {};
 }
@@ -244,9 +257,10 @@ void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
         }
     DisjointSet connected(parts.size());
     for (const std::size_t part : parts)
-        for (const Neighbor& neighbor : parts_.neighbors(part))
-            if (const std::int32_t local = parts_[neighbor.part].local; local >= 0)
-                connected.join(parts_[part].local, local);
+        parts_.for_each_known_neighbor(part, [&](std::size_t neighbor) {
+            const std::int32_t local = parts_[neighbor].local;
+            if (local > parts_[part].local) connected.join(parts_[part].local, local);
+        });
     if (is_settled(origin, parts, connected)) {
         for (const std::size_t part : parts) parts_[part].local = -1;
         return;
@@ -258,7 +272,7 @@ void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
         const ElementId e = parts_[part].fragment;
         group.origin = origin;
         insert_sorted(group.fragments, e);
-        const NodeId before = node_before(e, origin);
+        const NodeId before = node_before(parts_[part], origin);
         if (before.is_valid() && group.before.is_valid()) merge(before, group.before);
         if (before.is_valid()) group.before = before;
     }
@@ -274,7 +288,7 @@ bool FragmentUpdate::is_settled(NodeId origin, std::span<const std::size_t> part
     for (const std::size_t part : parts) {
         if (connected.find(parts_[part].local) != connected.find(0)) return false;
         if (!parts_[part].is_element) continue;
-        const NodeId before = node_before(parts_[part].fragment, origin);
+        const NodeId before = node_before(parts_[part], origin);
         if (!before.is_valid() || (common.is_valid() && before != common)) return false;
         if (parent_of(parts_[part].fragment).is_valid()) return false;
         common = before;
@@ -375,11 +389,8 @@ void FragmentUpdate::merge_nodes_of_fragments() {
 void FragmentUpdate::remove_unused_nodes(std::vector<NodeId> touched) {
     for (const auto& [node, lower] : merged_) touched.push_back(node);
     make_sorted_set(touched);
-    std::vector<ElementId> star;
     for (const NodeId n : touched) {
-        if (!fragments_.is_alive(n)) continue;
-        fragments_.star(n, star);
-        if (!star.empty()) continue;
+        if (!fragments_.is_alive(n) || fragments_.has_element_at(n)) continue;
         NodeRecord record{n, fragments_.rest_position(n), {}, 0};
         if (const NodeId survivor = survivor_of(n); survivor != n) {
             record.sources[0] = {survivor, 1.0};

@@ -31,7 +31,6 @@ class FragmentUpdate {
 
   private:
     using Part = FragmentParts::Part;
-    using Neighbor = FragmentParts::Neighbor;
     /// Parts that are connected at a node before any cut, with the node that they get.
     struct Group {
         NodeId origin;
@@ -59,6 +58,8 @@ class FragmentUpdate {
                    : parents_[fragment.index() - element_capacity_before_];
     }
     NodeId node_before(ElementId fragment, NodeId origin) const;
+    NodeId node_before(const Part& part, NodeId origin) const;
+    NodeId node_at(std::span<const NodeId> corners, NodeId origin) const;
     std::span<const NodeId> corners_before(ElementId fragment) const;
     void note_corners(ElementId fragment);
     /// Returns the node into which a node is merged by the edit: itself, if it is not.
