@@ -14,16 +14,6 @@
 namespace incise::sim {
 namespace {
 
-void cut_along(World& world, const Vec3& point, const Vec3& normal) {
-    const ToolId plane = world.add_tool({"plane", cutting::PlaneCut{point, normal}});
-    world.set_tool_pose(plane, Pose());
-    world.withdraw_tool(plane);
-}
-
-void run_until(World& world, double time) {
-    while (world.time() < time) world.step(0.8 * world.stable_step());
-}
-
 /// The cube without loads.
 WorldDef cube_at_rest(double friction = 0.0) {
     WorldDef def = soft_body();

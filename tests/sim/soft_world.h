@@ -56,6 +56,17 @@ inline ToolDef scalpel(CutMode mode = CutMode::split) {
 
 inline Pose at(const Vec3& position) { return {Eigen::Quaterniond::Identity(), position}; }
 
+/// Cuts along a plane in the next step.
+inline void cut_along(World& world, const Vec3& point, const Vec3& normal) {
+    const ToolId plane = world.add_tool({"plane", cutting::PlaneCut{point, normal}});
+    world.set_tool_pose(plane, Pose());
+    world.withdraw_tool(plane);
+}
+
+inline void run_until(World& world, double time) {
+    while (world.time() < time) world.step(0.8 * world.stable_step());
+}
+
 /// Where the scalpel is after so much of its way through the cube.
 inline Pose scalpel_pose(double part) { return at({-0.01 + 0.12 * part, 0, 0}); }
 

@@ -1,0 +1,196 @@
+// What tests of contact with known answers share: bodies, loads, means, and a record of results.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/sim/soft_world.h"
+
+namespace incise::sim {
+
+/// Tells whether a material point belongs to a part of the body, by its rest position, m.
+using Part = std::function<bool(const Vec3&)>;
+
+/// Returns a number in as few digits as it needs.
+inline std::string short_text(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+/// Records a result beside its answer: data/validation/contact_plots.py makes the table of
+/// docs/validation.md of these records.
+inline void record_result(const std::string& what, double result, double answer) {
+    std::ostringstream text;
+    text.precision(10);
+    text << result << ' ' << answer;
+    testing::Test::RecordProperty(what, text.str());
+}
+
+/// Expects a result within a part `tolerance` of the answer, and records both.
+inline void expect_answer(const std::string& what, double result, double answer, double tolerance) {
+    record_result(what, result, answer);
+    EXPECT_NEAR(result, answer, tolerance * std::abs(answer)) << what;
+}
+
+/// Records a point of a curve, for a figure.
+inline void record_point(const std::string& curve, double x, double y) {
+    record_result("curve " + curve + " at " + short_text(x), x, y);
+}
+
+/// An elastic solid. With damping, half of its stiffness is viscous: vibrations of about the
+/// period of the relaxation time fade. Friction without it makes soft tissue vibrate.
+struct Solid {
+    double young = 1e5;  ///< Pa
+    double poisson = 0.0;
+    double density = 1000.0;       ///< kg/m3
+    double relaxation_time = 0.0;  ///< s; 0: no viscosity
+
+    double shear_modulus() const { return young / (2.0 * (1.0 + poisson)); }
+    double lambda() const { return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)); }
+    double plane_modulus() const { return young / (1.0 - poisson * poisson); }
+    /// `young` is the modulus at long times.
+    operator physics::Material() const {
+        const double factor = relaxation_time > 0.0 ? 2.0 : 1.0;
+        physics::HyperElasticLinks links{
+            .law = physics::NeoHookean{0.5 * factor * shear_modulus(), factor * lambda()}};
+        if (relaxation_time > 0.0) links.prony = {{0.5, relaxation_time}};
+        return {density, links};
+    }
+};
+
+inline topology::MeshData box(const Vec3& origin, const Vec3& edges, std::array<int, 3> cells) {
+    return topology::box_mesh(topology::CellKind::tetrahedron, origin, edges, cells);
+}
+
+/// The radii of the shells of a graded body: `fine` steps of `h`, m, then each radius `growth`
+/// times the one before, up to `end`, m.
+inline std::vector<double> shells(double h, int fine, double growth, double end) {
+    std::vector<double> radii{0.0};
+    for (int k = 1; k <= fine; ++k) radii.push_back(h * k);
+    while (radii.back() < end) radii.push_back(growth * radii.back());
+    return radii;
+}
+
+/// Returns a quarter of a block under the plane z = 0, fine about the origin and ever coarser away
+/// from it: bricks between cubes of these radii. The region of a cell is the number of its outer
+/// cube.
+inline topology::MeshData graded_quarter(const std::vector<double>& radii) {
+    const int n = static_cast<int>(radii.size()) - 1;
+    const double edge = n;
+    topology::MeshData mesh = box({0.0, 0.0, -edge}, Vec3::Constant(edge), {n, n, n});
+    const auto shell = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        double outer = 0.0;
+        for (const std::int64_t p : mesh.cell(c))
+            outer = std::max(outer, shell(mesh.points[static_cast<std::size_t>(p)]));
+        mesh.regions[c] = static_cast<int>(std::lround(outer));
+    }
+    for (Vec3& x : mesh.points)
+        if (const double k = shell(x); k > 0.0)
+            x *= radii[static_cast<std::size_t>(std::lround(k))] / k;
+    return mesh;
+}
+
+/// The materials of a graded body. Mass does not matter at rest. It is chosen such that waves take
+/// as long for an outer element as for an inner one: then the body comes to rest soon.
+inline void set_graded_materials(WorldDef& def, const Solid& solid,
+                                 const std::vector<double>& radii) {
+    for (std::size_t k = 1; k < radii.size(); ++k) {
+        Solid of_shell = solid;
+        const double ratio = static_cast<double>(k) * radii[1] / radii[k];
+        of_shell.density *= ratio * ratio;
+        def.material_of_region[static_cast<int>(k)] = def.materials.size();
+        def.materials.push_back(of_shell);
+    }
+}
+
+/// Appends the cells of a separate body.
+inline void append(topology::MeshData& all, const topology::MeshData& more) {
+    const auto first = static_cast<std::int64_t>(all.points.size());
+    all.points.insert(all.points.end(), more.points.begin(), more.points.end());
+    for (std::size_t c = 0; c < more.num_cells(); ++c) {
+        std::vector<std::int64_t> corners(more.cell(c).begin(), more.cell(c).end());
+        for (std::int64_t& corner : corners) corner += first;
+        all.add_cell(more.kinds[c], corners, more.regions[c]);
+    }
+    all.points_may_coincide = true;
+}
+
+inline std::vector<ElementId> elements_where(const World& world, const Part& is_in) {
+    std::vector<ElementId> elements;
+    for (const ElementId e : world.mesh().elements()) {
+        Vec3 centre = Vec3::Zero();
+        for (const NodeId n : world.mesh().corners(e)) centre += world.mesh().rest_position(n);
+        if (is_in(centre / 4.0)) elements.push_back(e);
+    }
+    return elements;
+}
+
+/// Mean displacement and velocity of some elements, by mass.
+struct Motion {
+    double mass = 0.0;                 ///< kg
+    Vec3 displacement = Vec3::Zero();  ///< m
+    Vec3 velocity = Vec3::Zero();      ///< m/s
+};
+inline Motion mean_motion(const World& world, const std::vector<ElementId>& elements,
+                          double density) {
+    Motion sum;
+    for (const ElementId e : elements) {
+        const double mass = density * topology::rest_volume(world.mesh(), e);
+        sum.mass += mass;
+        for (const NodeId n : world.mesh().corners(e)) {
+            sum.displacement +=
+                0.25 * mass * (world.positions()[n.index()] - world.mesh().rest_position(n));
+            sum.velocity += 0.25 * mass * world.velocities()[n.index()];
+        }
+    }
+    sum.displacement /= sum.mass;
+    sum.velocity /= sum.mass;
+    return sum;
+}
+
+/// Adds a velocity to all of some elements, by a body force in one step.
+inline void launch(World& world, const std::vector<ElementId>& elements, double density,
+                   const Vec3& velocity, double dt) {
+    const LoadId push = world.add_load(
+        {.name = "push",
+         .kind = physics::BodyLoad{physics::ElementSet(elements), density / dt * velocity}});
+    world.step(dt);
+    world.remove_load(push);
+}
+
+/// The faces of the surface all of whose corners are in a part.
+inline std::vector<FaceId> faces_where(World& world, const Part& is_in) {
+    std::vector<FaceId> faces;
+    const topology::BoundarySurface& surface = world.surface();
+    for (std::size_t t = 0; t < surface.triangles().size(); ++t)
+        if (std::ranges::all_of(surface.triangles()[t],
+                                [&](NodeId n) { return is_in(world.mesh().rest_position(n)); }))
+            faces.push_back(surface.faces()[t]);
+    std::ranges::sort(faces);
+    return faces;
+}
+
+/// Mean of what `value` is in steps until `end`, s, by time.
+template <class Value>
+auto mean_until(World& world, double end, Value value) {
+    auto sum = 0.0 * value();
+    double time = 0.0;
+    while (world.time() < end) {
+        const double before = world.time();
+        world.step(0.8 * world.stable_step());
+        sum += (world.time() - before) * value();
+        time += world.time() - before;
+    }
+    return decltype(sum)(sum / time);
+}
+
+}  // namespace incise::sim
