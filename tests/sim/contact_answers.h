@@ -179,18 +179,16 @@ inline std::vector<FaceId> faces_where(World& world, const Part& is_in) {
     return faces;
 }
 
-/// Mean of what `value` is in steps until `end`, s, by time.
-template <class Value>
-auto mean_until(World& world, double end, Value value) {
-    auto sum = 0.0 * value();
-    double time = 0.0;
+/// Returns the mean by time of what `value` is after each step until `end`, s.
+inline double mean_until(World& world, double end, const std::function<double()>& value) {
+    const double begin = world.time();
+    double sum = 0.0;
     while (world.time() < end) {
         const double before = world.time();
         world.step(0.8 * world.stable_step());
         sum += (world.time() - before) * value();
-        time += world.time() - before;
     }
-    return decltype(sum)(sum / time);
+    return sum / (world.time() - begin);
 }
 
 }  // namespace incise::sim

@@ -367,10 +367,11 @@ TEST(Contact, RefusesWhatItCannotDo) {
                   world.add_tool({"ball", cutting::Probe{cutting::Sphere{0.1}, -1.0}});
               }).find("friction"),
               std::string::npos);
-    EXPECT_NE(input_error_of([&] {
-                  world.add_tool({"table", cutting::Probe{cutting::HalfSpace{{}, {0, 0, 2}}}});
-              }).find("normal"),
-              std::string::npos);
+    EXPECT_NE(
+        input_error_of([&] {
+            world.add_tool({"table", cutting::Probe{cutting::HalfSpace{.normal = {0, 0, 2}}}});
+        }).find("normal"),
+        std::string::npos);
     WorldDef def = soft_body();
     def.contact.friction = -0.1;
     EXPECT_NE(input_error_of([&] { const World none(std::move(def)); }).find("friction"),
