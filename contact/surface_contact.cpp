@@ -17,8 +17,9 @@ namespace {
 // Lengths are parts of the mean length of an element.
 constexpr double node_reach =
     0.15;  // at which a node is a point of contact: farther than it moves in a step
-constexpr double skin = 0.5;     // by which pairs are found that are not within node_reach yet
-constexpr double deepest = 0.4;  // a node that is deeper has no side any more
+constexpr double skin = 0.5;  // by which pairs are found that are not within node_reach yet
+/// A node that is deeper has no side any more. It is a part of the local length.
+constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
 /// no other triangle goes on there.
 constexpr double rim = 0.25;
@@ -108,8 +109,27 @@ void SurfaceContact::list_triangles(const physics::Model& model,
         triangles_.push_back(row.triangle);
         takes_part_.push_back(settings_.self || row.is_cut ? 1 : 0);
     }
+    list_lengths(model);
     tree_.set_triangles(triangles_, model.mesh().rest_positions());
     pairs_.set_surface(tree_, {model.mesh(), model.fragments(), faces_, takes_part_});
+}
+
+/// Lists the local lengths: at a node, the least mean length of the edges of a fragment with a face
+/// there, and at most that of the body. Where a mesh is finer, less overlap tells what is no
+/// contact but a face round a corner.
+void SurfaceContact::list_lengths(const physics::Model& model) {
+    lengths_.assign(model.mesh().node_capacity(), size_);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        const topology::FragmentMesh& fragments = model.fragments();
+        const auto corners = fragments.corners(fragments.fragment_of_cell(faces_[t].element));
+        double sum = 0.0, count = 0.0;
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k, count += 1.0)
+                sum += (fragments.rest_position(corners[i]) - fragments.rest_position(corners[k]))
+                           .norm();
+        for (const NodeId n : triangles_[t])
+            lengths_[n.index()] = std::min(lengths_[n.index()], sum / count);
+    }
 }
 
 // Near the edit, pairs are found anew. Those of other nodes stay, with the new numbers of
@@ -249,14 +269,18 @@ void SurfaceContact::find_touched(std::size_t i, std::span<const Vec3> positions
     const NodeId n = pairs_.nodes()[i];
     // Of a node at a corner, rounding decides over which triangle it is.
     constexpr double tolerance = 1e-6;
-    const auto is_over = [&](const Touch& at, double outside) {
+    const auto is_over = [&](const Touch& at, std::size_t t, double outside) {
+        double length = lengths_[n.index()];
+        for (const NodeId corner : triangles_[t])
+            length = std::min(length, lengths_[corner.index()]);
         return at.weights.minCoeff() >= -outside && at.gap < node_reach * size_ &&
-               at.gap > -deepest * size_;
+               at.gap > -deepest * length;
     };
     const bool did_touch = near.touched >= 0;
-    if (did_touch &&
-        is_over(touch(n, static_cast<std::size_t>(near.touched), positions), tolerance))
-        return;
+    if (did_touch) {
+        const auto t = static_cast<std::size_t>(near.touched);
+        if (is_over(touch(n, t, positions), t, tolerance)) return;
+    }
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
     for (const std::uint32_t t : pairs_.triangles_of(i)) {
@@ -268,7 +292,7 @@ void SurfaceContact::find_touched(std::size_t i, std::span<const Vec3> positions
         nearest = t;
     }
     const Touch at = touch(n, nearest, positions);
-    near.touched = is_over(at, rim) ? static_cast<std::int32_t>(nearest) : -1;
+    near.touched = is_over(at, nearest, rim) ? static_cast<std::int32_t>(nearest) : -1;
     near.room = std::sqrt(least) - node_reach * size_;
     if (!did_touch && near.touched >= 0) near.slack = std::min(0.0, at.gap);
 }

@@ -93,6 +93,7 @@ class SurfaceContact {
            self.room_, self.max_penetration_);
     }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
+    void list_lengths(const physics::Model& model);
     void find_pairs(const physics::Model& model);
     bool has_moved_far(std::span<const Vec3> positions);
     void find_touched(std::size_t i, std::span<const Vec3> positions);
@@ -105,6 +106,7 @@ class SurfaceContact {
     std::vector<FaceId> faces_;             // in ascending order
     std::vector<Triangle> triangles_;       // of these faces
     std::vector<std::uint8_t> takes_part_;  // by triangle
+    std::vector<double> lengths_;           // of elements at nodes of the surface, by id, m
     SurfaceTree tree_;
     TouchingPairs pairs_;
     std::vector<NearNode> near_;            // by node of pairs_

@@ -232,5 +232,25 @@ TEST(ContactPatch, OfBlocksBearsOnePressureThoughMeshesDoNotMatch) {
     }
 }
 
+// --- Contact that does not flicker, and none where nothing touches.
+
+// Round a sharp corner of a body, where elements are much smaller than elsewhere, faces that meet
+// at an acute angle are no contact.
+TEST(ContactPatch, OfAWedgeFineAtItsEdgeIsNone) {
+    const auto radii = shells(1e-4, 4, 1.6, 0.05);
+    topology::MeshData mesh = graded_quarter(radii);
+    for (Vec3& x : mesh.points) x.z() -= 0.2 * (x.x() + x.y());
+    WorldDef def;
+    def.mesh = std::move(mesh);
+    set_graded_materials(def, Solid{.young = 5e3, .poisson = 0.3}, radii);
+    World world(std::move(def));
+    for (int i = 0; i < 200; ++i) {
+        world.step(0.8 * world.stable_step());
+        ASSERT_EQ(world.report().contact.num_points, 0u);
+    }
+    EXPECT_EQ(world.report().contact.max_penetration, 0.0);
+    EXPECT_LT(world.model().totals().kinetic_energy, 1e-20);  // of rounding
+}
+
 }  // namespace
 }  // namespace incise::sim
