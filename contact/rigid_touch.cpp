@@ -138,6 +138,23 @@ double distance_to_box(const Vec3& half, const Vec3& p, Vec3& gradient) {
     return distance;
 }
 
+/// Of a point in a box, takes the nearest side that faces its triangle, if it is not much farther
+/// than the nearest one of all. Near an edge of the box that is pressed into tissue, the nearest
+/// one may be beside the tissue in one step and not in the next one.
+/// @param reach  how much farther it may be, m
+void leave_by_facing_side(const Vec3& half, const Vec3& outward, double reach, RigidTouch& touch) {
+    constexpr double least_cosine = 0.5;
+    double nearest = touch.gap - reach;
+    for (int side = 0; side < 3; ++side) {
+        const double sign = touch.point[side] < 0.0 ? -1.0 : 1.0;
+        const double gap = std::abs(touch.point[side]) - half[side];
+        if (-sign * outward[side] < least_cosine || gap <= nearest) continue;
+        nearest = gap;
+        touch.normal = sign * Vec3::Unit(side);
+        touch.gap = gap;
+    }
+}
+
 /// Returns where a convex function on [0, 1] has its least value, by the golden section.
 double least_of_convex(const auto& value_at) {
     constexpr double golden = 0.6180339887498949;
@@ -172,13 +189,18 @@ void append_touches_of_box(const Vec3& size, const Corners& x, double farthest,
         touch.gap = distance_to_box(half, touch.point, touch.normal);
         return touch;
     };
+    const Vec3 outward = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
+    constexpr double edge_reach = 0.1;  // of the longest edge of the triangle
     double least = infinity, longest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (x[(k + 1) % 3] - x[k]).norm());
+    const auto append = [&](RigidTouch touch) {
+        if (touch.gap <= 0.0) leave_by_facing_side(half, outward, edge_reach * longest, touch);
+        touches.push_back(touch);
+    };
     for (int k = 0; k < 3; ++k) {
-        const auto corner = static_cast<std::size_t>(k);
         const RigidTouch touch = touch_at(Vec3::Unit(k));
         least = std::min(least, touch.gap);
-        longest = std::max(longest, (x[(corner + 1) % 3] - x[corner]).norm());
-        if (touch.gap <= farthest) touches.push_back(touch);
+        if (touch.gap <= farthest) append(touch);
     }
     if (least - longest > farthest) return;
     const auto weights_at = [](double s, double t) {
@@ -191,7 +213,7 @@ void append_touches_of_box(const Vec3& size, const Corners& x, double farthest,
         least_of_convex([&](double at) { return touch_at(weights_at(best_at(at), at)).gap; });
     const RigidTouch between = touch_at(weights_at(best_at(t), t));
     // It counts if it is closer than the corners.
-    if (between.gap <= farthest && between.gap < least - 1e-6 * longest) touches.push_back(between);
+    if (between.gap <= farthest && between.gap < least - 1e-6 * longest) append(between);
 }
 
 }  // namespace

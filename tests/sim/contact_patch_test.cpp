@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "support/num_cases.h"
 #include "tests/sim/contact_answers.h"
@@ -233,6 +234,39 @@ TEST(ContactPatch, OfBlocksBearsOnePressureThoughMeshesDoNotMatch) {
 }
 
 // --- Contact that does not flicker, and none where nothing touches.
+
+// The edges of a box that rests in tissue lie on nodes: which side of the box they leave by may not
+// change from step to step.
+TEST(ContactPatch, OfABoxThatRestsExertsASteadyForce) {
+    WorldDef def;
+    def.mesh = cube(8);
+    def.materials = {Solid{.young = 5e3, .poisson = 0.3}};
+    def.damping = 60.0;
+    World world = held(World(std::move(def)));
+    constexpr double edge = 0.05;
+    const ToolId box_tool =
+        world.add_tool({"box", cutting::Probe{cutting::Cuboid{Vec3::Constant(edge)}}});
+    world.place_tool(box_tool, at({0.05, 0.05, size + 0.5 * edge}));
+    constexpr double time = 0.2;
+    while (world.time() < time) {
+        const double dt = 0.8 * world.stable_step();
+        const double part = std::min(1.0, (world.time() + dt) / time);
+        world.set_tool_pose(box_tool, at({0.05, 0.05, size + 0.5 * edge - part * 0.002}));
+        world.step(dt);
+    }
+    run_until(world, 3.0 * time);
+    double sum = 0.0, least = std::numeric_limits<double>::infinity(), most = 0.0;
+    constexpr int num_steps = 200;
+    for (int i = 0; i < num_steps; ++i) {
+        world.step(0.8 * world.stable_step());
+        const double force = world.report().tools[0].force.z();
+        sum += force / num_steps;
+        least = std::min(least, force);
+        most = std::max(most, force);
+    }
+    EXPECT_GT(sum, 0.1);
+    EXPECT_LT(most - least, 0.2 * sum);
+}
 
 // Round a sharp corner of a body, where elements are much smaller than elsewhere, faces that meet
 // at an acute angle are no contact.
