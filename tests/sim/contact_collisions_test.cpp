@@ -27,6 +27,9 @@ World bar(double length, int cells, double gravity = 0.0) {
     return World(std::move(def));
 }
 
+/// Waves lag behind in few elements.
+constexpr double bar_tolerance = test::is_sanitized ? 0.05 : 0.01;
+
 double wave_speed() { return std::sqrt(bar_solid.young / bar_solid.density); }
 double contact_time() { return 2.0 * bar_length / wave_speed(); }
 double wave_pressure(double speed) { return bar_solid.density * wave_speed() * speed; }
@@ -76,11 +79,12 @@ TEST(ContactCollisions, EqualBarsCutFromOneSwapVelocities) {
     EXPECT_NEAR(world.model().totals().momentum.x(), bar_mass * bar_speed,
                 1e-13 * bar_mass * bar_speed);
     expect_answer("C10 equal bars: velocity of the other one, m/s", velocity(right), bar_speed,
-                  0.01);
-    EXPECT_NEAR(velocity(left), 0.0, 0.01 * bar_speed);
-    expect_answer("C10 equal bars: pressure, Pa", pressure, wave_pressure(0.5 * bar_speed), 0.01);
+                  bar_tolerance);
+    EXPECT_NEAR(velocity(left), 0.0, bar_tolerance * bar_speed);
+    expect_answer("C10 equal bars: pressure, Pa", pressure, wave_pressure(0.5 * bar_speed),
+                  bar_tolerance);
     expect_answer("C10 equal bars: duration, s", velocity(right) * bar_mass / bar_area / pressure,
-                  contact_time(), 0.01);
+                  contact_time(), bar_tolerance);
 }
 
 TEST(ContactCollisions, BarThatHitsAWallBouncesAsAWaveDoes) {
@@ -101,12 +105,14 @@ TEST(ContactCollisions, BarThatHitsAWallBouncesAsAWaveDoes) {
         }
     }
     const double force = impulse_between / time_between;
-    expect_answer("C10 wall: pressure, Pa", force / bar_area, wave_pressure(bar_speed), 0.01);
+    expect_answer("C10 wall: pressure, Pa", force / bar_area, wave_pressure(bar_speed),
+                  bar_tolerance);
     expect_answer("C10 wall: duration, impulse over force, s", impulse / force, contact_time(),
-                  0.01);
-    expect_answer("C10 wall: duration, last touch, s", last_touch, contact_time(), 0.01);
+                  bar_tolerance);
+    expect_answer("C10 wall: duration, last touch, s", last_touch, contact_time(), bar_tolerance);
     expect_answer("C10 wall: velocity after, m/s",
-                  mean_motion(world, all, bar_solid.density).velocity.x(), bar_speed, 0.01);
+                  mean_motion(world, all, bar_solid.density).velocity.x(), bar_speed,
+                  bar_tolerance);
 }
 
 // The bar falls, bounces and falls again. Each impact of a continuous bar keeps its energy.

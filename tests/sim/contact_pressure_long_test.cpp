@@ -119,7 +119,7 @@ class TwoSpheres {
   public:
     static constexpr double radius = 0.02, approach = 0.02 * radius;
     const double a = std::sqrt(0.5 * radius * approach);  // of the contact, by Hertz
-    const double edge = a / 8;                            // of elements there
+    const double edge = a / 6;                            // of elements there
 
     TwoSpheres() : world_(make_world()) { run_until(world_, 0.1); }
 
@@ -161,7 +161,7 @@ class TwoSpheres {
     }
     World make_world() const {
         constexpr double finer = 0.87;  // the upper mesh
-        const auto radii = shells(edge, 10, slab_growth, slab_extent * a);
+        const auto radii = shells(edge, 8, slab_growth, slab_extent * a);
         std::vector<double> upper_radii = radii;
         for (double& r : upper_radii) r *= finer;
         topology::MeshData mesh = rounded(radii), upper = rounded(upper_radii);
