@@ -81,11 +81,11 @@ inline std::vector<double> shells(double h, int fine, double growth, double end)
 
 /// Returns a quarter of a block under the plane z = 0, fine about the origin and ever coarser away
 /// from it: bricks between cubes of these radii. The region of a cell is the number of its outer
-/// cube.
-inline topology::MeshData graded_quarter(const std::vector<double>& radii) {
-    const int n = static_cast<int>(radii.size()) - 1;
-    const double edge = n;
-    topology::MeshData mesh = box({0.0, 0.0, -edge}, Vec3::Constant(edge), {n, n, n});
+/// cube. If it is whole, the block goes on above the plane.
+inline topology::MeshData graded_quarter(const std::vector<double>& radii, bool is_whole = false) {
+    const int n = static_cast<int>(radii.size()) - 1, num_down = is_whole ? 2 * n : n;
+    const double edge = n, height = num_down;
+    topology::MeshData mesh = box({0.0, 0.0, -edge}, {edge, edge, height}, {n, n, num_down});
     const auto shell = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         double outer = 0.0;
