@@ -170,8 +170,8 @@ void Simulation::warn_of_overlaps() {
     text.precision(2);
     text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size
          << " of an element, at t = " << io::format_number(overlap_.time)
-         << " s: bodies or tools that begin in each other, thin parts that are pressed hard, or a "
-            "tool that is too fast; see max_penetration in history.csv";
+         << " s: by a cut through tissue that is strained, by bodies or tools that begin in each "
+            "other, or by parts that are thin and pressed hard; see max_penetration in history.csv";
     warnings_.push_back(text.str());
 }
 
