@@ -205,6 +205,58 @@ void ContactSolver::begin_with_impulse(Row& row) {
     change_impulse(row, row.normal_impulse * point.normal + tangential);
 }
 
+/// Begins with the impulses of the step before, or with the share of them that is best. Without
+/// this, impulses that have become wrong could do work: four sweeps do not undo all of it.
+void ContactSolver::begin_with_impulses() {
+    velocities_before_.resize(nodes_.size());
+    std::ranges::transform(nodes_, velocities_before_.begin(), &Node::velocity);
+    for (Row& row : rows_) begin_with_impulse(row);
+    for (std::size_t t = 0; t < threads_.size(); ++t)
+        change_thread_impulse(t, std::min(threads_[t].impulse, thread_rows_[t].largest_impulse));
+    const double share = best_share_of_impulses();
+    if (share == 1.0) return;
+    for (Vec3& impulse : impulses_) impulse *= share;
+    for (Row& row : rows_) row.normal_impulse *= share;
+    for (double& impulse : thread_impulses_) impulse *= share;
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+        nodes_[n].velocity =
+            velocities_before_[n] + share * (nodes_[n].velocity - velocities_before_[n]);
+}
+
+/// The impulses that are sought make the sum of J . (A J / 2 + r) least, with the relative
+/// velocities r without them and what they change, A J. Each relaxation lowers it. Returns the
+/// share of the present impulses at which it is least, from 0 to 1: it is then not above 0, and the
+/// impulses do no work but that of tools and of overlaps that go.
+double ContactSolver::best_share_of_impulses() const {
+    double linear = 0.0, square = 0.0;
+    for (const Row& row : rows_) {
+        const ContactPoint& point = points_[row.point];
+        Vec3 before = -point.velocity, change = Vec3::Zero();
+        for (std::size_t s = row.begin; s < row.end; ++s) {
+            const auto [node, weight] = local_shares_[s];
+            before += weight * velocities_before_[node];
+            change += weight * (nodes_[node].velocity - velocities_before_[node]);
+        }
+        before += point.is_held ? row.drift : Vec3(row.allowed * point.normal);
+        linear += impulses_[row.point].dot(before);
+        square += impulses_[row.point].dot(change);
+    }
+    for (std::size_t t = 0; t < threads_.size(); ++t) {
+        const ThreadRow& row = thread_rows_[t];
+        const double impulse = thread_impulses_[t];
+        double before = row.drift, change = row.own_softness * impulse;
+        for (std::size_t p = row.begin; p < row.end; ++p) {
+            const Vec3& known = velocities_before_[local_pulls_[p]];
+            before += pulls_[p].gradient.dot(known);
+            change -= pulls_[p].gradient.dot(nodes_[local_pulls_[p]].velocity - known);
+        }
+        linear -= impulse * before;
+        square += impulse * change;
+    }
+    if (!(square > 0.0)) return 1.0;
+    return std::clamp(-linear / square, 0.0, 1.0);
+}
+
 void ContactSolver::change_impulse(const Row& row, const Vec3& to) {
     Vec3& known = impulses_[row.point];
     const Vec3 change = to - known;
@@ -254,9 +306,7 @@ void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3
     thread_impulses_.assign(threads_.size(), 0.0);
     make_rows(dt, rest_step);
     make_thread_rows(dt);
-    for (Row& row : rows_) begin_with_impulse(row);
-    for (std::size_t t = 0; t < threads_.size(); ++t)
-        change_thread_impulse(t, std::min(threads_[t].impulse, thread_rows_[t].largest_impulse));
+    begin_with_impulses();
     for (int sweep = 0; sweep < num_sweeps; ++sweep) {
         for (Row& row : rows_) relax(row);
         for (std::size_t t = 0; t < threads_.size(); ++t) relax_thread(t);

@@ -145,6 +145,8 @@ class ContactSolver {
     void number_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
     void make_rows(double dt, double rest_step);
     void begin_with_impulse(Row& row);
+    void begin_with_impulses();
+    double best_share_of_impulses() const;
     void relax(Row& row);
     void relax_held(Row& row);
     void change_impulse(const Row& row, const Vec3& to);
@@ -162,6 +164,7 @@ class ContactSolver {
     // Scratch of solve().
     std::vector<std::int32_t> local_of_node_;  // by node; -1 between calls
     std::vector<Node> nodes_;
+    std::vector<Vec3> velocities_before_;  // by node in nodes_, without impulses
     std::vector<LocalShare> local_shares_;
     std::vector<Row> rows_;
     // Threads.

@@ -28,13 +28,13 @@ void RigidContact::prepare_shape() {
         solid_ = std::make_shared<const RigidSolid>(*solid);
 }
 
-RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const Vec3& weights) {
+RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const RigidTouch& touch) {
     constexpr double rounding = 1e-9;
-    Feature feature;
+    Feature feature{{}, touch.tool_point};
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k)
-        if (weights[static_cast<int>(k)] > rounding) feature[count++] = triangle[k];
-    std::ranges::sort(feature);
+        if (touch.weights[static_cast<int>(k)] > rounding) feature.corners[count++] = triangle[k];
+    std::ranges::sort(feature.corners);
     return feature;
 }
 
@@ -80,8 +80,7 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
         else
             append_touches(probe_.shape, corners, probe_reach * size_, found_);
         for (const RigidTouch& touch : found_) {
-            const auto [it, is_new] =
-                touches.try_emplace(feature_of(triangle, touch.weights), touch, t);
+            const auto [it, is_new] = touches.try_emplace(feature_of(triangle, touch), touch, t);
             if (!is_new && touch.gap < it->second.first.gap) it->second = {touch, t};
         }
     }

@@ -57,13 +57,18 @@ class RigidContact {
     void restore(ArchiveReader& ar, std::size_t num_triangles);
 
   private:
-    /// The corners of a triangle that a point depends on, in ascending order.
-    using Feature = std::array<NodeId, 3>;
+    /// What tells one point from another.
+    struct Feature {
+        std::array<NodeId, 3> corners;  ///< of a triangle, that it depends on, in ascending order
+        std::int32_t tool_point;        ///< see RigidTouch
+        auto operator<=>(const Feature&) const = default;
+        static void archive(auto& ar, auto& self) { ar(self.corners, self.tool_point); }
+    };
     static void list(auto& ar, auto& self) {
         ar(self.probe_, self.triangles_, self.room_, self.last_features_, self.last_impulses_);
     }
     void prepare_shape();
-    static Feature feature_of(const Triangle& triangle, const Vec3& weights);
+    static Feature feature_of(const Triangle& triangle, const RigidTouch& touch);
     Vec3 last_impulse_at(const Feature& feature) const;
     double largest_move() const;
     void find_triangles(std::span<const Vec3> positions, std::span<const Triangle> surface);

@@ -127,7 +127,8 @@ void RigidSolid::append_points(const Corners& corners, double farthest,
                 continue;
             const Vec3 normal =
                 is_inside || !(distance > 1e-9 * farthest) ? Vec3(-outward) : Vec3(away / distance);
-            touches.push_back({weights, x, normal, is_inside ? -distance : distance});
+            touches.push_back({weights, x, normal, is_inside ? -distance : distance,
+                               static_cast<std::int32_t>(p.value)});
         }
     };
     tree_.for_each_against(near, all_directions, look);

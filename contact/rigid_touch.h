@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "incise/base/types.h"
@@ -12,10 +13,11 @@ namespace incise::contact {
 
 /// The point of a triangle that is closest to a shape, or deepest in it.
 struct RigidTouch {
-    Vec3 weights;      ///< of the corners of the triangle; they sum to 1
-    Vec3 point;        ///< m, in the frame of the shape
-    Vec3 normal;       ///< of unit length, out of the shape, in its frame
-    double gap = 0.0;  ///< distance along the normal, m; below 0: they overlap
+    Vec3 weights;                  ///< of the corners of the triangle; they sum to 1
+    Vec3 point;                    ///< m, in the frame of the shape
+    Vec3 normal;                   ///< of unit length, out of the shape, in its frame
+    double gap = 0.0;              ///< distance along the normal, m; below 0: they overlap
+    std::int32_t tool_point = -1;  ///< of a solid: its number, if one of its points touches
 };
 
 /// Returns the box round a shape in its frame, m. That of a half space is unbounded.

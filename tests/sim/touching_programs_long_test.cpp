@@ -1,0 +1,80 @@
+// Contact holds in random programs of cuts, probes, graspers and sutures.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "support/num_cases.h"
+#include "tests/sim/touching_programs.h"
+
+namespace incise::sim {
+namespace {
+
+/// Mass times speed, summed over the nodes: what errors of the momentum are compared with.
+double speed_of(const World& world) {
+    const physics::Model& model = world.model();
+    double sum = 0.0;
+    for (const NodeId n : model.fragments().nodes())
+        sum += model.masses()[n.index()] * model.velocities()[n.index()].norm();
+    return sum;
+}
+
+// The tools change the momentum by their impulses, and nothing else does. A thread changes it by
+// nothing. Energy comes from the tools alone, but for overlaps that go: cuts in strained tissue
+// leave some, and edges that pass each other, as only nodes touch faces. These push the sides apart
+// with a thousandth of an element in a stable step.
+TEST(TouchingPrograms, KeepMomentumAndTakeEnergyFromToolsOnly) {
+    std::size_t num_edits = 0, num_touched = 0;
+    for (int seed = 0; seed < test::num_cases(1000); ++seed) {
+        TouchingProgram program(static_cast<std::uint64_t>(seed));
+        World& world = program.world();
+        SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << program.name());
+        double scale = 1e-12, energy_scale = 0.0, rise = 0.0;
+        for (int i = 0; i < TouchingProgram::num_steps; ++i) {
+            const Vec3 before = world.model().totals().momentum;
+            const StepReport& report = program.step(i);
+            Vec3 impulse = Vec3::Zero();
+            for (const ToolState& tool : report.tools)
+                if (!std::holds_alternative<cutting::Suture>(world.tool(tool.tool).shape))
+                    impulse -= (report.to - report.from) * tool.force;
+            const Vec3 error = world.model().totals().momentum - before - impulse;
+            scale = std::max(scale, speed_of(world));
+            ASSERT_TRUE(std::isfinite(scale)) << "step " << i;
+            ASSERT_LE(error.norm(), 1e-13 * scale) << "step " << i;
+            const double dt = (report.to - report.from) / static_cast<double>(report.num_parts);
+            const double energy = test::present_energy(world.model(), dt);
+            const double work = world.ledger().body_totals().external_work;
+            energy_scale = std::max({energy_scale, energy, std::abs(work)});
+            rise = std::max(rise, energy - work);
+            num_touched += report.contact.num_points > 0;
+        }
+        num_edits += world.ledger().num_edits();
+        const physics::Totals& totals = world.model().totals();
+        const double parting = 1e-3 * program.size() / world.rest_stable_step();
+        // Elements that are as large as the body overlap by much of it.
+        const std::size_t num_elements = world.mesh().num_elements();
+        if (num_elements > 200) {
+            EXPECT_LE(rise, 0.03 * energy_scale + 4.0 * totals.mass * parting * parting);
+        }
+    }
+    EXPECT_GT(num_edits, static_cast<std::size_t>(test::num_cases(1000)));
+    EXPECT_GT(num_touched, 30u * static_cast<std::size_t>(test::num_cases(1000)));
+}
+
+TEST(TouchingPrograms, GoOnBitForBitAfterARestore) {
+    for (int seed = 0; seed < test::num_cases(60); ++seed) {
+        SCOPED_TRACE(seed);
+        const auto number = static_cast<std::uint64_t>(seed);
+        TouchingProgram straight(number), halted(number);
+        for (int i = 0; i < TouchingProgram::num_steps; ++i) {
+            straight.step(i);
+            halted.step(i);
+            if (i % 70 != 69) continue;
+            const std::string bytes = halted.world().save();
+            halted.world() = TouchingProgram::empty_world(number);
+            halted.world().restore(bytes);
+        }
+        EXPECT_EQ(straight.world().save(), halted.world().save());
+    }
+}
+
+}  // namespace
+}  // namespace incise::sim
