@@ -15,7 +15,7 @@ class FragmentArchive {
     static void list(auto& ar, auto& f) {
         ar(f.light_share_, f.num_origins_, f.kinds_, f.regions_, f.origins_of_carrier_, f.carriers_,
            f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
-           f.carrier_of_cell_, f.fragment_of_cell_, f.is_held_);
+           f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_held_);
     }
 
     static FragmentMesh load(const Mesh& material, ArchiveReader& ar) {
@@ -56,6 +56,9 @@ class FragmentArchive {
         const auto is_fragment = [&](ElementId e) {
             return !e.is_valid() || e.index() < num_fragments;
         };
+        const auto is_cell = [&](ElementId e) {
+            return e.is_valid() && e.index() < material_.element_capacity();
+        };
         const auto is_node = [&](NodeId n) { return n.is_valid() && n.index() < num_nodes; };
         const auto is_origin = [&](NodeId n) { return n.is_valid() && n.index() < f.num_origins_; };
         require(
@@ -65,6 +68,7 @@ class FragmentArchive {
                 std::ranges::all_of(f.carriers_, is_carrier) &&
                 std::ranges::all_of(f.carrier_of_cell_, is_carrier) &&
                 std::ranges::all_of(f.fragment_of_cell_, is_fragment) &&
+                std::ranges::all_of(f.carried_around_, is_cell) &&
                 std::ranges::all_of(f.origins_of_carrier_, is_origin) &&
                 std::ranges::all_of(f.corners_, is_node) &&
                 std::ranges::all_of(f.origins_, is_origin) &&

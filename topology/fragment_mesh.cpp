@@ -172,7 +172,10 @@ void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
     for (const ElementRecord& record : edit.elements_added) is_alive_[record.id.index()] = 0;
     for (const ShareChange& share : changes.shares) shares_[share.fragment.index()] = share.from;
     for (const NodeRecord& record : edit.nodes_removed) is_node_alive_[record.id.index()] = 1;
-    for (const CarriedCell& cell : changes.cells) move_cell(cell.cell, cell.to, cell.from);
+    for (const CarriedCell& cell : changes.cells) {
+        move_cell(cell.cell, cell.to, cell.from);
+        set_carried_around(cell.cell, cell.was_around);
+    }
     for (const ElementId e : carriers) {
         std::vector<ElementId> living;
         for (const ElementId known : fragments_of(e))

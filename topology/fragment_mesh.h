@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "incise/base/types.h"
@@ -29,13 +30,17 @@ struct ShareChange {
     bool operator==(const ShareChange&) const = default;
 };
 
-/// A cell that an edit gave to another fragment. Invalid: the cell did not exist, or was removed.
+/// A cell that an edit gave to another fragment, or that hangs on the same one in another way; see
+/// FragmentMesh::is_carried_around(). Invalid: the cell did not exist, or was removed.
 struct CarriedCell {
     ElementId cell, carrier;
     ElementId from, to;
     /// True if the edit took the cell out of a fragment of another carrier, or gave it to one. A
     /// new cell comes out of the fragment that carried its parent.
     bool is_released = false, is_joined = false;
+    /// Whether it was carried around a cut before the edit, and is now. Where only this changes,
+    /// `from` and `to` are the same.
+    bool was_around = false, is_around = false;
     bool operator==(const CarriedCell&) const = default;
 };
 
@@ -163,6 +168,11 @@ class FragmentMesh {
     bool is_at_home(ElementId cell) const {
         return carriers_[fragment_of_cell(cell).index()] == carrier_of_cell(cell);
     }
+    /// True if a fragment of its own carrier carries the cell as one of a light part: by way of
+    /// other carriers, around a cut. Such a part gives the fragment no connections at nodes.
+    bool is_carried_around(ElementId cell) const { return carried_around_.contains(cell); }
+    /// True if the cell belongs to the part of its carrier that its fragment is the element of.
+    bool is_own(ElementId cell) const { return is_at_home(cell) && !is_carried_around(cell); }
     /// Returns the combination of nodes that a living node of the material follows. Of the
     /// fragments at the node it is in the lowest one that has cells of its own carrier there, or
     /// else in the lowest one.
@@ -200,6 +210,12 @@ class FragmentMesh {
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
     void move_cell(ElementId cell, ElementId from, ElementId to);
+    void set_carried_around(ElementId cell, bool is_around) {
+        if (is_around)
+            carried_around_.insert(cell);
+        else
+            carried_around_.erase(cell);
+    }
     /// Sets the living fragments of a carrier, in ascending order.
     void set_fragments(ElementId carrier, std::vector<ElementId> fragments);
     /// Drops the entry of a list that has become what an absent entry means.
@@ -241,6 +257,7 @@ class FragmentMesh {
     std::vector<std::uint8_t> is_node_alive_;
     // By cell of the material.
     std::vector<ElementId> carrier_of_cell_, fragment_of_cell_;
+    std::unordered_set<ElementId> carried_around_;
     std::vector<std::uint8_t> is_held_;  // by node of the material, also if it is dead
     // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
     std::vector<std::int32_t> part_of_cell_, first_part_;

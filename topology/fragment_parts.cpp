@@ -67,7 +67,7 @@ void FragmentParts::add(ElementId carrier, std::span<const ElementId> cells, dou
     part.is_held = part.is_light && is_held(cells);
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());
-    part.is_element = fragments_.carrier(part.fragment) == carrier;
+    part.is_element = fragments_.is_own(cells.front());
     part.cells.assign(cells.begin(), cells.end());
     parts_.push_back(&part);
 }

@@ -33,7 +33,7 @@ class FragmentParts {
         std::int32_t local = -1;  // scratch of users
         bool is_light = false;
         bool is_held = false;           // is light, and has material at a node that is held
-        bool is_element = false;        // carried by a fragment of its own carrier
+        bool is_element = false;        // see FragmentMesh::is_own()
         bool has_neighbors = false;     // found
         bool has_beyond = false;        // found
         bool is_in_cluster = false;     // see light_cluster()

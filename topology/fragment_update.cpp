@@ -77,6 +77,8 @@ void FragmentUpdate::follow_cells() {
         if (cell.index() >= changes_.element_capacity_before) {
             carrier_of[cell.index()] = carrier_of[record.parent.index()];
             fragment_of[cell.index()] = fragment_of[record.parent.index()];
+            if (fragments_.is_carried_around(record.parent))
+                fragments_.set_carried_around(cell, true);
         }
         insert_sorted(list_of(carrier_of[cell.index()]), cell);
         touched_carriers_.push_back(carrier_of[cell.index()]);
@@ -95,7 +97,9 @@ void FragmentUpdate::follow_cells() {
         FragmentMesh::drop_if_trivial(fragments_.cells_of_carrier_, carrier);
 }
 
-ElementId FragmentUpdate::add_fragment(ElementId carrier, ElementId parent) {
+/// Adds a fragment for a cell that is an element now.
+ElementId FragmentUpdate::add_fragment(ElementId cell) {
+    const ElementId carrier = fragments_.carrier_of_cell(cell);
     const ElementId e(fragments_.element_capacity());
     fragments_.carriers_.push_back(carrier);
     fragments_.is_alive_.push_back(1);
@@ -105,7 +109,8 @@ ElementId FragmentUpdate::add_fragment(ElementId carrier, ElementId parent) {
     fragments_.corner_begin_.push_back(fragments_.corners_.size());
     fragments_.cells_of_fragment_[e] = {};
     ++fragments_.num_elements_;
-    parents_.push_back(parent);
+    parents_.push_back(fragments_.fragment_of_cell(cell));
+    is_from_own_part_.push_back(fragments_.is_own(cell));
     return e;
 }
 
@@ -130,12 +135,11 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
         ElementId own;
         for (const ElementId cell : part.cells) {
             const ElementId e = fragments_.fragment_of_cell(cell);
-            if (fragments_.carrier(e) == carrier && fragments_.is_alive(e) &&
+            if (fragments_.is_own(cell) && fragments_.is_alive(e) &&
                 std::ranges::find(now, e) == now.end() && (!own.is_valid() || e < own))
                 own = e;
         }
-        part.fragment =
-            own.is_valid() ? own : add_fragment(carrier, fragments_.fragment_of_cell(part.head()));
+        part.fragment = own.is_valid() ? own : add_fragment(part.head());
         insert_sorted(now, part.fragment);
     }
     for (const ElementId e : before) {
@@ -156,19 +160,21 @@ void FragmentUpdate::carry_cells() {
     };
     const auto leave = [&](ElementId cell) {
         const ElementId from = fragments_.fragment_of_cell(cell);
-        fragment_before_.push_back({cell, from, from});
+        fragment_before_.push_back({cell, from, from, fragments_.is_carried_around(cell)});
         std::erase(list_of(from), cell);
     };
     for (const ElementRecord& record : changes_.elements_removed) {
         leave(record.id);
         fragments_.fragment_of_cell_[record.id.index()] = {};
+        fragments_.set_carried_around(record.id, false);
     }
     for (const ElementRecord& record : changes_.elements_added)
-        fragment_before_.push_back(
-            {record.id, ElementId(), fragments_.fragment_of_cell(record.id)});
+        fragment_before_.push_back({record.id, ElementId(), fragments_.fragment_of_cell(record.id),
+                                    fragments_.is_carried_around(record.id)});
     for (const ElementId carrier : open_carriers_)
         for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
             const ElementId to = parts_[parts_[i].master].fragment;
+            const bool is_around = !parts_[i].is_element && fragments_.carrier(to) == carrier;
             shares_before_.try_emplace(to, fragments_.share(to));  // a cell may have shrunk
             for (const ElementId cell : parts_[i].cells) {
                 const ElementId from = fragments_.fragment_of_cell(cell);
@@ -177,8 +183,11 @@ void FragmentUpdate::carry_cells() {
                 else if (from != to) {
                     leave(cell);
                     insert_sorted(list_of(to), cell);
+                } else if (is_around != fragments_.is_carried_around(cell)) {
+                    fragment_before_.push_back({cell, from, from, !is_around});
                 }
                 fragments_.fragment_of_cell_[cell.index()] = to;
+                fragments_.set_carried_around(cell, is_around);
             }
         }
 }
@@ -216,12 +225,12 @@ bool FragmentUpdate::is_added(ElementId cell) const {
     return std::ranges::binary_search(changes_.elements_added, cell, {}, &ElementRecord::id);
 }
 
-/// Returns the node that a fragment, or the fragment of its own carrier that it comes from, had at
-/// a corner before the edit.
+/// Returns the node that a fragment, or the fragment that it is a part of, had at a corner before
+/// the edit.
 NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
     if (const ElementId parent = parent_of(fragment); parent.is_valid()) {
-        const bool is_own = fragments_.carrier(parent) == fragments_.carrier(fragment);
-        return is_own ? node_before(parent, origin) : NodeId();
+        const std::size_t added = fragment.index() - element_capacity_before_;
+        return is_from_own_part_[added] ? node_before(parent, origin) : NodeId();
     }
     return node_at(corners_before(fragment), origin);
 }
@@ -374,7 +383,7 @@ void FragmentUpdate::assign_nodes() {
 /// elsewhere.
 void FragmentUpdate::merge_nodes_of_fragments() {
     std::unordered_map<ElementId, ElementId> first_of;  // of an added fragment, what it comes from
-    for (const auto& [cell, before, inherited] : fragment_before_) {
+    for (const auto& [cell, before, inherited, was_around] : fragment_before_) {
         const ElementId now = fragments_.fragment_of_cell(cell);
         if (!before.is_valid() || !now.is_valid() || before == now ||
             fragments_.carrier(now) != fragments_.carrier(before))
@@ -440,15 +449,17 @@ FragmentChanges FragmentUpdate::differences() {
             result.shares.push_back({e, before, fragments_.share(e)});
     std::ranges::sort(result.shares, {}, &ShareChange::fragment);
     std::ranges::sort(fragment_before_, {}, &CellBefore::cell);
-    for (const auto& [cell, before, inherited] : fragment_before_) {
+    for (const auto& [cell, before, inherited, was_around] : fragment_before_) {
         const ElementId now =
             material_.is_alive(cell) ? fragments_.fragment_of_cell(cell) : ElementId();
-        if (now == before) continue;
+        const bool is_around = fragments_.is_carried_around(cell);
+        if (now == before && is_around == was_around) continue;
         const ElementId carrier = fragments_.carrier_of_cell(cell);
         const auto is_away = [&](ElementId e) {
             return e.is_valid() && fragments_.carrier(e) != carrier && inherited != now;
         };
-        result.cells.push_back({cell, carrier, before, now, is_away(inherited), is_away(now)});
+        result.cells.push_back({cell, carrier, before, now, is_away(inherited), is_away(now),
+                                before.is_valid() && was_around, is_around});
     }
     return result;
 }

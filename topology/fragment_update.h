@@ -47,7 +47,7 @@ class FragmentUpdate {
     void carry_cells();
     void update_shares();
     double share_of(ElementId fragment);
-    ElementId add_fragment(ElementId carrier, ElementId parent);
+    ElementId add_fragment(ElementId cell);
 
     void assign_nodes();
     bool is_settled(NodeId origin, std::span<const std::size_t> parts, DisjointSet& connected);
@@ -86,11 +86,13 @@ class FragmentUpdate {
         ElementId cell;
         ElementId before;     // that carried it; invalid if the edit added the cell
         ElementId inherited;  // that carried it, or its parent
+        bool was_around;      // the cell, or its parent: see FragmentMesh::is_carried_around()
     };
     std::vector<CellBefore> fragment_before_;
     std::unordered_map<ElementId, std::vector<NodeId>> corners_before_;  // of fragments that change
     std::unordered_map<ElementId, double> shares_before_;
-    std::vector<ElementId> parents_;  // of the added fragments, in ascending order
+    std::vector<ElementId> parents_;              // of the added fragments, in ascending order
+    std::vector<std::uint8_t> is_from_own_part_;  // of each, if it is a part of its parent
     std::vector<ElementId> died_;
     std::map<NodeId, NodeId> merged_;  // nodes of parts that were joined again, with lower ones
     std::vector<NodeRecord> nodes_added_, nodes_removed_;

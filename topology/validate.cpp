@@ -144,6 +144,8 @@ class FragmentCheck {
             report("fragment ", e.value, " does not know its element ", cell.value);
         else if (fragments_.region(e) != mesh_.region(cell))
             report("element ", cell.value, " is in a fragment of another region");
+        else if (fragments_.is_carried_around(cell) && !fragments_.is_at_home(cell))
+            report("element ", cell.value, " is in a fragment of another carrier");
     }
 
     void check_fragment(ElementId e) {
@@ -166,12 +168,13 @@ class FragmentCheck {
         const ElementId a = fragments_.fragment_of_cell(face.element),
                         b = fragments_.fragment_of_cell(other);
         if (fragments_.carrier_of_cell(face.element) == fragments_.carrier_of_cell(other)) {
-            if (a != b)
+            if (a != b ||
+                fragments_.is_carried_around(face.element) != fragments_.is_carried_around(other))
                 report("elements ", face.element.value, " and ", other.value,
                        " hang together in different fragments");
             return;
         }
-        if (!fragments_.is_at_home(face.element) || !fragments_.is_at_home(other)) return;
+        if (!fragments_.is_own(face.element) || !fragments_.is_own(other)) return;
         std::size_t num_shared = 0, num_common = 0;
         for (const NodeId m : fragments_.corners(a))
             for (const NodeId n : fragments_.corners(b)) {
