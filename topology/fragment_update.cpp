@@ -385,8 +385,9 @@ void FragmentUpdate::merge_nodes_of_fragments() {
     std::unordered_map<ElementId, ElementId> first_of;  // of an added fragment, what it comes from
     for (const auto& [cell, before, inherited, was_around] : fragment_before_) {
         const ElementId now = fragments_.fragment_of_cell(cell);
-        if (!before.is_valid() || !now.is_valid() || before == now ||
-            fragments_.carrier(now) != fragments_.carrier(before))
+        if (!before.is_valid() || !now.is_valid() || before == now || was_around ||
+            fragments_.carrier(before) != fragments_.carrier_of_cell(cell) ||
+            !fragments_.is_own(cell))
             continue;
         const bool is_added = parent_of(now).is_valid();
         const ElementId other = is_added ? first_of.try_emplace(now, before).first->second : now;

@@ -164,6 +164,17 @@ void drop_passing(ChangeSet& all) {
         }
 }
 
+TEST(FragmentNodes, AreNotMergedWhereNothingJoins) {
+    for (const Body& body : bodies()) {
+        SCOPED_TRACE(describe(body));
+        edit(body, [](const Mesh&, const FragmentMesh&, const FragmentMesh&, const ChangeSet&,
+                      const FragmentChanges& done) {
+            for (const NodeRecord& record : done.mesh.nodes_removed)
+                EXPECT_EQ(record.num_sources, 0) << "node " << record.id.value;
+        });
+    }
+}
+
 TEST(FragmentNodes, AreThoseOfASingleEdit) {
     for (const Body& body : bodies()) {
         SCOPED_TRACE(describe(body));
@@ -182,6 +193,55 @@ TEST(FragmentNodes, AreThoseOfASingleEdit) {
         EXPECT_EQ(validate(at_once, material), std::vector<std::string>());
         EXPECT_TRUE(test::shape_of(fragments) == test::shape_of(at_once));
     }
+}
+
+// Nodes are anywhere: only material that joins another fragment or parts from it may move.
+TEST(FragmentNodes, LetNoMaterialJump) {
+    int num_around = 0;
+    for (const Body& body : bodies()) {
+        SCOPED_TRACE(describe(body));
+        test::Random random(body.seed);
+        std::vector<Vec3> x;
+        const auto corners_of = [&](const FragmentMesh& fragments, ElementId e) {
+            std::vector<Vec3> corners;
+            for (const NodeId n : fragments.corners(e)) corners.push_back(x[n.index()]);
+            return corners;
+        };
+        edit(body, [&](const Mesh& material, const FragmentMesh& before, const FragmentMesh& now,
+                       const ChangeSet& changes, const FragmentChanges& done) {
+            while (x.size() < before.node_capacity()) x.push_back(random.vector(1.0));
+            x.resize(now.node_capacity());
+            for (const NodeRecord& record : done.mesh.nodes_removed)
+                if (record.num_sources == 1)  // merged
+                    x[record.sources[0].node.index()] += x[record.id.index()];
+            for (const NodeRecord& record : done.mesh.nodes_added) {
+                x[record.id.index()] = Vec3::Zero();
+                for (std::size_t k = 0; k < static_cast<std::size_t>(record.num_sources); ++k)
+                    x[record.id.index()] +=
+                        record.sources[k].weight * x[record.sources[k].node.index()];
+            }
+            std::map<ElementId, ElementId> ancestors;
+            for (const ElementRecord& record : changes.elements_added) {
+                const auto known = ancestors.find(record.parent);
+                ancestors[record.id] = known == ancestors.end() ? record.parent : known->second;
+            }
+            for (const ElementId cell : material.elements()) {
+                const auto record =
+                    std::ranges::lower_bound(done.cells, cell, {}, &CarriedCell::cell);
+                if (record != done.cells.end() && record->cell == cell &&
+                    (record->is_joined || record->is_released))
+                    continue;
+                const auto ancestor = ancestors.find(cell);
+                const ElementId from =
+                    before.fragment_of_cell(ancestor == ancestors.end() ? cell : ancestor->second);
+                EXPECT_EQ(corners_of(before, from), corners_of(now, now.fragment_of_cell(cell)))
+                    << "element " << cell.value;
+            }
+            for (const ElementId cell : material.elements())
+                num_around += now.is_carried_around(cell) ? 1 : 0;
+        });
+    }
+    EXPECT_GT(num_around, 100);
 }
 
 TEST(FragmentNodes, AreTheSameAfterUndoAndReplay) {
