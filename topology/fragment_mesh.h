@@ -35,8 +35,8 @@ struct ShareChange {
 struct CarriedCell {
     ElementId cell, carrier;
     ElementId from, to;
-    /// True if the edit took the cell out of a fragment of another carrier, or gave it to one. A
-    /// new cell comes out of the fragment that carried its parent.
+    /// True if the edit took the cell out of a fragment that carried it with a light part, or gave
+    /// it to such a one. A new cell comes out of the fragment that carried its parent.
     bool is_released = false, is_joined = false;
     /// Whether it was carried around a cut before the edit, and is now. Where only this changes,
     /// `from` and `to` are the same.

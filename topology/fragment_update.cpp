@@ -456,11 +456,13 @@ FragmentChanges FragmentUpdate::differences() {
         const bool is_around = fragments_.is_carried_around(cell);
         if (now == before && is_around == was_around) continue;
         const ElementId carrier = fragments_.carrier_of_cell(cell);
-        const auto is_away = [&](ElementId e) {
-            return e.is_valid() && fragments_.carrier(e) != carrier && inherited != now;
+        const auto is_away = [&](ElementId e, bool is_around_there) {
+            return e.is_valid() && inherited != now &&
+                   (is_around_there || fragments_.carrier(e) != carrier);
         };
-        result.cells.push_back({cell, carrier, before, now, is_away(inherited), is_away(now),
-                                before.is_valid() && was_around, is_around});
+        result.cells.push_back({cell, carrier, before, now, is_away(inherited, was_around),
+                                is_away(now, is_around), before.is_valid() && was_around,
+                                is_around});
     }
     return result;
 }

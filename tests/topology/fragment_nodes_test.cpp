@@ -88,9 +88,10 @@ struct Body {
     double light_share = default_light_share;
 };
 
-/// Bodies of more than a few cells, and rare ones in which nodes across a cut were once merged.
+/// Bodies of more than a few cells, and rare ones in which nodes across a cut were once merged, or
+/// material moved to another fragment of its own carrier.
 std::vector<Body> bodies() {
-    std::vector<Body> all{{"cube", 6}, {"cube", 11}, {"ball", 21}};
+    std::vector<Body> all{{"cube", 6}, {"cube", 11}, {"ball", 21}, {"cube", 11, 0.5}};
     for (const auto* family : test::tetrahedral_families())
         if (family->data.num_cells() > 2)
             for (int seed = 0; seed < test::num_cases(5); ++seed)
