@@ -78,6 +78,15 @@ ordered_json as_json(const bench::Throughput& throughput) {
                                   {"forces_before_ns_per_element", rate.forces_before},
                                   {"forces_ns_per_element", rate.forces},
                                   {"forces_built_anew_ns_per_element", rate.forces_built_anew}});
+    json["contact"] = ordered_json::array();
+    for (const bench::ContactRate& rate : throughput.contact)
+        json["contact"].push_back({{"elements", rate.elements},
+                                   {"points", rate.points},
+                                   {"friction", rate.friction},
+                                   {"step_without_contact_us", rate.step_without},
+                                   {"step_us", rate.step},
+                                   {"surface_nodes", rate.surface_nodes},
+                                   {"search_ms", rate.search}});
     return json;
 }
 
@@ -128,6 +137,12 @@ void print_text(const bench::Throughput& throughput) {
                     std::string(rate.method).c_str(), std::string(rate.edits).c_str(),
                     rate.elements_before, rate.elements, rate.nodes_before, rate.nodes,
                     rate.forces_before, rate.forces, rate.forces_built_anew);
+    std::printf("\n%-16s %8s %8s | %15s %9s | %13s %9s\n", "closed cut", "points", "friction",
+                "step without, us", "step, us", "surface nodes", "search, ms");
+    for (const bench::ContactRate& rate : throughput.contact)
+        std::printf("%-8zu elements %7zu %8.1f | %16.0f %9.0f | %13zu %10.1f\n", rate.elements,
+                    rate.points, rate.friction, rate.step_without, rate.step, rate.surface_nodes,
+                    rate.search);
 }
 
 }  // namespace

@@ -356,6 +356,7 @@ Throughput measure_throughput(const ThroughputPlan& plan,
         for (const std::size_t n : *sizes) work += work_of(n, 1.0);
     for (const auto* sizes : {&plan.edited_tetrahedra, &plan.edited_hexahedra})
         for (const std::size_t n : *sizes) work += work_of(n, num_edited);
+    for (const std::size_t n : plan.touching_tetrahedra) work += work_of(n, 1.0);
     const auto next = [&](double share, const std::string& name) {
         report(finished / work, name);
         finished += share;
@@ -392,6 +393,11 @@ Throughput measure_throughput(const ThroughputPlan& plan,
     for (const std::size_t n : plan.edited_hexahedra) {
         part(n, " hexahedra, edited", num_edited);
         measure_edits(n, materials.back(), plan.seconds, result);
+    }
+    for (const std::size_t n : plan.touching_tetrahedra) {
+        part(n, " tetrahedra, touching");
+        for (const double friction : {0.0, 0.3})
+            result.contact.push_back(measure_contact(n, friction, plan.seconds));
     }
     for (StepRate& rate : result.steps) {
         const MachineSpeed::Limit& limit = result.machine.limits.at(rate.num_threads);

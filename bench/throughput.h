@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/bench/contact_speed.h"
+
 namespace incise::bench {
 
 /// The machine and its limits.
@@ -77,6 +79,7 @@ struct Throughput {
     std::vector<StepRate> steps;
     std::vector<EditRate> edits;
     std::vector<EditedRate> edited;
+    std::vector<ContactRate> contact;
 };
 
 /// The plan of a measurement. Bodies have about the given numbers of elements.
@@ -84,6 +87,7 @@ struct ThroughputPlan {
     std::vector<std::size_t> tetrahedra = {5'000, 20'000, 100'000, 500'000};
     std::vector<std::size_t> hexahedra = {1'000, 27'000, 125'000};
     std::vector<std::size_t> edited_tetrahedra = tetrahedra, edited_hexahedra = hexahedra;
+    std::vector<std::size_t> touching_tetrahedra = {20'000};
     double seconds = 0.3;  ///< minimum time for each figure
     int num_threads = 0;   ///< measured besides one thread; 0: the number of cores
 };

@@ -94,7 +94,8 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
     solver_.clear();
     num_points_ = 0;
     tool_work_ = fracture_ = 0.0;
-    node_forces_.clear();
+    restored_forces_.clear();
+    last_dt_ = dt;
     tissue_.add_points(model, solver_);
     max_penetration_ = tissue_.max_penetration();
     for (auto& [number, tool] : tools_) {
@@ -142,8 +143,13 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
         for (const Pull& pull : solver_.pulls(t))
             impulses_[pull.node.index()] -= solver_.thread_impulse(t) * pull.gradient;
     model.give_impulses(impulses_);
-    solver_.sum_surface_impulses(node_forces_);
-    for (auto& [node, force] : node_forces_) force /= dt;
+}
+
+std::vector<std::pair<NodeId, Vec3>> Contact::node_forces() const {
+    if (last_dt_ == 0.0) return restored_forces_;
+    auto forces = solver_.surface_impulses();
+    for (auto& [node, force] : forces) force /= last_dt_;
+    return forces;
 }
 
 void Contact::book_work(physics::Model& model) {
@@ -161,7 +167,7 @@ void Contact::require_tools(std::span<const cutting::ToolShape* const> shapes) c
 }
 
 void Contact::save(ArchiveWriter& ar) const {
-    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces_);
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces());
     tissue_.save(ar);
     ar(static_cast<std::uint64_t>(tools_.size()));
     for (const auto& [number, tool] : tools_) {
@@ -172,10 +178,11 @@ void Contact::save(ArchiveWriter& ar) const {
 
 void Contact::restore(ArchiveReader& ar, const physics::Model& model,
                       const topology::BoundarySurface& surface) {
-    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces_);
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, restored_forces_);
+    last_dt_ = 0.0;
     if (!std::isfinite(dissipation_) || !std::isfinite(fracture_energy_))
         throw InputError("its contact has no sound energy");
-    for (const auto& [node, force] : node_forces_)
+    for (const auto& [node, force] : restored_forces_)
         if (!node.is_valid() || node.index() >= model.mesh().node_capacity() || !force.allFinite())
             throw InputError("its contact has forces on another body");
     tissue_.restore(ar, model, surface);

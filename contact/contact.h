@@ -76,8 +76,8 @@ class Contact final : public physics::VelocityProjection {
     /// toughness, J. It is part of the balance of energy if the force of cutting is applied.
     double fracture_energy() const { return fracture_energy_; }
     /// Returns what the points of contact exerted in the last step, N, at the nodes of the mesh at
-    /// which it is not zero, in ascending order of the nodes.
-    const std::vector<std::pair<NodeId, Vec3>>& node_forces() const { return node_forces_; }
+    /// which it is not zero, in ascending order of the nodes. Cost: O(n log n) in the points.
+    std::vector<std::pair<NodeId, Vec3>> node_forces() const;
     const ContactSolver& solver() const { return solver_; }
 
     void save(ArchiveWriter& ar) const;
@@ -104,8 +104,9 @@ class Contact final : public physics::VelocityProjection {
     double fracture_ = 0.0;         // of the last step, within the balance, J
     double dissipation_ = 0.0;      // J
     double fracture_energy_ = 0.0;  // J
-    std::vector<std::pair<NodeId, Vec3>> node_forces_;
-    std::vector<Vec3> inverse_masses_, impulses_;  // scratch, by node of the fragments
+    double last_dt_ = 0.0;          // s; 0 after a restore
+    std::vector<std::pair<NodeId, Vec3>> restored_forces_;  // as node_forces() then returns them
+    std::vector<Vec3> inverse_masses_, impulses_;           // scratch, by node of the fragments
 };
 
 }  // namespace incise::contact

@@ -66,8 +66,8 @@ std::span<const Pull> ContactSolver::pulls(std::size_t thread) const {
     return std::span(pulls_).subspan(begin, end - begin);
 }
 
-void ContactSolver::sum_surface_impulses(std::vector<std::pair<NodeId, Vec3>>& sums) const {
-    sums.clear();
+std::vector<std::pair<NodeId, Vec3>> ContactSolver::surface_impulses() const {
+    std::vector<std::pair<NodeId, Vec3>> sums;
     for (const auto& [point, share] : surface_shares_)
         if (const Vec3& impulse = impulses_[point]; !impulse.isZero(0.0))
             sums.emplace_back(share.node, share.weight * impulse);
@@ -80,6 +80,7 @@ void ContactSolver::sum_surface_impulses(std::vector<std::pair<NodeId, Vec3>>& s
             sums[count++] = {node, impulse};
     }
     sums.resize(count);
+    return sums;
 }
 
 Vec3 ContactSolver::velocity(std::size_t i) const {

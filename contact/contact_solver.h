@@ -69,7 +69,7 @@ class ContactSolver {
     /// Adds a share to the last point. Several shares of one node become one.
     void add_share(NodeId node, double weight);
     /// Notes that a node of the surface has such a weight in the last point. It is for
-    /// sum_surface_impulses() alone.
+    /// surface_impulses() alone.
     void note_surface_node(NodeId node, double weight) {
         surface_shares_.push_back({points_.size() - 1, {node, weight}});
     }
@@ -103,7 +103,7 @@ class ContactSolver {
     const Vec3& impulse(std::size_t i) const { return impulses_[i]; }
     /// Sums what the points exert on the nodes of the surface, N s, where it is not zero, in
     /// ascending order of the nodes.
-    void sum_surface_impulses(std::vector<std::pair<NodeId, Vec3>>& sums) const;
+    std::vector<std::pair<NodeId, Vec3>> surface_impulses() const;
     /// Returns the relative velocity of the shares of point `i` after solve(), m/s.
     Vec3 velocity(std::size_t i) const;
 

@@ -28,7 +28,7 @@ struct ContactSettings {
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
 void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver);
-/// The same for a node of the surface, with what sum_surface_impulses() needs.
+/// The same for a node of the surface, with what ContactSolver::surface_impulses() needs.
 void add_surface_shares(const physics::Model& model, NodeId n, double weight,
                         ContactSolver& solver);
 

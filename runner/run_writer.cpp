@@ -150,9 +150,9 @@ void RunWriter::on_edit(const Simulation& simulation, const sim::EditRecord& edi
 
 void RunWriter::on_frame(const Simulation& simulation) {
     wait();
+    const auto forces = simulation.world().contact_forces();
     frame_builder_.emplace(simulation.model(), simulation.time(),
-                           simulation.scenario().output.fields,
-                           simulation.world().contact_forces());
+                           simulation.scenario().output.fields, forces ? &*forces : nullptr);
     write_later([this] {
         const io::Frame frame = frame_builder_->finish();
         is_frame_built_ = true;

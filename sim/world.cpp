@@ -309,8 +309,9 @@ std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velo
 std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
-const std::vector<std::pair<NodeId, Vec3>>* World::contact_forces() const {
-    return parts_->contact ? &parts_->contact->node_forces() : nullptr;
+std::optional<std::vector<std::pair<NodeId, Vec3>>> World::contact_forces() const {
+    if (!parts_->contact) return std::nullopt;
+    return parts_->contact->node_forces();
 }
 const Ledger& World::ledger() const { return parts_->ledger; }
 

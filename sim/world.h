@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -280,9 +281,9 @@ class World {
     std::vector<std::size_t> take_surface_changes();
 
     /// Returns the forces of contact in the last step, N, at the nodes of the mesh at which they
-    /// are not zero, in ascending order of the nodes; null for a world without contact. Graspers
+    /// are not zero, in ascending order of the nodes; nothing for a world without contact. Graspers
     /// count; threads and the force of cutting, which act inside the tissue, do not.
-    const std::vector<std::pair<NodeId, Vec3>>* contact_forces() const;
+    std::optional<std::vector<std::pair<NodeId, Vec3>>> contact_forces() const;
 
     void set_num_threads(int n);
 

@@ -17,6 +17,7 @@ TEST(Throughput, HasRowsForAllBodiesLawsAndThreads) {
     plan.hexahedra = {64};
     plan.edited_tetrahedra = {num_tetrahedra};
     plan.edited_hexahedra = {1000};
+    plan.touching_tetrahedra = {1000};
     plan.seconds = 0.0;
     plan.num_threads = 2;
     double last = -1.0;
@@ -75,6 +76,14 @@ TEST(Throughput, HasRowsForAllBodiesLawsAndThreads) {
         EXPECT_GT(rate.forces, 0.0);
         EXPECT_GT(rate.forces_built_anew, 0.0);
     }
+    ASSERT_EQ(throughput.contact.size(), 2u);  // without and with friction
+    for (const bench::ContactRate& rate : throughput.contact) {
+        EXPECT_GT(rate.points, 20u);
+        EXPECT_GT(rate.surface_nodes, 200u);
+        EXPECT_GT(rate.step_without, 0.0);
+        EXPECT_GT(rate.step, 0.0);
+        EXPECT_GT(rate.search, 0.0);
+    }
 }
 
 // Steps of a few bricks are so fast that hours of simulated time pass.
@@ -83,6 +92,7 @@ TEST(Throughput, IsMeasuredForAnyTime) {
                                      .hexahedra = {8},
                                      .edited_tetrahedra = {},
                                      .edited_hexahedra = {},
+                                     .touching_tetrahedra = {},
                                      .seconds = 0.05};
     EXPECT_FALSE(bench::measure_throughput(plan, [](double, const std::string&) {}).steps.empty());
 }

@@ -105,8 +105,8 @@ path = [{ time = 0, at = [0.05, 0.05, 0.11] }, { time = 0.2, at = [0.05, 0.05, 0
         { time = 1, at = [0.05, 0.05, 0.107] }]
 )"));
     const auto frame_now = [&] {
-        return build_frame(simulation.model(), simulation.time(), {},
-                           simulation.world().contact_forces());
+        const auto forces = simulation.world().contact_forces();
+        return build_frame(simulation.model(), simulation.time(), {}, &forces.value());
     };
     const io::Frame first = frame_now();
     EXPECT_EQ(std::ranges::count(floats(first, "contact_force"), 0.0f), 3 * 64);
@@ -129,7 +129,7 @@ TEST(TouchingTools, FramesOfRunsWithoutContactHaveNoSuchFields) {
     const RunFolder folder;
     const Simulation simulation(
         folder.scenario(soft_cube + dynamics(0.1) + "[contact]\nenabled = false\n"));
-    EXPECT_EQ(simulation.world().contact_forces(), nullptr);
+    EXPECT_FALSE(simulation.world().contact_forces().has_value());
 }
 
 }  // namespace
