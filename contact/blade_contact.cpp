@@ -17,7 +17,7 @@ namespace {
 constexpr double longest_piece = 0.125;
 constexpr double least_motion = 1e-12;  // a blade that moves by less stands still
 /// A piece that is nearer to the surface opens nothing: it is in a cut that is there already.
-constexpr double surface_layer = 0.02;
+constexpr double surface_layer = 0.03;
 
 /// True if a point is at most so far from a face of its cell that belongs to the surface.
 bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "incise/cutting/tools/solid.h"
@@ -271,20 +270,7 @@ bool is_inside(const cutting::ProbeShape& shape, const Vec3& x) {
     if (const auto* ball = std::get_if<Sphere>(&shape)) return cutting::meets(*ball, x, x);
     if (const auto* capsule = std::get_if<Capsule>(&shape)) return cutting::meets(*capsule, x, x);
     if (const auto* box = std::get_if<Cuboid>(&shape)) return cutting::meets(*box, x, x);
-    // The solid angle of the surface is that of a full turn inside, and 0 outside.
-    // Source: van Oosterom, Strackee 1983.
-    double half_angles = 0.0;
-    const topology::SurfaceData& surface = std::get<Solid>(shape).surface;
-    for (const auto& triangle : surface.triangles) {
-        Corners from_x;
-        for (std::size_t k = 0; k < 3; ++k)
-            from_x[k] = surface.points[static_cast<std::size_t>(triangle[k])] - x;
-        const auto& [a, b, c] = from_x;
-        const double la = a.norm(), lb = b.norm(), lc = c.norm();
-        half_angles += std::atan2(a.dot(b.cross(c)),
-                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return half_angles > std::numbers::pi;
+    return cutting::encloses(std::get<Solid>(shape).surface, x);
 }
 
 void append_touches(const cutting::ProbeShape& shape, const Corners& corners, double farthest,

@@ -57,7 +57,9 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
       world_(scenario::make_world(scenario, std::move(body.mesh), std::move(body.materials),
                                   std::move(body.boundary_conditions))),
       fingerprint_(fingerprint_of(model(), scenario.tools)),
-      warned_step_(ledger().initial().stable_step) {
+      warned_step_(ledger().initial().stable_step),
+      size_(topology::mean_element_length(mesh())),
+      num_body_warnings_(warnings_.size()) {
     for (scenario::ScriptedTool& tool : body.tools) {
         world_.add_tool({std::move(tool.name), std::move(tool.shape)});
         scripts_.push_back({std::move(tool.path), tool.close, tool.open, tool.over, tool.length});
@@ -164,11 +166,10 @@ void Simulation::note_overlap() {
 void Simulation::warn_of_overlaps() {
     // Contact keeps overlaps to some thousandths of an element.
     constexpr double large = 0.2;
-    const double size = topology::mean_element_length(mesh());
-    if (!(overlap_.depth > large * size)) return;
+    if (!(overlap_.depth > large * size_)) return;
     std::ostringstream text;
     text.precision(2);
-    text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size
+    text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size_
          << " of an element, at t = " << io::format_number(overlap_.time)
          << " s: by a cut through tissue that is strained, by bodies or tools that begin in each "
             "other, or by parts that are thin and pressed hard; see max_penetration in history.csv";
@@ -197,20 +198,22 @@ void Simulation::report_edits() {
 }
 
 void Simulation::save(ArchiveWriter& ar) const {
-    ar(world_.save(), edits_, last_step_, num_frames_, overlap_);
+    const std::vector<std::string> added(
+        warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
+    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, torn_, warned_step_, added);
 }
 
 void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
-    ar(edits_, last_step_, num_frames_, overlap_);
+    std::vector<std::string> added;
+    ar(edits_, last_step_, num_frames_, overlap_, torn_, warned_step_, added);
+    warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
     if (world_.num_tools() != scripts_.size())
         throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
-    for (const sim::EditRecord& edit : edits_) warn_of_short_steps(edit);
-    warn_of_torn_sutures();
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");

@@ -135,7 +135,9 @@ class Simulation {
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;
     double last_step_ = 0.0;
-    double warned_step_;  // s, stable step at the last warning about it, or at the start
+    double warned_step_;             // s, stable step at the last warning about it, or at the start
+    double size_;                    // m, mean length of an element at the start
+    std::size_t num_body_warnings_;  // in warnings_, before those of the run
     std::uint64_t num_frames_ = 0;
 };
 

@@ -62,6 +62,8 @@ BladeSpec read_blade(const TableReader& tool, std::optional<double> snap) {
         blade.cutting_force = static_cast<cutting::CuttingForce>(*force);
     if (tool.has("cutting_force"))
         tool.require("toughness", "energy to open an area, J/m2, as in toughness = 160");
+    if (tool.has("toughness") && blade.mode == CutMode::separate)
+        tool.error("toughness", "belongs to mode = \"split\": leave it out");
     blade.snap = snap;
     if (blade.snap && blade.mode == CutMode::separate)
         tool.error("snap", "belongs to mode = \"split\": leave it out");
@@ -124,9 +126,15 @@ void check_keys(const TableReader& tool, Keys kind) {
         tool.require("time", "when it cuts, seconds, as in time = 0.5");
         return;
     }
-    refuse(tool, {"plane", "surface", "scale"}, "a cut");
+    if (kind == "probe" && tool.has("surface"))
+        tool.error("surface",
+                   "goes into the shape, as in shape = { surface = { file = \"probe.stl\" } }");
+    else
+        refuse(tool, {"surface"}, "a cut");
+    refuse(tool, {"plane", "scale"}, "a cut");
     if (kind == "suture") {
-        refuse(tool, {"path"}, "a blade");
+        if (tool.has("path"))
+            tool.error("path", "a suture has none: its points are in the tissue; leave it out");
         tool.require("time", "when it is tied, seconds, as in time = 0.5");
     } else {
         refuse(tool, {"time"}, "a cut or a suture");
@@ -155,6 +163,16 @@ void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) 
         tool.error("path",
                    "must have at least 2 keys: a probe is there from the first to the last; "
                    "for one that is always there, write an [[obstacle]]");
+    if (const auto* suture = std::get_if<SutureSpec>(&spec.kind);
+        suture && end_time > 0.0 && !spec.path.empty()) {
+        const double time = spec.path.front().time;
+        if (time == end_time)
+            tool.warning("time", "tool " + in_quotes(spec.name) + " is tied at the end of the run");
+        else if (suture->length && time < end_time && time + suture->over > end_time)
+            tool.warning("tighten", "tool " + in_quotes(spec.name) + " is drawn until " +
+                                        format_number(time + suture->over) +
+                                        " s, after the end at " + format_number(end_time) + " s");
+    }
     if (end_time > 0.0 && !spec.path.empty() && spec.path.front().time > end_time)
         tool.warning(tool.has("time") ? "time" : "path",
                      "tool " + in_quotes(spec.name) + " starts at " +

@@ -62,13 +62,14 @@ namespace {
 
 /// Reads the key `shape` of a probe or an obstacle. Without a sound one, the shape is that of a
 /// default probe.
-ProbeSpec read_solid(const TableReader& tool, const Names& keys,
+ProbeSpec read_solid(const TableReader& tool, bool is_obstacle,
                      const std::filesystem::path& folder) {
     ProbeSpec spec;
     spec.probe.friction = tool.number("friction", spec.probe.friction, limits::non_negative);
-    const auto shape = tool.table("shape", keys);
+    const auto shape = is_obstacle ? tool.table("shape", {obstacle_shape_keys})
+                                   : tool.table("shape", {probe_shape_keys});
     if (!shape) return spec;
-    if (keys.supported.size() == std::size(obstacle_shape_keys))
+    if (is_obstacle)
         shape->one_of({"half_space", "sphere", "capsule", "box", "surface"});
     else
         shape->one_of({"sphere", "capsule", "box", "surface"});
@@ -81,19 +82,7 @@ ProbeSpec read_solid(const TableReader& tool, const Names& keys,
         if (surface->has("file") && surface->is_sound("file")) spec.surface = std::move(file);
         spec.scale = surface->number("scale", 1.0, limits::positive);
     }
-    return spec;
-}
-
-}  // namespace
-
-ProbeSpec read_probe(const TableReader& tool, const std::filesystem::path& folder) {
-    return read_solid(tool, {probe_shape_keys}, folder);
-}
-
-ProbeSpec read_obstacle(const TableReader& obstacle, const std::filesystem::path& folder) {
-    ProbeSpec spec = read_solid(obstacle, {obstacle_shape_keys}, folder);
-    const auto shape = obstacle.table("shape", {obstacle_shape_keys});
-    if (!shape) return spec;
+    if (!is_obstacle) return spec;
     if (const auto half_space = shape->table("half_space", {half_space_keys})) {
         half_space->require("point", "a point of its surface, as in point = [0, 0, 0]");
         half_space->require("normal", "towards the free side, as in normal = [0, 0, 1]");
@@ -101,6 +90,16 @@ ProbeSpec read_obstacle(const TableReader& obstacle, const std::filesystem::path
                                               half_space->direction("normal", Vec3::UnitZ())};
     }
     return spec;
+}
+
+}  // namespace
+
+ProbeSpec read_probe(const TableReader& tool, const std::filesystem::path& folder) {
+    return read_solid(tool, false, folder);
+}
+
+ProbeSpec read_obstacle(const TableReader& obstacle, const std::filesystem::path& folder) {
+    return read_solid(obstacle, true, folder);
 }
 
 GrasperSpec read_grasper(const TableReader& tool) {
@@ -123,13 +122,18 @@ SutureSpec read_suture(const TableReader& tool) {
     suture.points = tool.vectors("points");
     if (tool.has("points") && tool.is_sound("points") && suture.points.size() < 2)
         tool.error("points", "must have at least 2 points");
+    for (std::size_t i = 1; i < suture.points.size() && tool.is_sound("points"); ++i)
+        if (suture.points[i] == suture.points[i - 1])
+            tool.error("points", "points " + std::to_string(i - 1) + " and " + std::to_string(i) +
+                                     " (from 0) are the same: leave one out");
     suture.stiffness = tool.number("stiffness", 1.0, limits::positive);
     suture.max_force =
         tool.number("max_force", suture.max_force, {.low = 0.0, .includes_high = true});
     suture.reach = tool.number("reach", 0.0, limits::positive);
     if (const auto tighten = tool.table("tighten", {tighten_keys})) {
         tighten->require("length", "to which the thread is drawn, m, as in length = 0.001");
-        spec.over = tighten->number("over", 0.0, limits::non_negative);
+        tighten->require("over", "how long it is drawn, seconds, as in over = 0.2");
+        spec.over = tighten->number("over", 1.0, limits::positive);
         spec.length = tighten->number_if_given("length", limits::non_negative);
     }
     return spec;

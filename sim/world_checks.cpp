@@ -114,6 +114,8 @@ struct FaultOfShape {
         if (blade.cutting_force != cutting::CuttingForce::report &&
             blade.cutting_force != cutting::CuttingForce::apply)
             return "there is no such cutting force";
+        if (blade.toughness > 0.0 && blade.mode == cutting::CutMode::separate)
+            return "its toughness needs the mode split: what it opens is not where its edge is";
         if (blade.cutting_force == cutting::CuttingForce::apply && blade.toughness == 0.0)
             return "its cutting force is applied: it needs a toughness above 0";
         return fault_of_snap(blade.snap);
@@ -124,6 +126,8 @@ struct FaultOfShape {
                    std::to_string(suture.points.size());
         if (!std::ranges::all_of(suture.points, is_finite))
             return "a point of its thread is not finite";
+        if (std::ranges::adjacent_find(suture.points) != suture.points.end())
+            return "two points of its thread that follow each other are the same";
         if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
             return "its stiffness is " + io::format_number(suture.stiffness) +
                    " N/m: it must be above 0";

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <numeric>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -29,15 +32,80 @@ std::string at_edge(const SurfaceData& surface, const std::string& what, std::in
     return text.str();
 }
 
+double volume_of_triangles(const SurfaceData& surface, std::span<const Corners> triangles) {
+    if (triangles.empty()) return 0.0;
+    const Vec3& o = point(surface, triangles[0][0]);
+    double sum = 0.0;
+    for (const auto& [a, b, c] : triangles)
+        sum += (point(surface, a) - o).dot((point(surface, b) - o).cross(point(surface, c) - o));
+    return sum / 6.0;
+}
+
+/// Returns the triangles of each part of a surface. Triangles with a common point are of one part.
+std::vector<std::vector<std::size_t>> parts_of(const SurfaceData& surface) {
+    std::vector<std::size_t> root(surface.points.size());
+    std::iota(root.begin(), root.end(), std::size_t{0});
+    const auto root_of = [&](std::int64_t p) {
+        auto i = static_cast<std::size_t>(p);
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    for (const Corners& t : surface.triangles)
+        for (std::size_t k = 1; k < 3; ++k) root[root_of(t[k])] = root_of(t[0]);
+    std::map<std::size_t, std::size_t> number;
+    std::vector<std::vector<std::size_t>> parts;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto [it, is_new] =
+            number.try_emplace(root_of(surface.triangles[t][0]), parts.size());
+        if (is_new) parts.emplace_back();
+        parts[it->second].push_back(t);
+    }
+    return parts;
+}
+
+/// Returns the parts that face inwards and are no cavities of others.
+std::vector<std::vector<std::size_t>> parts_inside_out(const SurfaceData& surface) {
+    const auto parts = parts_of(surface);
+    const auto corners_of = [&](const std::vector<std::size_t>& part) {
+        std::vector<Corners> corners;
+        for (const std::size_t t : part) corners.push_back(surface.triangles[t]);
+        return corners;
+    };
+    std::vector<std::vector<std::size_t>> found;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (volume_of_triangles(surface, corners_of(parts[i])) >= 0.0) continue;
+        const Vec3& x = point(surface, surface.triangles[parts[i].front()][0]);
+        bool is_cavity = false;
+        for (std::size_t k = 0; k < parts.size() && !is_cavity; ++k) {
+            if (k == i) continue;
+            SurfaceData other;
+            other.points = surface.points;
+            other.triangles = corners_of(parts[k]);
+            is_cavity = volume_of(other) > 0.0 && encloses(other, x);
+        }
+        if (!is_cavity) found.push_back(parts[i]);
+    }
+    return found;
+}
+
 }  // namespace
 
 double volume_of(const SurfaceData& surface) {
-    if (surface.points.empty()) return 0.0;
-    const Vec3& o = surface.points[0];
-    double sum = 0.0;
-    for (const auto& [a, b, c] : surface.triangles)
-        sum += (point(surface, a) - o).dot((point(surface, b) - o).cross(point(surface, c) - o));
-    return sum / 6.0;
+    return volume_of_triangles(surface, surface.triangles);
+}
+
+// The solid angle of the surface is that of a full turn inside, and 0 outside.
+// Source: van Oosterom, Strackee 1983.
+bool encloses(const SurfaceData& surface, const Vec3& x) {
+    double half_angles = 0.0;
+    for (const Corners& t : surface.triangles) {
+        const Vec3 a = point(surface, t[0]) - x, b = point(surface, t[1]) - x,
+                   c = point(surface, t[2]) - x;
+        const double la = a.norm(), lb = b.norm(), lc = c.norm();
+        half_angles += std::atan2(a.dot(b.cross(c)),
+                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    }
+    return half_angles > std::numbers::pi;
 }
 
 Solid make_solid(const SurfaceData& surface, bool& was_turned) {
@@ -57,9 +125,11 @@ Solid make_solid(const SurfaceData& surface, bool& was_turned) {
         if ((b - a).cross(c - a).isZero(0.0)) continue;
         solid.surface.triangles.push_back({number_of(t[0]), number_of(t[1]), number_of(t[2])});
     }
-    was_turned = volume_of(solid.surface) < 0.0;
-    if (was_turned)
-        for (Corners& t : solid.surface.triangles) std::swap(t[1], t[2]);
+    const auto inside_out = parts_inside_out(solid.surface);
+    was_turned = !inside_out.empty();
+    for (const auto& part : inside_out)
+        for (const std::size_t t : part)
+            std::swap(solid.surface.triangles[t][1], solid.surface.triangles[t][2]);
     return solid;
 }
 
@@ -90,7 +160,8 @@ std::string fault_of(const Solid& solid) {
         return at_edge(surface, "more than two triangles of its surface meet", a, b) +
                "; leave only the outer ones";
     }
-    if (!(volume_of(surface) > 0.0)) return "the triangles of its surface face inwards: turn them";
+    if (!parts_inside_out(surface).empty() || !(volume_of(surface) > 0.0))
+        return "the triangles of a part of its surface face inwards: turn them";
     return "";
 }
 

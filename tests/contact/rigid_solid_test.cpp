@@ -129,6 +129,27 @@ TEST(RigidSolid, IsSoundOnlyIfItIsClosed) {
     EXPECT_EQ(cutting::fault_of(cutting::make_solid(inside_out, was_turned)), "");
     EXPECT_TRUE(was_turned);
 
+    // Two boxes, of which one is inside out; and one with a cavity.
+    const auto with = [&](const Box& box, bool is_turned) {
+        topology::SurfaceData both = surface;
+        const topology::SurfaceData second = test::box_surface(box);
+        for (auto t : second.triangles) {
+            for (auto& p : t) p += static_cast<std::int64_t>(surface.points.size());
+            if (is_turned) std::swap(t[0], t[1]);
+            both.triangles.push_back(t);
+        }
+        both.points.insert(both.points.end(), second.points.begin(), second.points.end());
+        return both;
+    };
+    const Box beside(Vec3::Ones(), 1.1 * Vec3::Ones()),
+        within(-0.1 * Vec3::Ones(), 0.1 * Vec3::Ones());
+    EXPECT_EQ(cutting::fault_of(Solid{with(beside, false)}), "");
+    EXPECT_NE(cutting::fault_of(Solid{with(beside, true)}).find("face inwards"), std::string::npos);
+    EXPECT_EQ(cutting::fault_of(cutting::make_solid(with(beside, true), was_turned)), "");
+    EXPECT_TRUE(was_turned);
+    EXPECT_EQ(cutting::fault_of(cutting::make_solid(with(within, true), was_turned)), "");
+    EXPECT_FALSE(was_turned);
+
     topology::SurfaceData open = surface;
     open.triangles.pop_back();
     EXPECT_NE(cutting::fault_of(Solid{open}).find("its surface is open: it ends at [0.25, "),

@@ -64,6 +64,16 @@ TEST(TouchingTools, ASutureThatTearsIsReportedOnce) {
     ASSERT_EQ(simulation.warnings().size(), 1u);
     EXPECT_NE(simulation.warnings()[0].find("suture 'thread' holds nothing from t = "),
               std::string::npos);
+    // The same after a restore between.
+    Simulation halted(simulation.scenario());
+    run_to(halted, 0.15);
+    ArchiveWriter state;
+    halted.save(state);
+    Simulation resumed(simulation.scenario());
+    ArchiveReader reader(state.bytes());
+    resumed.restore(reader);
+    while (!resumed.is_finished()) resumed.step();
+    EXPECT_EQ(resumed.warnings(), simulation.warnings());
 }
 
 TEST(TouchingTools, WarnOfTissueThatIsInsideThem) {

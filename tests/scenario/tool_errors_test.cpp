@@ -72,6 +72,19 @@ TEST(ToolErrors, OfTheForceOfCutting) {
     EXPECT_EQ(error_of("[[tool]]\nkind = \"cut\"\ntime = 0\nplane = { point = [0, 0, 0], normal "
                        "= [0, 0, 1] }\ntoughness = 1\n"),
               "scene.toml:13:13: key 'tool[0].toughness': belongs to a blade: leave it out");
+    EXPECT_EQ(
+        error_of(blade + "toughness = 1\nmode = \"separate\"\n"),
+        "scene.toml:13:13: key 'tool[0].toughness': belongs to mode = \"split\": leave it out");
+    const auto hexahedra = ScenarioFile(
+                               "[mesh]\nbox = { size = [1, 1, 1], cells = [2, 2, 2], element = "
+                               "\"hex\" }\n[[material]]\nmethod = \"hybmss\"\ndensity = 1\nyoung = "
+                               "1\npoisson = 0.3\n[dynamics]\nend_time = 1\n" +
+                               blade + "toughness = 1\n")
+                               .all_errors();
+    ASSERT_EQ(hexahedra.size(), 1u);
+    EXPECT_NE(
+        hexahedra[0].find("has a toughness, and the mesh has elements that are no tetrahedra"),
+        std::string::npos);
     // Elements of 0.5 m of 1,600 Pa bear up to 1,200 J/m2.
     const auto too_tough =
         ScenarioFile(minimal + blade + "toughness = 1300\ncutting_force = \"apply\"\n")
@@ -121,9 +134,22 @@ TEST(ToolErrors, OfSutures) {
     EXPECT_EQ(error_of(suture + points + "time = 0\ntighten = { over = -1 }\n"),
               "scene.toml:14:11: key 'tool[0].tighten.length': is missing: to which the thread is "
               "drawn, m, as in length = 0.001 | scene.toml:14:20: key 'tool[0].tighten.over': -1 "
-              "is not allowed: must be at least 0");
-    EXPECT_EQ(error_of(suture + points + "time = 0\npath = []\n"),
-              "scene.toml:14:8: key 'tool[0].path': belongs to a blade: leave it out");
+              "is not allowed: must be above 0");
+    EXPECT_EQ(error_of(suture + "points = [[0, 0, 0], [0, 0, 0]]\ntime = 0\n"),
+              "scene.toml:12:10: key 'tool[0].points': points 0 and 1 (from 0) are the same: leave "
+              "one out");
+    EXPECT_EQ(
+        ScenarioFile(minimal + suture + points + "time = 1\n").warnings(),
+        std::vector<std::string>{"scene.toml:13:8: tool 'suture_1' is tied at the end of the run"});
+    EXPECT_EQ(ScenarioFile(minimal + suture + points +
+                           "time = 0.9\ntighten = { over = 0.2, length = 0 }\n")
+                  .warnings(),
+              std::vector<std::string>{
+                  "scene.toml:14:11: tool 'suture_1' is drawn until 1.1 s, after the end at 1 s"});
+    EXPECT_EQ(
+        error_of(suture + points + "time = 0\npath = []\n"),
+        "scene.toml:14:8: key 'tool[0].path': a suture has none: its points are in the tissue; "
+        "leave it out");
     EXPECT_EQ(error_of(suture + points + "time = 0\n[contact]\nenabled = false\n"),
               "scene.toml:10:8: key 'tool[0].kind': 'suture' touches tissue, but [contact] has "
               "enabled = false");
