@@ -23,8 +23,6 @@ constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
 /// no other triangle goes on there.
 constexpr double rim = 0.25;
-/// Of the overlap that a cut left, this share goes in a step.
-constexpr double slack_loss = 0.01;
 /// An overlap of this part of an element is none: the twins of a cut have the same position.
 constexpr double rounding = 1e-10;
 
@@ -301,7 +299,7 @@ void SurfaceContact::add_point(std::size_t i, const physics::Model& model, Conta
     NearNode& near = near_[i];
     const Touch& at = touches_[i];
     max_penetration_ = std::max(max_penetration_, -at.gap);
-    near.slack = at.gap > 0.0 ? 0.0 : std::max(at.gap, (1.0 - slack_loss) * near.slack);
+    near.slack = at.gap > 0.0 ? 0.0 : std::max(at.gap, near.slack);
     ContactPoint point;
     point.normal = at.normal;
     point.gap = at.gap - near.slack;

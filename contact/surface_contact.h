@@ -69,9 +69,9 @@ class SurfaceContact {
     /// A node of the surface that is near triangles.
     struct NearNode {
         std::int32_t touched = -1;  ///< triangle, or -1
-        /// The overlap at which the node came to the triangle, m, at most 0. A cut in strained
-        /// tissue may leave such an overlap; it goes slowly, so that it does not throw the sides
-        /// apart.
+        /// The least overlap since the node came to the triangle, m, at most 0. A cut in strained
+        /// tissue may leave such an overlap, and edges that pass each other. It goes only as the
+        /// sides part: pushed apart, they would gain energy.
         double slack = 0.0;
         /// How far the surface may move before the node can touch a triangle, m.
         double room = 0.0;

@@ -1,4 +1,4 @@
-// Random programs of cuts, probes, graspers and sutures on free bodies, as tests of contact.
+// Random programs of cuts, probes, graspers, sutures and wires on free bodies, as tests of contact.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -18,6 +18,7 @@
 #include "incise/topology/mesh_metrics.h"
 #include "support/mesh_families.h"
 #include "support/present_energy.h"
+#include "support/surfaces.h"
 
 namespace incise::sim {
 
@@ -33,6 +34,7 @@ class TouchingProgram {
         add_grasper();
         add_suture();
         for (int i = 0; i < 2; ++i) add_plane();
+        add_wire();
     }
 
     /// Makes a step of the program.
@@ -41,6 +43,7 @@ class TouchingProgram {
         move_probe(dt);
         move_grasper(i, dt);
         draw_suture(i);
+        move_wire(i, dt);
         for (std::size_t k = 0; k < planes_.size(); ++k)
             if (i == cut_at_[k]) {
                 world_.set_tool_pose(planes_[k], Pose());
@@ -85,9 +88,10 @@ class TouchingProgram {
     void add_probe() {
         const double radius = random_.uniform(0.004, 0.012);
         cutting::ProbeShape shape = cutting::Sphere{radius};
-        const std::size_t kind = random_.below(3);
+        const std::size_t kind = random_.below(4);
         if (kind == 1) shape = cutting::Capsule{{0, 0, -0.02}, {0, 0, 0.02}, radius};
         if (kind == 2) shape = cutting::Cuboid{Vec3(2 * radius, radius, 3 * radius)};
+        if (kind == 3) shape = cutting::Solid{test::icosphere(Vec3::Zero(), radius, 2)};
         probe_ = world_.add_tool({"probe", cutting::Probe{shape, random_.uniform(0.0, 0.5)}});
         const Vec3 side = random_.vector(1.0).normalized();
         const double away = 0.5 * box_.diagonal().norm() + 0.05;
@@ -158,6 +162,27 @@ class TouchingProgram {
             world_.set_suture_length(suture_, world_.suture_length(suture_) - drawn_by_);
     }
 
+    /// A wire that cuts its way through a part of the body, with a force that it exerts or only
+    /// tells.
+    void add_wire() {
+        const Vec3 along = random_.vector(1.0).normalized();
+        cutting::Blade blade{{-0.05 * along, 0.05 * along}};
+        blade.toughness = random_.uniform(0.5, 5.0);
+        if (random_.below(2) == 0) blade.cutting_force = cutting::CuttingForce::apply;
+        wire_ = world_.add_tool({"wire", blade});
+        wire_at_ = static_cast<int>(random_.below(num_steps / 2));
+        wire_velocity_ = 0.3 * along.unitOrthogonal();
+        wire_pose_.position = point_in_box(0.6) - 0.03 * wire_velocity_.normalized();
+    }
+
+    void move_wire(int i, double dt) {
+        if (i == wire_at_) world_.place_tool(wire_, wire_pose_);
+        if (i < wire_at_ || i > wire_at_ + 60) return;
+        wire_pose_.position += dt * wire_velocity_;
+        world_.set_tool_pose(wire_, wire_pose_);
+        if (i == wire_at_ + 60) world_.withdraw_tool(wire_);
+    }
+
     void add_plane() {
         planes_.push_back(
             world_.add_tool({"plane" + std::to_string(planes_.size()),
@@ -170,13 +195,13 @@ class TouchingProgram {
     World world_;
     double size_ = 0.0;
     Box box_;
-    ToolId probe_, grasper_, suture_;
+    ToolId probe_, grasper_, suture_, wire_;
     std::vector<ToolId> planes_;
     std::vector<int> cut_at_;
-    Pose probe_pose_, grasper_pose_;
-    Vec3 probe_velocity_, grasper_velocity_;
+    Pose probe_pose_, grasper_pose_, wire_pose_;
+    Vec3 probe_velocity_, grasper_velocity_, wire_velocity_;
     bool is_back_ = false;
-    int close_at_ = 0, open_at_ = 0, tie_at_ = 0;
+    int close_at_ = 0, open_at_ = 0, tie_at_ = 0, wire_at_ = 0;
     double drawn_by_ = 0.0;
 };
 
