@@ -66,8 +66,9 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
     ContactRate rate{.elements = mesh.num_elements(), .friction = friction};
     const physics::Material gel{1000.0,
                                 physics::HyperElasticLinks{physics::NeoHookean{1724.0, 15517.0}}};
-    physics::Model model(mesh, {{gel}, {{0, 0}}},
-                         {.gravity = Vec3::Zero(), .damping = 20.0, .constraints = plates(mesh), .loads = {}});
+    physics::Model model(
+        mesh, {{gel}, {{0, 0}}},
+        {.gravity = Vec3::Zero(), .damping = 20.0, .constraints = plates(mesh), .loads = {}});
     cutting::Cutter cutter(mesh, model.mesh_positions());
     const cutting::Plane plane(side * Vec3(0.5, 0.5, 0.49), Vec3(0.1, 0.05, 1.0));
     const auto cut = cutter.split(mesh, model.mesh_positions(), plane, cutting::default_snap);
