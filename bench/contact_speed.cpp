@@ -2,13 +2,12 @@
 #include "incise/bench/contact_speed.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "incise/bench/best_time.h"
 #include "incise/contact/contact.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/surfaces/plane.h"
@@ -40,20 +39,6 @@ std::vector<physics::Constraint> plates(const topology::Mesh& mesh) {
     return {std::move(bottom), std::move(top)};
 }
 
-/// Returns the shortest time of a step, s.
-template <class Step>
-double best_step(double seconds, Step step) {
-    using Clock = std::chrono::steady_clock;
-    double best = std::numeric_limits<double>::infinity();
-    const auto start = Clock::now();
-    do {
-        const auto before = Clock::now();
-        step();
-        best = std::min(best, std::chrono::duration<double>(Clock::now() - before).count());
-    } while (std::chrono::duration<double>(Clock::now() - start).count() < seconds);
-    return best;
-}
-
 }  // namespace
 
 ContactRate measure_contact(std::size_t num_elements, double friction, double seconds) {
@@ -79,7 +64,7 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
     settings.friction = friction;
     contact::Contact contact(settings, side / n);
     contact.follow(model, surface);
-    rate.search = 1e3 * best_step(seconds, [&] {
+    rate.search = 1e3 * best_time(seconds, [&] {
                       contact::Contact(settings, side / n).follow(model, surface);
                   });
     std::set<NodeId> nodes;
@@ -98,10 +83,10 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
     };
     model.compute_forces(time);
     while (time < 2.0 * pressed_in) step(with);
-    rate.step = 1e6 * best_step(seconds, [&] { step(with); });
+    rate.step = 1e6 * best_time(seconds, [&] { step(with); });
     rate.points = contact.num_points();
     // The faces begin to pass through each other, which takes no more and no less time.
-    rate.step_without = 1e6 * best_step(seconds, [&] { step(without); });
+    rate.step_without = 1e6 * best_time(seconds, [&] { step(without); });
     return rate;
 }
 

@@ -31,7 +31,7 @@ Loops loops_for(Processor processor) {
 
 /// Returns the shortest time of ten calls, s.
 template <class Work>
-double best_time(Work work) {
+double best_of_ten(Work work) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10; ++i) {
         const auto start = std::chrono::steady_clock::now();
@@ -46,7 +46,7 @@ double best_time(Work work) {
 /// work(i). A call should take some milliseconds, so that starting the threads does not matter.
 template <class Work>
 double best_rate(double amount, int num_threads, Work work) {
-    return amount * 1e-9 / best_time([&] {
+    return amount * 1e-9 / best_of_ten([&] {
                std::vector<std::future<double>> others;
                for (int i = 1; i < num_threads; ++i)
                    others.push_back(std::async(std::launch::async, work, i));
@@ -96,7 +96,7 @@ double measure_arithmetic(const Law& law) {
     }
     WorkOutLinks* const work_out = loops_for(processor()).links;
     const double time =
-        best_time([&] { work_out(law, lanes.groups<double>().links, vectors, num_passes); });
+        best_of_ten([&] { work_out(law, lanes.groups<double>().links, vectors, num_passes); });
     return time / static_cast<double>(num_elements * num_passes);
 }
 

@@ -2,7 +2,6 @@
 #include "incise/bench/throughput.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <random>
 #include <span>
 
+#include "incise/bench/best_time.h"
 #include "incise/bench/machine_speed.h"
 #include "incise/cutting/cutter.h"
 #include "incise/physics/body/model.h"
@@ -24,23 +24,8 @@ namespace incise::bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double cube_size = 0.1;  // of the cubes, m
 constexpr std::string_view tissue_name = "liver";
-
-/// Returns the shortest time of a call, s. Calls are repeated for `seconds` in all, at least once.
-template <class Work>
-double best_time(double seconds, Work work) {
-    double best = std::numeric_limits<double>::infinity();
-    const auto start = Clock::now();
-    do {
-        const auto before = Clock::now();
-        work();
-        best = std::min(best, std::chrono::duration<double>(Clock::now() - before).count());
-    } while (std::chrono::duration<double>(Clock::now() - start).count() < seconds);
-    return best;
-}
 
 /// Returns a cube of about `num_elements` elements; for tetrahedra an irregular one.
 topology::Mesh make_cube(topology::CellKind kind, std::size_t num_elements) {

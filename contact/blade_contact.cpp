@@ -47,7 +47,7 @@ struct YoungAtRest {
         return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
     }
     double operator()(const physics::MassSprings& springs) const { return springs.young; }
-    /// That of Poisson's ratio 1/4, the least that the method has.
+    /// For Poisson's ratio 1/4, which the springs have without the volume term.
     double operator()(const physics::HybridSprings& springs) const {
         return 2.5 * springs.shear_modulus;
     }
@@ -153,9 +153,8 @@ ToolImpulse BladeContact::take_impulses(const ContactSolver& solver, double dt) 
     return sum;
 }
 
-void BladeContact::restore(ArchiveReader& ar) {
-    list(ar, *this);
-    if (!(size_ > 0.0)) throw InputError("a blade cuts another body");
+void BladeContact::take_shape(const cutting::ToolShape& shape) {
+    blade_ = std::get<cutting::Blade>(shape);
     divide_edge();
     const bool fits =
         directions_.size() == pieces_.size() && impulses_.size() == pieces_.size() &&

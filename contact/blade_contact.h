@@ -61,8 +61,11 @@ class BladeContact {
     double max_penetration() const { return 0.0; }
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }
-    /// Restores what save() wrote. Throws InputError for the data of another blade.
-    void restore(ArchiveReader& ar);
+    /// Restores what save() wrote.
+    void restore(ArchiveReader& ar) { list(ar, *this); }
+    /// Takes the shape of the tool after restore(), which does not read it. Throws InputError if
+    /// what was restored is that of another blade.
+    void take_shape(const cutting::ToolShape& shape);
 
   private:
     /// A short part of the edge.
@@ -76,9 +79,7 @@ class BladeContact {
         Vec3 place, motion;  ///< m
         double width;        ///< across its way, m
     };
-    static void list(auto& ar, auto& self) {
-        ar(self.blade_, self.size_, self.directions_, self.impulses_);
-    }
+    static void list(auto& ar, auto& self) { ar(self.directions_, self.impulses_); }
     void divide_edge();
 
     cutting::Blade blade_;

@@ -159,11 +159,13 @@ void Contact::book_work(physics::Model& model) {
     fracture_energy_ += fracture_;
 }
 
-void Contact::require_tools(std::span<const cutting::ToolShape* const> shapes) const {
-    for (const auto& [number, tool] : tools_)
+void Contact::take_shapes(std::span<const cutting::ToolShape* const> shapes) {
+    for (auto& [number, tool] : tools_) {
         if (number >= shapes.size() || !cutting::feels_force(*shapes[number]) ||
             kind_of(*shapes[number]) != tool.contact.index())
             throw InputError("its contact has tools that it does not have");
+        std::visit([&](auto& contact) { contact.take_shape(*shapes[number]); }, tool.contact);
+    }
 }
 
 void Contact::save(ArchiveWriter& ar) const {

@@ -86,8 +86,9 @@ class Contact final : public physics::VelocityProjection {
     void restore(ArchiveReader& ar, const physics::Model& model,
                  const topology::BoundarySurface& surface);
 
-    /// Throws InputError if tools are known that are not among some shapes, by their numbers.
-    void require_tools(std::span<const cutting::ToolShape* const> shapes) const;
+    /// Gives the tools that restore() has read their shapes, by their numbers. Call it after
+    /// restore(). Throws InputError for a tool without a shape of its kind.
+    void take_shapes(std::span<const cutting::ToolShape* const> shapes);
 
   private:
     struct Tool {

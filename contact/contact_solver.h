@@ -86,12 +86,13 @@ class ContactSolver {
     }
 
     /// Finds impulses such that gaps that are open do not become negative in the step, and overlaps
-    /// shrink by a tenth of their depth in a stable step at rest, or
-    /// less. Makes four sweeps of the method of Gauss and Seidel in the
-    /// order of the points and then of the threads, and begins with the impulses of the step
-    /// before. Linear momentum is kept to rounding: an impulse acts on the shares of a point by
-    /// their weights. The tension of a thread is that at the end of the step, so that no stiffness
-    /// is too large for the step.
+    /// shrink by a tenth of their depth in a stable step at rest, or less. The tension of a thread
+    /// is that at the end of the step, so that no stiffness is too large for the step.
+    ///
+    /// Makes four sweeps of the method of Gauss and Seidel in the order of the points and then of
+    /// the threads, and begins with the impulses of the step before, or the best share of them.
+    /// Linear momentum is kept to rounding: an impulse acts on the shares of a point by their
+    /// weights. Source: docs/theory.md, Contact. Cost: O(n) in the shares.
     /// @param velocities      by node, at the end of the step without contact, m/s
     /// @param inverse_masses  by node and component, 1/kg; 0 for what is prescribed
     /// @param dt              s

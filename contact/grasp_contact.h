@@ -54,6 +54,10 @@ class GraspContact {
     void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, const physics::Model& model);
+    /// Takes the shape of the tool after restore(), which does not read it.
+    void take_shape(const cutting::ToolShape& shape) {
+        grasper_ = std::get<cutting::Grasper>(shape);
+    }
 
   private:
     /// A point of the surface.
@@ -66,7 +70,7 @@ class GraspContact {
             ar(self.nodes, self.weights, self.place, self.impulse);
         }
     };
-    static void list(auto& ar, auto& self) { ar(self.grasper_, self.size_, self.held_); }
+    static void list(auto& ar, auto& self) { ar(self.held_); }
     Vec3 position_of(const Held& held, std::span<const Vec3> positions) const;
 
     cutting::Grasper grasper_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/cutting/tools/solid.h"
+#include "incise/cutting/tools/probe_shape.h"
 
 namespace incise::contact {
 
@@ -22,7 +22,7 @@ constexpr double probe_skin =
 }  // namespace
 
 void RigidContact::prepare_shape() {
-    reach_ = reach_of(probe_.shape);
+    reach_ = cutting::reach_of(probe_.shape);
     solid_ = nullptr;
     if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
         solid_ = std::make_shared<const RigidSolid>(*solid);
@@ -46,7 +46,7 @@ double RigidContact::largest_move() const {
 
 void RigidContact::find_triangles(std::span<const Vec3> positions,
                                   std::span<const Triangle> surface) {
-    const Box of_shape = box_of(probe_.shape);
+    const Box of_shape = cutting::box_of(probe_.shape);
     const double margin = (probe_reach + probe_skin) * size_;
     triangles_.clear();
     for (std::uint32_t t = 0; t < surface.size(); ++t) {
@@ -128,15 +128,17 @@ ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt
 
 void RigidContact::restore(ArchiveReader& ar, std::size_t num_triangles) {
     list(ar, *this);
-    if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
-        if (!cutting::fault_of(*solid).empty()) throw InputError("a tool has no sound shape");
-    prepare_shape();
     const bool fits =
         std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; }) &&
         std::isfinite(room_) && last_features_.size() == last_impulses_.size() &&
         std::ranges::is_sorted(last_features_) &&
         std::ranges::all_of(last_impulses_, [](const Vec3& v) { return v.allFinite(); });
     if (!fits) throw InputError("its tools touch another body");
+}
+
+void RigidContact::take_shape(const cutting::ToolShape& shape) {
+    probe_ = std::get<cutting::Probe>(shape);
+    prepare_shape();
 }
 
 }  // namespace incise::contact

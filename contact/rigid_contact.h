@@ -55,6 +55,8 @@ class RigidContact {
     void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, std::size_t num_triangles);
+    /// Takes the shape of the tool after restore(), which does not read it.
+    void take_shape(const cutting::ToolShape& shape);
 
   private:
     /// What tells one point from another.
@@ -65,7 +67,7 @@ class RigidContact {
         static void archive(auto& ar, auto& self) { ar(self.corners, self.tool_point); }
     };
     static void list(auto& ar, auto& self) {
-        ar(self.probe_, self.triangles_, self.room_, self.last_features_, self.last_impulses_);
+        ar(self.triangles_, self.room_, self.last_features_, self.last_impulses_);
     }
     void prepare_shape();
     static Feature feature_of(const Triangle& triangle, const RigidTouch& touch);

@@ -20,18 +20,6 @@ struct RigidTouch {
     std::int32_t tool_point = -1;  ///< of a solid: its number, if one of its points touches
 };
 
-/// Returns the box round a shape in its frame, m. That of a half space is unbounded.
-Box box_of(const cutting::ProbeShape& shape);
-/// Returns the least radius or half width of a shape, m; infinite for a half space. A shape that
-/// moves by more than that in a step may pass through a surface.
-double half_width_of(const cutting::ProbeShape& shape);
-/// Returns the largest distance of the shape from the origin of its frame, m; 0 for a half space.
-double reach_of(const cutting::ProbeShape& shape);
-
-/// True if a point, m, in the frame of the shape, is within the shape. Cost for a solid: O(n) in
-/// its triangles.
-bool is_inside(const cutting::ProbeShape& shape, const Vec3& x);
-
 /// Returns the weights of the corners of a triangle of its point that is closest to `x`.
 Vec3 closest_weights(const std::array<Vec3, 3>& corners, const Vec3& x);
 

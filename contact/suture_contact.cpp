@@ -108,8 +108,9 @@ void SutureContact::restore(ArchiveReader& ar, const physics::Model& model) {
                std::ranges::all_of(stitch.at.weights,
                                    [](double w) { return w >= 0.0 && w <= 1.0; });
     };
-    if (!std::ranges::all_of(stitches_, is_sound) || !std::isfinite(length_) ||
-        !std::isfinite(length_before_) || !std::isfinite(impulse_) || !(suture_.stiffness > 0.0))
+    const bool has_lengths = length_ >= 0.0 && length_before_ >= 0.0 && impulse_ >= 0.0 &&
+                             std::isfinite(length_ + length_before_ + impulse_);
+    if (!std::ranges::all_of(stitches_, is_sound) || !has_lengths)
         throw InputError("a thread passes through another body");
 }
 

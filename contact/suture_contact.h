@@ -56,6 +56,8 @@ class SutureContact {
     void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, const physics::Model& model);
+    /// Takes the shape of the tool after restore(), which does not read it.
+    void take_shape(const cutting::ToolShape& shape) { suture_ = std::get<cutting::Suture>(shape); }
 
   private:
     /// Where the thread passes through the tissue.
@@ -65,8 +67,7 @@ class SutureContact {
         static void archive(auto& ar, auto& self) { ar(self.rest, self.at); }
     };
     static void list(auto& ar, auto& self) {
-        ar(self.suture_, self.size_, self.stitches_, self.length_before_, self.length_,
-           self.impulse_);
+        ar(self.stitches_, self.length_before_, self.length_, self.impulse_);
     }
     std::vector<Vec3> way(const physics::Model& model) const;
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/contact/rigid_touch.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
+#include "incise/cutting/tools/probe_shape.h"
 #include "incise/cutting/tools/solid.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/surface/surface_reader.h"
@@ -180,14 +180,14 @@ std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
     const Pose& pose = tool.path.keys().front().value;
     const double size = topology::mean_element_length(mesh);
     const Vec3 margin = Vec3::Constant(1e-3 * size);
-    const Box box = contact::box_of(probe->shape);
+    const Box box = cutting::box_of(probe->shape);
     std::size_t count = 0;
     Vec3 first = Vec3::Zero();
     for (const NodeId n : mesh.nodes()) {
         const Vec3 x = pose.to_tool(mesh.rest_position(n));
         // What lies on the surface is not inside.
         if (!Box(box.min() + margin, box.max() - margin).contains(x)) continue;
-        if (!contact::is_inside(probe->shape, x)) continue;
+        if (!cutting::is_inside(probe->shape, x)) continue;
         if (const auto* half_space = std::get_if<cutting::HalfSpace>(&probe->shape);
             half_space && half_space->normal.dot(x - half_space->point) > -1e-3 * size)
             continue;

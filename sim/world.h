@@ -160,9 +160,8 @@ class World {
     /// With the explicit solver, a step above stable_step() moves the tissue in equal parts that
     /// are not above it: StepReport::num_parts. So does a step in which a probe moves by more than
     /// a quarter of an element, or of its least half width: it does not pass through a surface. A
-    /// step of constant length therefore stays possible
-    /// when strain stiffens the tissue; it only takes longer. Tools cut once, at the end of the
-    /// step.
+    /// step of constant length therefore stays possible when strain stiffens the tissue; it only
+    /// takes longer. Tools cut once, at the end of the step.
     ///
     /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above
     /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, if a probe

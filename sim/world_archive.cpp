@@ -98,7 +98,7 @@ void World::Parts::prepare_tools() {
         if (cutting::feels_force(tool.def.shape) && !contact)
             throw InputError("a tool needs contact, and it has none");
     }
-    if (contact) contact->require_tools(shapes);
+    if (contact) contact->take_shapes(shapes);
 }
 
 namespace {

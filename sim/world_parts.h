@@ -68,7 +68,7 @@ struct World::Parts {
         bool is_present = false;
         bool has_just_left = false;                // a probe or a grasper, in this step
         bool is_closed = false;                    // a grasper
-        double half_width = 0.0, reach = 0.0;      // of a probe, m: see rigid_touch.h
+        double half_width = 0.0, reach = 0.0;      // of a probe, m: see probe_shape.h
         double length = 0.0, target_length = 0.0;  // of a thread, as pose and target, m
         Pose pose = {};                            // at present
         Pose target = {};                          // at the end of the next step

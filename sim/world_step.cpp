@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/tools/probe_shape.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_metrics.h"
@@ -181,8 +182,8 @@ std::size_t World::Parts::num_parts(double dt) const {
 void World::Parts::measure(Tool& tool) {
     const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
     if (!probe) return;
-    tool.half_width = contact::half_width_of(probe->shape);
-    tool.reach = contact::reach_of(probe->shape);
+    tool.half_width = cutting::half_width_of(probe->shape);
+    tool.reach = cutting::reach_of(probe->shape);
 }
 
 double World::Parts::parts_for(const Tool& tool) const {

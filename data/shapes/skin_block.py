@@ -5,6 +5,8 @@
 import itertools
 import random
 
+from bricks import tetrahedra_of_brick, write_gmsh
+
 SIZE_X, SIZE_Y = 0.060, 0.050  # m, about the origin; the skin's surface lies at z = 0
 CELLS_X, CELLS_Y = 24, 20
 # From below: thickness (m), cells across it, region.
@@ -39,24 +41,9 @@ def node(i, j, k):
     return 1 + i + (CELLS_X + 1) * (j + (CELLS_Y + 1) * k)
 
 
-# Each brick in six tetrahedra round its diagonal, one for each order of steps from corner to corner.
-tetrahedra = []
-for k, j, i in itertools.product(range(len(regions)), range(CELLS_Y), range(CELLS_X)):
-    for order in itertools.permutations(range(3)):
-        at, corners = [i, j, k], [node(i, j, k)]
-        for axis in order:
-            at[axis] += 1
-            corners.append(node(*at))
-        if order in ((0, 2, 1), (1, 0, 2), (2, 1, 0)):  # odd ones run the other way round
-            corners[0], corners[1] = corners[1], corners[0]
-        tetrahedra.append((regions[k], corners))
-
-print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes")
-print(len(points))
-for n, (x, y, height) in enumerate(points):
-    print(n + 1, f"{x:.9g} {y:.9g} {height:.9g}")
-print("$EndNodes\n$Elements")
-print(len(tetrahedra))
-for e, (region, corners) in enumerate(tetrahedra):
-    print(e + 1, 4, 2, region, region, *corners)
-print("$EndElements")
+tetrahedra = [
+    (regions[k], corners)
+    for k, j, i in itertools.product(range(len(regions)), range(CELLS_Y), range(CELLS_X))
+    for corners in tetrahedra_of_brick(node, i, j, k)
+]
+write_gmsh(points, tetrahedra)

@@ -5,6 +5,8 @@
 import itertools
 import math
 
+from bricks import tetrahedra_of_brick, write_gmsh
+
 INNER, OUTER, HEIGHT = 0.018, 0.040, 0.030  # m; the axis is z, the middle is the origin
 CELLS_OUT, CELLS_ROUND, CELLS_UP = 6, 40, 8
 
@@ -23,24 +25,9 @@ def node(i, j, k):
     return 1 + i + (CELLS_OUT + 1) * (j % CELLS_ROUND + CELLS_ROUND * k)
 
 
-# Each brick in six tetrahedra round its diagonal, one for each order of steps from corner to corner.
-tetrahedra = []
-for k, j, i in itertools.product(range(CELLS_UP), range(CELLS_ROUND), range(CELLS_OUT)):
-    for order in itertools.permutations(range(3)):
-        at, corners = [i, j, k], [node(i, j, k)]
-        for axis in order:
-            at[axis] += 1
-            corners.append(node(*at))
-        if order in ((0, 2, 1), (1, 0, 2), (2, 1, 0)):  # odd ones run the other way round
-            corners[0], corners[1] = corners[1], corners[0]
-        tetrahedra.append((2 if i + 1 == CELLS_OUT else 1, corners))
-
-print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes")
-print(len(points))
-for n, x in enumerate(points):
-    print(n + 1, *(f"{c:.9g}" for c in x))
-print("$EndNodes\n$Elements")
-print(len(tetrahedra))
-for e, (region, corners) in enumerate(tetrahedra):
-    print(e + 1, 4, 2, region, region, *corners)
-print("$EndElements")
+tetrahedra = [
+    (2 if i + 1 == CELLS_OUT else 1, corners)
+    for k, j, i in itertools.product(range(CELLS_UP), range(CELLS_ROUND), range(CELLS_OUT))
+    for corners in tetrahedra_of_brick(node, i, j, k)
+]
+write_gmsh(points, tetrahedra)

@@ -7,6 +7,8 @@
 import math
 import sys
 
+from bricks import write_gmsh
+
 lines = iter(sys.stdin.read().split("\n"))
 while next(lines) != "$Nodes":
     pass
@@ -31,16 +33,10 @@ def upper(x, y, z):  # its long axis along y, across the end of the other
     )
 
 
-print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes")
-print(2 * len(points))
+both_points, tetrahedra = [], []
 for copy, place in enumerate((lower, upper)):
-    for n, x in enumerate(points):
-        print(n + 1 + copy * len(points), *(f"{c:.9g}" for c in place(*x)))
-print("$EndNodes\n$Elements")
-print(2 * len(cells))
-for copy in range(2):
-    for e, cell in enumerate(cells):
+    both_points += [place(*x) for x in points]
+    for cell in cells:
         corners = [n + copy * len(points) for n in cell[3 + cell[2] :]]
-        region = cell[3] + 10 * copy
-        print(e + 1 + copy * len(cells), 4, 2, region, region, *corners)
-print("$EndElements")
+        tetrahedra.append((cell[3] + 10 * copy, corners))
+write_gmsh(both_points, tetrahedra)

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "incise/cutting/tools/probe_shape.h"
 #include "incise/cutting/tools/solid.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
@@ -113,7 +114,7 @@ TEST(RigidSolid, KnowsWhatIsInside) {
     for (std::uint64_t seed = 0; seed < test::num_cases(500); ++seed) {
         test::Random random(seed);
         const Vec3 x = random.vector(0.6);
-        EXPECT_EQ(is_inside(shape, x), distance_to_brick(x) < 0.0) << x.transpose();
+        EXPECT_EQ(cutting::is_inside(shape, x), distance_to_brick(x) < 0.0) << x.transpose();
     }
 }
 

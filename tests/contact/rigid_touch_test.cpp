@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "incise/cutting/tools/probe_shape.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
@@ -65,7 +66,7 @@ TEST(RigidTouch, IsWhereATriangleIsClosest) {
             if ((x[1] - x[0]).cross(x[2] - x[0]).dot(centre) > 0.0) std::swap(x[1], x[2]);
             const double least = least_distance(shapes()[s], x);
             const bool is_round = s < 2;
-            if (is_round && least < -0.5 * half_width_of(shapes()[s])) continue;
+            if (is_round && least < -0.5 * cutting::half_width_of(shapes()[s])) continue;
             std::vector<RigidTouch> touches;
             append_touches(shapes()[s], x, 10.0, touches);
             if (is_round && touches.empty()) continue;  // an axis beside and behind the triangle

@@ -149,7 +149,7 @@ TEST(Contact, OfASolidIsThatOfItsShape) {
     };
     const double of_ball = force_on(cutting::Sphere{0.02});
     const double of_solid = force_on(cutting::Solid{test::icosphere(Vec3::Zero(), 0.02, 3)});
-    EXPECT_NEAR(of_solid, of_ball, 0.04 * of_ball);
+    EXPECT_NEAR(of_solid, of_ball, 0.015 * of_ball);
 }
 
 // The parts of a step are so short that the ball does not pass through the surface.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/sim/soft_world.h"
@@ -103,9 +104,9 @@ TEST(CuttingForce, OfABladeThatSlicesIsLowerForItsLength) {
     const Cut straight = draw_wire(held(World(gel())), wire(5.0, CuttingForce::report));
     const Cut turned = draw_wire(held(World(gel())), wire(5.0, CuttingForce::report, 0.6));
     EXPECT_NEAR(turned.mean_force, straight.mean_force, 0.03 * straight.mean_force);
-    EXPECT_EQ(draw_wire(held(World(gel())), wire(5.0, CuttingForce::report, 1.5707963267948966))
-                      .mean_force < 0.02 * straight.mean_force,
-              true);
+    constexpr double quarter_turn = 0.5 * std::numbers::pi;
+    const Cut along = draw_wire(held(World(gel())), wire(5.0, CuttingForce::report, quarter_turn));
+    EXPECT_LT(along.mean_force, 0.02 * straight.mean_force);
 }
 
 TEST(CuttingForce, ThatIsAppliedDentsTheTissueFirstAndClosesTheBalance) {
@@ -123,8 +124,8 @@ TEST(CuttingForce, ThatIsAppliedDentsTheTissueFirstAndClosesTheBalance) {
 }
 
 TEST(CuttingForce, BelowItsThresholdOnlyPushes) {
-    // The wire moves by less than the dent at which it would cut. Before it sticks, it is in the
-    // tissue by a part of an element, which only the smallest corners notice.
+    // The wire moves by less than the dent at which it would cut. It sticks where it is in the
+    // tissue by a part of an element: at most a tenth, as docs/contact.md says.
     World world = held(World(gel()));
     const ToolId tool = world.add_tool(wire(20.0, CuttingForce::apply));
     const auto pose = [](double x) { return at({x, 0.5 * size, 0.507 * size}); };
@@ -135,7 +136,7 @@ TEST(CuttingForce, BelowItsThresholdOnlyPushes) {
         for (const Edit& edit : world.step(0.8 * world.stable_step()).edits)
             area += edit.record.cut_area;
     }
-    EXPECT_LT(area, 0.4 * 0.003 * size);
+    EXPECT_LT(area, 0.1 * (size / 6) * size);
     const double force = -world.report().tools.at(0).force.x();
     EXPECT_GT(force, 0.05);
     EXPECT_LT(force, 20.0 * size);

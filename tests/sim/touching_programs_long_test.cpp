@@ -25,16 +25,15 @@ bool exerts(const cutting::ToolShape& shape) {
 }
 
 // The tools change the momentum by their impulses, and nothing else does. A thread changes it by
-// nothing. Energy comes from the tools alone, but for overlaps that go: cuts in strained tissue
-// leave some, and edges that pass each other, as only nodes touch faces. These push the sides apart
-// with a thousandth of an element in a stable step.
+// nothing. Energy comes from the tools alone, but for what the explicit step adds and takes.
 class TouchingPrograms : public testing::TestWithParam<int> {};
 
 constexpr int num_parts = 4;
+constexpr double least_energy = 1e-12;  // J: that of a body that nothing has touched
 
 TEST_P(TouchingPrograms, KeepMomentumAndTakeEnergyFromToolsOnly) {
     const int num_seeds = test::num_cases(1000) / num_parts, first = GetParam() * num_seeds;
-    std::size_t num_edits = 0, num_touched = 0, num_weighed = 0;
+    std::size_t num_edits = 0, num_touched = 0, num_fine = 0;
     double fracture_energy = 0.0;
     for (int seed = first; seed < first + num_seeds; ++seed) {
         TouchingProgram program(static_cast<std::uint64_t>(seed));
@@ -60,17 +59,13 @@ TEST_P(TouchingPrograms, KeepMomentumAndTakeEnergyFromToolsOnly) {
             num_touched += report.contact.num_points > 0;
         }
         num_edits += world.ledger().num_edits();
-        const physics::Totals& totals = world.model().totals();
-        const double parting = 1e-3 * program.size() / world.rest_stable_step();
-        // Elements that are as large as the body overlap by much of it.
-        const std::size_t num_elements = world.mesh().num_elements();
         fracture_energy += world.report().contact.fracture_energy;
-        if (num_elements > 200) {
-            ++num_weighed;
-            EXPECT_LE(rise, 0.03 * energy_scale + 8.0 * totals.mass * parting * parting);
-        }
+        // The explicit step lets the energy of few and large elements fluctuate more.
+        const bool is_fine = world.mesh().num_elements() > 200;
+        num_fine += is_fine;
+        EXPECT_LE(rise, (is_fine ? 0.06 : 0.2) * energy_scale + least_energy);
     }
-    EXPECT_GT(num_weighed, static_cast<std::size_t>(num_seeds / 4));
+    EXPECT_GT(num_fine, static_cast<std::size_t>(num_seeds / 4));
     EXPECT_GT(fracture_energy, 0.0);
     EXPECT_GT(num_edits, static_cast<std::size_t>(num_seeds));
     EXPECT_GT(num_touched, 30u * static_cast<std::size_t>(num_seeds));
