@@ -107,7 +107,7 @@ void BladeContact::move(const physics::Model& model, const Pose& before, const P
     }
 }
 
-void BladeContact::add_points(const physics::Model& model, std::span<const Triangle> /*surface*/,
+void BladeContact::add_points(const physics::Model& model, const TissueSurface& /*surface*/,
                               double dt, ContactSolver& solver) {
     reported_ = {};
     first_point_ = solver.size();

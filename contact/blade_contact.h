@@ -52,7 +52,7 @@ class BladeContact {
 
     /// Adds the points at which the force is applied to the solver, or sums what is reported.
     /// @param dt  s
-    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+    void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
                     ContactSolver& solver);
     /// Returns what the edge exerts by the points that add_points() added.
     ToolImpulse take_impulses(const ContactSolver& solver, double dt);

@@ -68,7 +68,8 @@ double Contact::thread_length(std::size_t tool) const {
 
 void Contact::close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
                     const Pose& pose) {
-    std::get<GraspContact>(tool_of(tool, grasper).contact).close(model, tissue_.triangles(), pose);
+    std::get<GraspContact>(tool_of(tool, grasper).contact)
+        .close(model, tissue_.surface().triangles, pose);
 }
 
 void Contact::open(std::size_t tool) {
@@ -101,7 +102,7 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
     for (auto& [number, tool] : tools_) {
         std::visit(
             [&](auto& contact) {
-                contact.add_points(model, tissue_.triangles(), dt, solver_);
+                contact.add_points(model, tissue_.surface(), dt, solver_);
                 max_penetration_ = std::max(max_penetration_, contact.max_penetration());
             },
             tool.contact);
@@ -115,8 +116,10 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
 
 void Contact::project(physics::Model& model, double /*time*/, double dt) {
     const auto masses = model.masses();
-    inverse_masses_.assign(masses.size(), Vec3::Zero());
-    for (std::size_t n = 0; n < masses.size(); ++n) {
+    inverse_masses_.resize(masses.size());
+    for (const NodeId node : solver_.nodes()) {
+        const std::size_t n = node.index();
+        inverse_masses_[n].setZero();
         if (masses[n] == 0.0) continue;  // dead
         const auto* constraint_of = model.constraints().of_node(n);
         for (int c = 0; c < 3; ++c)
@@ -196,7 +199,7 @@ void Contact::restore(ArchiveReader& ar, const physics::Model& model,
             contact.restore(ar, arguments...);
             tools_.insert_or_assign(number, Tool{std::move(contact)});
         };
-        if (kind == 0) come(RigidContact({}, size()), tissue_.triangles().size());
+        if (kind == 0) come(RigidContact({}, size()), tissue_.surface().triangles.size());
         if (kind == 1) come(GraspContact({}, size()), model);
         if (kind == 2) come(SutureContact({}, size()), model);
         if (kind == 3) come(BladeContact({}, size()));

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -17,7 +18,8 @@ namespace incise::contact {
 /// A share of a point that is a combination of nodes: x = sum of weight times x_node.
 struct Share {
     NodeId node;
-    double weight = 0.0;
+    std::uint32_t number;  ///< of the node in ContactSolver::nodes()
+    double weight;
 };
 
 /// A point of contact: the relative position of two points of bodies, sum of weight times x_node.
@@ -49,7 +51,8 @@ struct Thread {
 /// What moves the length of a thread: the derivative by the position of a node.
 struct Pull {
     NodeId node;
-    Vec3 gradient = Vec3::Zero();
+    std::uint32_t number;  ///< as that of a share
+    Vec3 gradient;
 };
 
 /// The points of contact and the threads of a step, and their impulses.
@@ -68,11 +71,14 @@ class ContactSolver {
     void begin(const ContactPoint& point);
     /// Adds a share to the last point. Several shares of one node become one.
     void add_share(NodeId node, double weight);
-    /// Notes that a node of the surface has such a weight in the last point. It is for
-    /// surface_impulses() alone.
-    void note_surface_node(NodeId node, double weight) {
-        surface_shares_.push_back({points_.size() - 1, {node, weight}});
-    }
+    /// Nodes of the surface with their weights: at most four, the others have no weight.
+    struct OnSurface {
+        std::array<NodeId, 4> nodes = {};
+        std::array<double, 4> weights = {};
+    };
+    /// Notes which nodes of the surface the last point depends on. It is for surface_impulses()
+    /// alone.
+    void note_surface(const OnSurface& at) { on_surface_.emplace_back(points_.size() - 1, at); }
     /// Begins a thread; its pulls follow.
     void begin_thread(const Thread& thread);
     /// Adds a pull to the last thread. Several pulls at one node become one.
@@ -80,6 +86,8 @@ class ContactSolver {
     bool is_empty() const { return points_.empty() && threads_.empty(); }
     std::size_t size() const { return points_.size(); }
     const ContactPoint& point(std::size_t i) const { return points_[i]; }
+    /// Returns the nodes of all points and threads, each once.
+    std::span<const NodeId> nodes() const { return node_ids_; }
     std::span<const Share> shares(std::size_t i) const {
         const std::size_t end = i + 1 < begins_.size() ? begins_[i + 1] : shares_.size();
         return std::span(shares_).subspan(begins_[i], end - begins_[i]);
@@ -90,11 +98,13 @@ class ContactSolver {
     /// is that at the end of the step, so that no stiffness is too large for the step.
     ///
     /// Makes four sweeps of the method of Gauss and Seidel in the order of the points and then of
-    /// the threads, and begins with the impulses of the step before, or the best share of them.
+    /// the threads, and begins with the impulses of the step before, or the best share of them. The
+    /// two sweeps in the middle leave out points without impulse.
     /// Linear momentum is kept to rounding: an impulse acts on the shares of a point by their
     /// weights. Source: docs/theory.md, Contact. Cost: O(n) in the shares.
-    /// @param velocities      by node, at the end of the step without contact, m/s
-    /// @param inverse_masses  by node and component, 1/kg; 0 for what is prescribed
+    /// @param velocities      by node id, at the end of the step without contact, m/s
+    /// @param inverse_masses  by node id and component, 1/kg; 0 for what is prescribed. Only those
+    ///                        of nodes() are read.
     /// @param dt              s
     /// @param rest_step       stable step at rest, s
     void solve(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses, double dt,
@@ -116,41 +126,43 @@ class ContactSolver {
     double lengthening(std::size_t thread) const;
 
   private:
+    /// Three components and a zero: two instructions where three numbers take three.
+    using Padded = Eigen::Vector4d;
     /// A node of shares, while the impulses are found.
     struct Node {
-        Vec3 velocity, inverse_mass;
-    };
-    struct LocalShare {
-        std::uint32_t node;  // number in nodes_
-        double weight;
+        Padded velocity, inverse_mass;
     };
     /// What a point needs in each sweep.
     struct Row {
-        std::size_t point, begin, end;   // of its shares
-        double along_normal, along_all;  // change of the relative velocity by an impulse, 1/kg
-        double allowed;                  // approach, m/s
-        double rounding;                 // an approach that is none, m/s
-        double normal_impulse = 0.0;     // N s
-        Vec3 softness = Vec3::Zero();    // of a point that is held: by component, 1/kg
-        Vec3 drift = Vec3::Zero();       // of the same: velocity that removes its offset, m/s
-        double largest_impulse = 0.0;    // N s
+        std::uint32_t point, begin, end;  // of its shares
+        bool is_held;
+        double friction, largest_impulse;  // the latter in N s
+        double allowed;                    // approach, m/s
+        double hardness, all_hardness;     // impulse for a change of the relative velocity, kg:
+                                           // along the normal, and in the softest direction
+        double normal_impulse = 0.0;       // N s
+        Vec3 impulse = Vec3::Zero();       // N s
+        Vec3 normal, velocity;             // of the point
+        Vec3 softness = Vec3::Zero();      // of a point that is held: by component, 1/kg
+        Vec3 drift = Vec3::Zero();         // of the same: velocity that removes its offset, m/s
     };
     /// The same for a thread.
     struct ThreadRow {
-        std::size_t begin, end;  // of its pulls
         double softness;         // change of the lengthening by an impulse, 1/kg
         double own_softness;     // of the thread itself, 1/kg
         double drift;            // lengthening that its stretch and the hand ask for, m/s
         double largest_impulse;  // N s
     };
-    void number_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
+    std::uint32_t number_of(NodeId node);
+    Vec3 velocity(std::size_t begin, std::size_t end) const;
+    void take_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
     void make_rows(double dt, double rest_step);
     void begin_with_impulse(Row& row);
     void begin_with_impulses();
     double best_share_of_impulses() const;
     void relax(Row& row);
     void relax_held(Row& row);
-    void change_impulse(const Row& row, const Vec3& to);
+    void change_impulse(Row& row, const Vec3& to);
     void make_thread_rows(double dt);
     void relax_thread(std::size_t thread);
     void change_thread_impulse(std::size_t thread, double to);
@@ -159,20 +171,20 @@ class ContactSolver {
     std::vector<ContactPoint> points_;
     std::vector<std::size_t> begins_;  // by point, of its shares
     std::vector<Share> shares_;
-    std::vector<std::int64_t> share_of_node_;                    // by node, the last share of it
-    std::vector<std::pair<std::size_t, Share>> surface_shares_;  // with their points
+    std::vector<std::pair<std::size_t, OnSurface>> on_surface_;  // with the numbers of points
+    std::vector<NodeId> node_ids_;                               // by number
+    std::vector<std::int32_t> number_by_id_;                     // by node id, -1: none
+    std::vector<std::size_t> last_shares_;  // by number, the last share of the node
     std::vector<Vec3> impulses_;
     // Scratch of solve().
-    std::vector<std::int32_t> local_of_node_;  // by node; -1 between calls
-    std::vector<Node> nodes_;
-    std::vector<Vec3> velocities_before_;  // by node in nodes_, without impulses
-    std::vector<LocalShare> local_shares_;
+    std::vector<Node> nodes_;                // by number
+    std::vector<Padded> velocities_before_;  // by number, without impulses
     std::vector<Row> rows_;
+    double rounding_ = 0.0;  // an approach that is none, m/s
     // Threads.
     std::vector<Thread> threads_;
     std::vector<std::size_t> thread_begins_;  // by thread, of its pulls
     std::vector<Pull> pulls_;
-    std::vector<std::uint32_t> local_pulls_;  // by pull, number in nodes_
     std::vector<double> thread_impulses_;
     std::vector<ThreadRow> thread_rows_;  // by thread
 };

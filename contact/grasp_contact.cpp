@@ -2,7 +2,10 @@
 #include "incise/contact/grasp_contact.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <variant>
+#include <vector>
 
 #include "incise/base/error.h"
 #include "incise/contact/rigid_touch.h"
@@ -30,6 +33,31 @@ double distance_from(const cutting::CarverShape& jaws, const Vec3& x) {
     return (x - capsule.from - at * along).norm() - capsule.radius;
 }
 
+/// Returns the middle of the part of a triangle that is in a box; nothing if there is none.
+/// Source: Sutherland and Hodgman 1974.
+std::optional<Vec3> middle_within(const cutting::Cuboid& box, const std::array<Vec3, 3>& triangle) {
+    std::vector<Vec3> polygon(triangle.begin(), triangle.end()), rest;
+    for (const int axis : {0, 1, 2})
+        for (const double side : {-1.0, 1.0}) {
+            const auto beyond = [&](const Vec3& x) {
+                return side * x[axis] - 0.5 * box.size[axis];
+            };
+            rest.clear();
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                const Vec3 &x = polygon[i], &next = polygon[(i + 1) % polygon.size()];
+                const double here = beyond(x), there = beyond(next);
+                if (here <= 0.0) rest.push_back(x);
+                if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0))
+                    rest.push_back(x + here / (here - there) * (next - x));
+            }
+            polygon.swap(rest);
+        }
+    if (polygon.empty()) return std::nullopt;
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : polygon) sum += x;
+    return sum / static_cast<double>(polygon.size());
+}
+
 }  // namespace
 
 Vec3 GraspContact::position_of(const Held& held, std::span<const Vec3> positions) const {
@@ -54,6 +82,8 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
     for (const NodeId n : nodes)
         held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()])});
     if (!held_.empty()) return;
+    // Jaws between nodes hold a point of each triangle that they meet.
+    const auto* box = std::get_if<cutting::Cuboid>(&grasper_.jaws);
     const cutting::ProbeShape shape =
         std::visit([](const auto& one) { return cutting::ProbeShape(one); }, grasper_.jaws);
     std::vector<RigidTouch> touches;
@@ -62,7 +92,9 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = pose.to_tool(positions[triangle[k].index()]);
         touches.clear();
-        append_touches(shape, corners, 0.0, touches);
+        if (!box) append_touches(shape, corners, 0.0, touches);
+        if (const auto middle = box ? middle_within(*box, corners) : std::nullopt)
+            touches.push_back({closest_weights(corners, *middle), *middle, Vec3::Zero()});
         for (const RigidTouch& touch : touches) {
             // A point on an edge belongs to several triangles.
             const bool is_known = std::ranges::any_of(held_, [&](const Held& held) {
@@ -79,7 +111,7 @@ void GraspContact::follow(const physics::Model& model) {
     });
 }
 
-void GraspContact::add_points(const physics::Model& model, std::span<const Triangle> /*surface*/,
+void GraspContact::add_points(const physics::Model& model, const TissueSurface& /*surface*/,
                               double dt, ContactSolver& solver) {
     const std::span<const Vec3> positions = model.mesh_positions();
     first_point_ = solver.size();
@@ -92,9 +124,10 @@ void GraspContact::add_points(const physics::Model& model, std::span<const Trian
         point.impulse = held.impulse;
         point.largest_force = grasper_.max_force / static_cast<double>(held_.size());
         solver.begin(point);
-        for (std::size_t k = 0; k < 3; ++k)
-            if (const double weight = held.weights[static_cast<int>(k)]; weight != 0.0)
-                add_surface_shares(model, held.nodes[k], weight, solver);
+        const auto& [a, b, c] = held.nodes;
+        const Vec3& weights = held.weights;
+        add_surface_shares(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
+                           solver);
     }
 }
 

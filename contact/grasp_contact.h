@@ -43,7 +43,7 @@ class GraspContact {
 
     /// Adds the points that are held to the solver.
     /// @param dt  s
-    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+    void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
                     ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added, and returns what the jaws exert by
     /// them.

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/contact/way_inside.h"
 #include "incise/cutting/tools/probe_shape.h"
+#include "incise/cutting/tools/solid.h"
 
 namespace incise::contact {
 
@@ -18,6 +20,7 @@ constexpr double probe_reach =
     0.3;  // at which a point counts: farther than anything moves in a step
 constexpr double probe_skin =
     0.5;  // by which triangles are found that are not within probe_reach yet
+constexpr double deep_overlap = 0.02;  // below which one is looked at twice
 
 }  // namespace
 
@@ -26,11 +29,13 @@ void RigidContact::prepare_shape() {
     solid_ = nullptr;
     if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
         solid_ = std::make_shared<const RigidSolid>(*solid);
+    if (const auto* box = std::get_if<cutting::Cuboid>(&probe_.shape))
+        solid_ = std::make_shared<const RigidSolid>(cutting::solid_of(*box));
 }
 
 RigidContact::Feature RigidContact::feature_of(const Triangle& triangle, const RigidTouch& touch) {
     constexpr double rounding = 1e-9;
-    Feature feature{{}, touch.tool_point};
+    Feature feature{{}, touch.tool_feature};
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k)
         if (touch.weights[static_cast<int>(k)] > rounding) feature.corners[count++] = triangle[k];
@@ -44,22 +49,35 @@ double RigidContact::largest_move() const {
            reach_ * before_.rotation.angularDistance(after_.rotation);
 }
 
-void RigidContact::find_triangles(std::span<const Vec3> positions,
-                                  std::span<const Triangle> surface) {
+void RigidContact::find_triangles(std::span<const Vec3> positions, const TissueSurface& surface) {
     const Box of_shape = cutting::box_of(probe_.shape);
     const double margin = (probe_reach + probe_skin) * size_;
     triangles_.clear();
-    for (std::uint32_t t = 0; t < surface.size(); ++t) {
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         Box box;
-        for (const NodeId n : surface[t]) box.extend(before_.to_tool(positions[n.index()]));
+        for (const NodeId n : surface.triangles[t])
+            box.extend(before_.to_tool(positions[n.index()]));
         const Vec3 more = Vec3::Constant(margin);
         if (Box(box.min() - more, box.max() + more).intersects(of_shape)) triangles_.push_back(t);
     }
     room_ = probe_skin * size_;
 }
 
-void RigidContact::add_points(const physics::Model& model, std::span<const Triangle> surface,
-                              double dt, ContactSolver& solver) {
+/// True if a point or an edge of the tool is behind a triangle, but not in the tissue: that ends
+/// before.
+bool RigidContact::is_beyond_tissue(const RigidTouch& touch, std::uint32_t t,
+                                    const std::array<Vec3, 3>& corners, const physics::Model& model,
+                                    const TissueSurface& surface) const {
+    if (touch.tool_feature < 0 || touch.gap >= -deep_overlap * size_) return false;
+    Vec3 of_tissue = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+        of_tissue += touch.weights[static_cast<int>(k)] * corners[k];
+    return !is_way_inside(model.mesh(), model.mesh_positions(), surface.faces[t],
+                          before_.to_world(of_tissue), before_.to_world(touch.point));
+}
+
+void RigidContact::add_points(const physics::Model& model, const TissueSurface& surface, double dt,
+                              ContactSolver& solver) {
     const std::span<const Vec3> positions = model.mesh_positions();
     // What has moved since the last step: the tissue in it, and the tool in this one at most.
     room_ -= model.largest_mesh_move() + largest_move();
@@ -70,7 +88,7 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
     features_.clear();
     std::map<Feature, std::pair<RigidTouch, std::uint32_t>> touches;
     for (const std::uint32_t t : triangles_) {
-        const Triangle& triangle = surface[t];
+        const Triangle& triangle = surface.triangles[t];
         std::array<Vec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = before_.to_tool(positions[triangle[k].index()]);
@@ -80,6 +98,7 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
         else
             append_touches(probe_.shape, corners, probe_reach * size_, found_);
         for (const RigidTouch& touch : found_) {
+            if (is_beyond_tissue(touch, t, corners, model, surface)) continue;
             const auto [it, is_new] = touches.try_emplace(feature_of(triangle, touch), touch, t);
             if (!is_new && touch.gap < it->second.first.gap) it->second = {touch, t};
         }
@@ -97,9 +116,10 @@ void RigidContact::add_points(const physics::Model& model, std::span<const Trian
         places_.push_back(here);
         features_.push_back(feature);
         solver.begin(point);
-        for (std::size_t k = 0; k < 3; ++k)
-            if (const double weight = touch.weights[static_cast<int>(k)]; weight != 0.0)
-                add_surface_shares(model, surface[t][k], weight, solver);
+        const auto& [a, b, c] = surface.triangles[t];
+        const Vec3& weights = touch.weights;
+        add_surface_shares(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
+                           solver);
     }
 }
 

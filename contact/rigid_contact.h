@@ -45,7 +45,7 @@ class RigidContact {
     /// a part of an element, O(n) in the triangles of the surface.
     /// @param surface  triangles of the body
     /// @param dt       s
-    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+    void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
                     ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added, and returns what the tool exerts
     /// by them. The next step begins with them.
@@ -62,9 +62,9 @@ class RigidContact {
     /// What tells one point from another.
     struct Feature {
         std::array<NodeId, 3> corners;  ///< of a triangle, that it depends on, in ascending order
-        std::int32_t tool_point;        ///< see RigidTouch
+        std::int32_t tool_feature;      ///< see RigidTouch
         auto operator<=>(const Feature&) const = default;
-        static void archive(auto& ar, auto& self) { ar(self.corners, self.tool_point); }
+        static void archive(auto& ar, auto& self) { ar(self.corners, self.tool_feature); }
     };
     static void list(auto& ar, auto& self) {
         ar(self.triangles_, self.room_, self.last_features_, self.last_impulses_);
@@ -73,11 +73,14 @@ class RigidContact {
     static Feature feature_of(const Triangle& triangle, const RigidTouch& touch);
     Vec3 last_impulse_at(const Feature& feature) const;
     double largest_move() const;
-    void find_triangles(std::span<const Vec3> positions, std::span<const Triangle> surface);
+    bool is_beyond_tissue(const RigidTouch& touch, std::uint32_t t,
+                          const std::array<Vec3, 3>& corners, const physics::Model& model,
+                          const TissueSurface& surface) const;
+    void find_triangles(std::span<const Vec3> positions, const TissueSurface& surface);
 
     cutting::Probe probe_;
     double size_;
-    std::shared_ptr<const RigidSolid> solid_;  // if the shape is one
+    std::shared_ptr<const RigidSolid> solid_;  // if the shape is one, or a box
     double reach_ = 0.0;                       // of the shape, m
     Pose before_, after_;
     std::vector<std::uint32_t> triangles_;  // near the tool

@@ -33,22 +33,6 @@ Vec3 closest_weights(const std::array<Vec3, 3>& x, const Vec3& p) {
     return {1.0 - (vb + vc) / sum, vb / sum, vc / sum};
 }
 
-namespace {
-
-using cutting::Capsule;
-using cutting::Cuboid;
-using cutting::HalfSpace;
-using cutting::Sphere;
-using Corners = std::array<Vec3, 3>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Vec3 point_of(const Corners& x, const Vec3& weights) {
-    return weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
-}
-
-/// Returns the part of the way from p to q at which the segment is closest to another one, a to b,
-/// and the same on that one.
 std::array<double, 2> closest_of_segments(const Vec3& p, const Vec3& q, const Vec3& a,
                                           const Vec3& b) {
     const Vec3 u = q - p, v = b - a, w = p - a;
@@ -61,6 +45,19 @@ std::array<double, 2> closest_of_segments(const Vec3& p, const Vec3& q, const Ve
     const double t = vv == 0.0 ? 0.0 : unit((uv * s + vw) / vv);
     s = unit((uv * t - uw) / uu);
     return {s, t};
+}
+
+namespace {
+
+using cutting::Capsule;
+using cutting::HalfSpace;
+using cutting::Sphere;
+using Corners = std::array<Vec3, 3>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vec3 point_of(const Corners& x, const Vec3& weights) {
+    return weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
 }
 
 /// Returns the part of the way from p to q at which the segment is closest to a triangle.
@@ -117,101 +114,6 @@ std::optional<RigidTouch> touch_of_ball(const Vec3& centre, double radius, const
     return touch;
 }
 
-/// The signed distance of a point to a box with half edges `half`, and its gradient.
-double distance_to_box(const Vec3& half, const Vec3& p, Vec3& gradient) {
-    const Vec3 q = p.cwiseAbs() - half;
-    const Vec3 sign = p.unaryExpr([](double v) { return v < 0.0 ? -1.0 : 1.0; });
-    if (q.maxCoeff() <= 0.0) {
-        Eigen::Index side = 0;
-        const double depth = q.maxCoeff(&side);
-        gradient = Vec3::Zero();
-        gradient[side] = sign[side];
-        return depth;
-    }
-    const Vec3 outside = q.cwiseMax(0.0);
-    const double distance = outside.norm();
-    gradient = outside.cwiseProduct(sign) / distance;
-    return distance;
-}
-
-/// Of a point in a box, takes the nearest side that faces its triangle, if it is not much farther
-/// than the nearest one of all. Near an edge of the box that is pressed into tissue, the nearest
-/// one may be beside the tissue in one step and not in the next one.
-/// @param reach  how much farther it may be, m
-void leave_by_facing_side(const Vec3& half, const Vec3& outward, double reach, RigidTouch& touch) {
-    constexpr double least_cosine = 0.5;
-    double nearest = touch.gap - reach;
-    for (int side = 0; side < 3; ++side) {
-        const double sign = touch.point[side] < 0.0 ? -1.0 : 1.0;
-        const double gap = std::abs(touch.point[side]) - half[side];
-        if (-sign * outward[side] < least_cosine || gap <= nearest) continue;
-        nearest = gap;
-        touch.normal = sign * Vec3::Unit(side);
-        touch.gap = gap;
-    }
-}
-
-/// Returns where a convex function on [0, 1] has its least value, by the golden section.
-double least_of_convex(const auto& value_at) {
-    constexpr double golden = 0.6180339887498949;
-    double low = 0.0, high = 1.0, left = 1.0 - golden, right = golden;
-    double at_left = value_at(left), at_right = value_at(right);
-    for (int i = 0; i < 16; ++i)  // to a two-thousandth
-        if (at_left <= at_right) {
-            high = right;
-            right = left;
-            at_right = at_left;
-            left = high - golden * (high - low);
-            at_left = value_at(left);
-        } else {
-            low = left;
-            left = right;
-            at_left = at_right;
-            right = low + golden * (high - low);
-            at_right = value_at(right);
-        }
-    const double middle = 0.5 * (low + high), at_middle = value_at(middle);
-    if (value_at(0.0) <= at_middle) return 0.0;
-    return value_at(1.0) <= at_middle ? 1.0 : middle;
-}
-
-// The signed distance is convex, and so is its least value on lines that are parallel to an edge,
-// as a function of their distance from it.
-void append_touches_of_box(const Vec3& size, const Corners& x, double farthest,
-                           std::vector<RigidTouch>& touches) {
-    const Vec3 half = 0.5 * size;
-    const auto touch_at = [&](const Vec3& weights) {
-        RigidTouch touch{weights, point_of(x, weights), Vec3::Zero(), 0.0};
-        touch.gap = distance_to_box(half, touch.point, touch.normal);
-        return touch;
-    };
-    const Vec3 outward = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
-    constexpr double edge_reach = 0.1;  // of the longest edge of the triangle
-    double least = infinity, longest = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (x[(k + 1) % 3] - x[k]).norm());
-    const auto append = [&](RigidTouch touch) {
-        if (touch.gap <= 0.0) leave_by_facing_side(half, outward, edge_reach * longest, touch);
-        touches.push_back(touch);
-    };
-    for (int k = 0; k < 3; ++k) {
-        const RigidTouch touch = touch_at(Vec3::Unit(k));
-        least = std::min(least, touch.gap);
-        if (touch.gap <= farthest) append(touch);
-    }
-    if (least - longest > farthest) return;
-    const auto weights_at = [](double s, double t) {
-        return Vec3((1.0 - t) * (1.0 - s), (1.0 - t) * s, t);
-    };
-    const auto best_at = [&](double t) {
-        return least_of_convex([&](double s) { return touch_at(weights_at(s, t)).gap; });
-    };
-    const double t =
-        least_of_convex([&](double at) { return touch_at(weights_at(best_at(at), at)).gap; });
-    const RigidTouch between = touch_at(weights_at(best_at(t), t));
-    // It counts if it is closer than the corners.
-    if (between.gap <= farthest && between.gap < least - 1e-6 * longest) append(between);
-}
-
 }  // namespace
 
 void append_touches(const cutting::ProbeShape& shape, const Corners& corners, double farthest,
@@ -225,8 +127,6 @@ void append_touches(const cutting::ProbeShape& shape, const Corners& corners, do
     } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
         const double s = closest_on_segment(capsule->from, capsule->to, corners);
         append_of_ball(capsule->from + s * (capsule->to - capsule->from), capsule->radius);
-    } else if (const auto* box = std::get_if<Cuboid>(&shape)) {
-        append_touches_of_box(box->size, corners, farthest, touches);
     } else {
         const auto& half_space = std::get<HalfSpace>(shape);
         for (int k = 0; k < 3; ++k) {

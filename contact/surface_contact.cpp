@@ -9,6 +9,7 @@
 
 #include "incise/base/archive.h"
 #include "incise/base/error.h"
+#include "incise/contact/way_inside.h"
 
 namespace incise::contact {
 
@@ -21,8 +22,10 @@ constexpr double skin = 0.5;  // by which pairs are found that are not within no
 /// A node that is deeper has no side any more. It is a part of the local length.
 constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
-/// no other triangle goes on there.
-constexpr double rim = 0.25;
+/// no other triangle goes on there. A node that is deeper than `deepest_at_rim` is beside it.
+constexpr double rim = 0.25, deepest_at_rim = 0.05;
+/// An overlap that begins deeper is looked at twice. It is a part of the local length.
+constexpr double deep_start = 0.02;
 /// An overlap of this part of an element is none: the twins of a cut have the same position.
 constexpr double rounding = 1e-10;
 
@@ -34,10 +37,11 @@ void add_shares(const physics::Model& model, NodeId n, double weight, ContactSol
         solver.add_share(at.nodes[k], weight * at.weights[k]);
 }
 
-void add_surface_shares(const physics::Model& model, NodeId n, double weight,
+void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
                         ContactSolver& solver) {
-    solver.note_surface_node(n, weight);
-    add_shares(model, n, weight, solver);
+    solver.note_surface(at);
+    for (std::size_t k = 0; k < at.nodes.size(); ++k)
+        if (at.weights[k] != 0.0) add_shares(model, at.nodes[k], at.weights[k], solver);
 }
 
 void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solver) {
@@ -50,10 +54,7 @@ void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solv
     for (std::size_t i = 0; i < near_.size(); ++i) {
         NearNode& near = near_[i];
         near.room -= moved;
-        if (near.touched >= 0 || near.room < 0.0) find_touched(i, positions);
-        if (near.touched >= 0)
-            touches_[i] =
-                touch(pairs_.nodes()[i], static_cast<std::size_t>(near.touched), positions);
+        if (near.touched >= 0 || near.room < 0.0) find_touched(i, model);
     }
     first_point_ = solver.size();
     nodes_of_points_.clear();
@@ -70,7 +71,7 @@ void SurfaceContact::take_impulses(const ContactSolver& solver) {
 /// True if a node touches another one, which touches it as well and has the lower id: then one
 /// point of contact is enough. So it is with the two nodes that a cut has made of one.
 bool SurfaceContact::is_with_twin(std::size_t i) const {
-    constexpr double nearly_one = 0.98;
+    constexpr double nearly_one = 0.9;
     const auto node_under = [&](std::size_t k) {
         const Triangle& triangle = triangles_[static_cast<std::size_t>(near_[k].touched)];
         for (int corner = 0; corner < 3; ++corner)
@@ -80,10 +81,16 @@ bool SurfaceContact::is_with_twin(std::size_t i) const {
     };
     const NodeId n = pairs_.nodes()[i], other = node_under(i);
     if (!other.is_valid() || n < other) return false;
-    const auto it = std::ranges::lower_bound(pairs_.nodes(), other);
-    if (it == pairs_.nodes().end() || *it != other) return false;
-    const auto k = static_cast<std::size_t>(it - pairs_.nodes().begin());
-    return near_[k].touched >= 0 && node_under(k) == n;
+    const std::int32_t k = near_of_node_[other.index()];
+    return k >= 0 && near_[static_cast<std::size_t>(k)].touched >= 0 &&
+           node_under(static_cast<std::size_t>(k)) == n;
+}
+
+/// Notes where the nodes are in the pairs.
+void SurfaceContact::number_nodes(std::size_t node_capacity) {
+    near_of_node_.assign(node_capacity, -1);
+    for (std::size_t i = 0; i < pairs_.nodes().size(); ++i)
+        near_of_node_[pairs_.nodes()[i].index()] = static_cast<std::int32_t>(i);
 }
 
 /// Lists the triangles of the surface in the order of their faces, whatever edits led to it.
@@ -187,6 +194,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
         near_[i].touched = touched;
     }
     if (num_known == 0) room_ = skin * size_;
+    number_nodes(positions.size());
 }
 
 void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
@@ -200,6 +208,7 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
     list_triangles(model, surface);
     require(near_.size() == pairs_.nodes().size() &&
             pairs_.fits(model.mesh().node_capacity(), triangles_.size()));
+    number_nodes(model.mesh().node_capacity());
     for (const NearNode& near : near_)
         require(near.touched < static_cast<std::int64_t>(triangles_.size()) && near.slack <= 0.0 &&
                 !std::isnan(near.room) && near.impulse.allFinite());
@@ -240,6 +249,7 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
         if (const auto it = known.find(pairs_.nodes()[i]); it != known.end()) near_[i] = it->second;
     positions_of_pairs_.assign(positions.begin(), positions.end());
     room_ = skin * size_;
+    number_nodes(positions.size());
 }
 
 /// Returns where a node is above a triangle. Its gap is infinite if the triangle has no area.
@@ -260,24 +270,34 @@ SurfaceContact::Touch SurfaceContact::touch(NodeId n, std::size_t t,
     return touch;
 }
 
-/// Finds the triangle that a node touches: the one it touched, as long as it is over it, or else
-/// the nearest one.
-void SurfaceContact::find_touched(std::size_t i, std::span<const Vec3> positions) {
-    NearNode& near = near_[i];
-    const NodeId n = pairs_.nodes()[i];
+/// Returns the local length at a node and a triangle, m.
+double SurfaceContact::length_at(NodeId n, std::size_t t) const {
+    double length = lengths_[n.index()];
+    for (const NodeId corner : triangles_[t]) length = std::min(length, lengths_[corner.index()]);
+    return length;
+}
+
+/// True if a node is above a triangle, or so far outside it, as a weight, and near enough.
+bool SurfaceContact::is_over(NodeId n, std::size_t t, const Touch& at, double outside) const {
     // Of a node at a corner, rounding decides over which triangle it is.
     constexpr double tolerance = 1e-6;
-    const auto is_over = [&](const Touch& at, std::size_t t, double outside) {
-        double length = lengths_[n.index()];
-        for (const NodeId corner : triangles_[t])
-            length = std::min(length, lengths_[corner.index()]);
-        return at.weights.minCoeff() >= -outside && at.gap < node_reach * size_ &&
-               at.gap > -deepest * length;
-    };
-    const bool did_touch = near.touched >= 0;
-    if (did_touch) {
-        const auto t = static_cast<std::size_t>(near.touched);
-        if (is_over(touch(n, t, positions), t, tolerance)) return;
+    const double least_weight = at.weights.minCoeff();
+    const double depth = least_weight < -tolerance ? deepest_at_rim : deepest;
+    return least_weight >= -outside - tolerance && at.gap < node_reach * size_ &&
+           at.gap > -depth * length_at(n, t);
+}
+
+/// Finds the triangle that a node touches, and where: the one it touched, as long as it is over it,
+/// or else the nearest one.
+void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
+    const std::span<const Vec3> positions = model.mesh_positions();
+    NearNode& near = near_[i];
+    const NodeId n = pairs_.nodes()[i];
+    const std::int32_t before = near.touched;
+    if (before >= 0) {
+        const auto t = static_cast<std::size_t>(before);
+        touches_[i] = touch(n, t, positions);
+        if (is_over(n, t, touches_[i], 0.0)) return;
     }
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
@@ -289,10 +309,16 @@ void SurfaceContact::find_touched(std::size_t i, std::span<const Vec3> positions
         least = square;
         nearest = t;
     }
-    const Touch at = touch(n, nearest, positions);
-    near.touched = is_over(at, nearest, rim) ? static_cast<std::int32_t>(nearest) : -1;
+    const Touch at = touches_[i] = touch(n, nearest, positions);
+    near.touched = is_over(n, nearest, at, rim) ? static_cast<std::int32_t>(nearest) : -1;
     near.room = std::sqrt(least) - node_reach * size_;
-    if (!did_touch && near.touched >= 0) near.slack = std::min(0.0, at.gap);
+    if (near.touched < 0 || near.touched == before) return;
+    if (at.gap < -deep_start * length_at(n, nearest) && at.weights.minCoeff() > 0.0 &&
+        !is_way_inside(model.mesh(), positions, faces_[nearest],
+                       positions[n.index()] - at.gap * at.normal, positions[n.index()]))
+        near.touched = -1;
+    else if (before < 0)
+        near.slack = std::min(0.0, at.gap);
 }
 
 void SurfaceContact::add_point(std::size_t i, const physics::Model& model, ContactSolver& solver) {
@@ -308,11 +334,11 @@ void SurfaceContact::add_point(std::size_t i, const physics::Model& model, Conta
     point.impulse = near.impulse;
     nodes_of_points_.push_back(i);
     solver.begin(point);
-    add_surface_shares(model, pairs_.nodes()[i], 1.0, solver);
-    const Triangle& triangle = triangles_[static_cast<std::size_t>(near.touched)];
-    for (std::size_t k = 0; k < 3; ++k)
-        if (const double weight = at.weights[static_cast<int>(k)]; weight != 0.0)
-            add_surface_shares(model, triangle[k], -weight, solver);
+    const auto& [a, b, c] = triangles_[static_cast<std::size_t>(near.touched)];
+    add_surface_shares(
+        model,
+        {{pairs_.nodes()[i], a, b, c}, {1.0, -at.weights[0], -at.weights[1], -at.weights[2]}},
+        solver);
 }
 
 }  // namespace incise::contact

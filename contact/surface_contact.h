@@ -28,15 +28,15 @@ struct ContactSettings {
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
 void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver);
-/// The same for a node of the surface, with what ContactSolver::surface_impulses() needs.
-void add_surface_shares(const physics::Model& model, NodeId n, double weight,
+/// The same for a point of the surface, with what ContactSolver::surface_impulses() needs.
+void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
                         ContactSolver& solver);
 
 /// Points of contact of the surface of a body with itself.
 ///
 /// Nodes of the surface meet triangles. A node touches the triangle that is nearest to it of those
-/// that face it. Of two surfaces that touch, the nodes of both act. Contact of two edges is left
-/// out.
+/// that face it. Of two surfaces that touch, the nodes of both act; of two nodes that are above
+/// each other, one. Contact of two edges is left out.
 class SurfaceContact {
   public:
     /// @param size  mean length of an element at rest, m: distances are parts of it
@@ -53,8 +53,8 @@ class SurfaceContact {
     /// Takes the impulses of the points that add_points() added: the next step begins with them.
     void take_impulses(const ContactSolver& solver);
 
-    /// Returns the triangles of the surface, in an order that no history of edits changes.
-    std::span<const Triangle> triangles() const { return triangles_; }
+    /// Returns the surface. The order of its triangles depends on no history of edits.
+    TissueSurface surface() const { return {triangles_, faces_}; }
     /// Returns the largest overlap at the last call of add_points(), m.
     double max_penetration() const { return max_penetration_; }
     const ContactSettings& settings() const { return settings_; }
@@ -96,7 +96,10 @@ class SurfaceContact {
     void list_lengths(const physics::Model& model);
     void find_pairs(const physics::Model& model);
     bool has_moved_far(std::span<const Vec3> positions);
-    void find_touched(std::size_t i, std::span<const Vec3> positions);
+    void number_nodes(std::size_t node_capacity);
+    void find_touched(std::size_t i, const physics::Model& model);
+    double length_at(NodeId n, std::size_t t) const;
+    bool is_over(NodeId n, std::size_t t, const Touch& at, double outside) const;
     Touch touch(NodeId n, std::size_t t, std::span<const Vec3> positions) const;
     bool is_with_twin(std::size_t i) const;
     void add_point(std::size_t i, const physics::Model& model, ContactSolver& solver);
@@ -109,8 +112,9 @@ class SurfaceContact {
     std::vector<double> lengths_;           // of elements at nodes of the surface, by id, m
     SurfaceTree tree_;
     TouchingPairs pairs_;
-    std::vector<NearNode> near_;            // by node of pairs_
-    std::vector<Vec3> positions_of_pairs_;  // at which pairs_ were found, by id
+    std::vector<std::int32_t> near_of_node_;  // by id, index of the node in pairs_, or -1
+    std::vector<NearNode> near_;              // by node of pairs_
+    std::vector<Vec3> positions_of_pairs_;    // at which pairs_ were found, by id
     double room_ = -1.0;  // how far the surface may move before pairs_ is out of date, m
     double max_penetration_ = 0.0;
     std::vector<Touch> touches_;                // scratch, by node of pairs_

@@ -14,6 +14,12 @@ namespace incise::contact {
 
 using Triangle = std::array<NodeId, 3>;
 
+/// The surface of a body.
+struct TissueSurface {
+    std::span<const Triangle> triangles;  ///< outward
+    std::span<const FaceId> faces;        ///< of the mesh, by triangle
+};
+
 /// The directions of the normals of some triangles: a cone about an axis.
 struct NormalCone {
     Vec3 axis = Vec3::Zero();

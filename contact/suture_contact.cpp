@@ -55,7 +55,7 @@ void SutureContact::follow(const physics::Model& model) {
     });
 }
 
-void SutureContact::add_points(const physics::Model& model, std::span<const Triangle> /*surface*/,
+void SutureContact::add_points(const physics::Model& model, const TissueSurface& /*surface*/,
                                double dt, ContactSolver& solver) {
     is_in_solver_ = false;
     if (stitches_.size() < 2) return;

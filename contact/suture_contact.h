@@ -45,7 +45,7 @@ class SutureContact {
 
     /// Adds the thread to the solver.
     /// @param dt  s
-    void add_points(const physics::Model& model, std::span<const Triangle> surface, double dt,
+    void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
                     ContactSolver& solver);
     /// Takes the tension of the thread. Returns its pull on the first point. A thread that has
     /// borne its largest force tears.

@@ -133,6 +133,16 @@ Solid make_solid(const SurfaceData& surface, bool& was_turned) {
     return solid;
 }
 
+Solid solid_of(const Cuboid& box) {
+    Solid solid;
+    for (int i = 0; i < 8; ++i)  // x runs first, then y
+        solid.surface.points.push_back(
+            0.5 * box.size.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+    solid.surface.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                               {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return solid;
+}
+
 std::string fault_of(const Solid& solid) {
     const SurfaceData& surface = solid.surface;
     if (surface.triangles.empty()) return "its surface has no triangle";

@@ -14,6 +14,9 @@ namespace incise::cutting {
 /// @param was_turned  becomes true if the triangles were turned, else false
 Solid make_solid(const topology::SurfaceData& surface, bool& was_turned);
 
+/// Returns a box about the origin.
+Solid solid_of(const Cuboid& box);
+
 /// Returns why a surface encloses no solid, with the place; empty if it does. It does if at each
 /// edge two triangles meet that run along it in opposite directions, and if the triangles face
 /// outwards. Cost: O(n log n).

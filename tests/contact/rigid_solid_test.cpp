@@ -50,9 +50,11 @@ TEST(RigidSolid, KnowsHowFarCornersAreAndOnWhichSide) {
         for (int k = 0; k < 3; ++k) {
             const Vec3& corner = x[static_cast<std::size_t>(k)];
             const double distance = distance_to_brick(corner);
+            // Inside, the side that faces the triangle may be farther.
+            const double farther = distance < 0.0 ? 0.05 : 0.0;
             const auto found = std::ranges::find_if(touches, [&](const RigidTouch& touch) {
-                return touch.weights == Vec3(Vec3::Unit(k)) && touch.point != corner &&
-                       std::abs(touch.gap - distance) < 1e-9;
+                return touch.weights == Vec3(Vec3::Unit(k)) && touch.gap < distance + 1e-9 &&
+                       touch.gap > distance - farther - 1e-9;
             });
             if (std::abs(distance) < 0.199) {
                 ASSERT_NE(found, touches.end());
@@ -107,6 +109,59 @@ TEST(RigidSolid, SeesASharpPointOnTheMiddleOfATriangle) {
         EXPECT_NEAR(least->normal.dot(-outward), 1.0, 1e-9);
         EXPECT_NEAR((least->weights - Vec3::Constant(1.0 / 3)).norm(), 0.0, 1e-9);
     }
+}
+
+// An edge of the brick comes to an edge of the tissue, at any angle; the middles of both are where
+// they meet.
+TEST(RigidSolid, SeesEdgesThatCross) {
+    const RigidSolid solid(cutting::solid_of(cutting::Cuboid{brick.sizes()}));
+    const Vec3 edge(brick.max().x(), brick.max().y(), 0.0);  // the middle of one along z
+    for (std::uint64_t seed = 0; seed < test::num_cases(200); ++seed) {
+        SCOPED_TRACE(seed);
+        test::Random random(seed);
+        const double angle = random.uniform(0.1, 1.4);  // of the normal, from x to y
+        const Vec3 normal(std::cos(angle), std::sin(angle), 0.0);
+        const Vec3 across(-normal.y(), normal.x(), 0.0);
+        const double slope = random.uniform(-1.0, 1.0);
+        const Vec3 along = (across + slope * Vec3::UnitZ()).normalized();
+        const double gap = random.uniform(-0.02, 0.02);
+        // A ridge of tissue whose back is towards the edge.
+        const Vec3 middle = edge + gap * normal;
+        const SolidCorners x = {middle - 0.3 * along, middle + 0.3 * along,
+                                middle + 0.2 * normal + 0.1 * normal.cross(along)};
+        const Vec3 outward = (x[1] - x[0]).cross(x[2] - x[0]);
+        const SolidCorners facing = outward.dot(normal) < 0.0 ? x : SolidCorners{x[1], x[0], x[2]};
+        std::vector<RigidTouch> touches;
+        solid.append_touches(facing, 0.05, touches);
+        const auto found = std::ranges::find_if(
+            touches, [](const RigidTouch& touch) { return touch.tool_feature >= 8; });
+        ASSERT_NE(found, touches.end());
+        EXPECT_NEAR(found->gap, gap, 1e-12);
+        EXPECT_NEAR(found->normal.dot(normal), 1.0, 1e-12);
+        EXPECT_NEAR(std::max(found->weights[0], found->weights[1]), 0.5, 1e-9);
+        EXPECT_NEAR((found->point - edge).norm(), 0.0, 1e-9);
+    }
+}
+
+// A corner of the tissue at an edge of the brick, a little deeper under its lower side than beside
+// it.
+TEST(RigidSolid, IsLeftByTheSideThatFacesTheTissue) {
+    const RigidSolid solid(cutting::solid_of(cutting::Cuboid{Vec3::Ones()}));
+    const SolidCorners x{Vec3(0.499, 0, -0.498), Vec3(0.8, 0, -0.51), Vec3(0.6, 0.3, -0.51)};
+    std::vector<RigidTouch> touches;
+    solid.append_touches(x, 0.01, touches);
+    const auto corner = std::ranges::find_if(
+        touches, [](const RigidTouch& touch) { return touch.weights == Vec3(Vec3::UnitX()); });
+    ASSERT_NE(corner, touches.end());
+    EXPECT_EQ(corner->normal, Vec3(-Vec3::UnitZ()));
+    EXPECT_NEAR(corner->gap, -0.002, 1e-12);
+}
+
+// A box of triangles is a box, and its diagonals are no edges.
+TEST(RigidSolid, OfABoxIsSound) {
+    const Solid box = cutting::solid_of(cutting::Cuboid{brick.sizes()});
+    EXPECT_EQ(cutting::fault_of(box), "");
+    EXPECT_NEAR(cutting::volume_of(box.surface), brick.volume(), 1e-15);
 }
 
 TEST(RigidSolid, KnowsWhatIsInside) {

@@ -79,13 +79,21 @@ inline std::vector<double> shells(double h, int fine, double growth, double end)
     return radii;
 }
 
-/// Returns a quarter of a block under the plane z = 0, fine about the origin and ever coarser away
-/// from it: bricks between cubes of these radii. The region of a cell is the number of its outer
-/// cube. If it is whole, the block goes on above the plane.
-inline topology::MeshData graded_quarter(const std::vector<double>& radii, bool is_whole = false) {
-    const int n = static_cast<int>(radii.size()) - 1, num_down = is_whole ? 2 * n : n;
-    const double edge = n, height = num_down;
-    topology::MeshData mesh = box({0.0, 0.0, -edge}, {edge, edge, height}, {n, n, num_down});
+/// Returns a part of a block, fine about the origin and ever coarser away from it: bricks between
+/// cubes of these radii. The region of a cell is the number of its outer cube.
+/// @param low, high  where the part begins and ends, by axis: -1, 0, or 1
+inline topology::MeshData graded_block(const std::vector<double>& radii,
+                                       const std::array<int, 3>& low,
+                                       const std::array<int, 3>& high) {
+    const int n = static_cast<int>(radii.size()) - 1;
+    std::array<int, 3> cells{};
+    Vec3 origin, edges;
+    for (std::size_t c = 0; c < 3; ++c) {
+        cells[c] = n * (high[c] - low[c]);
+        origin[static_cast<int>(c)] = n * low[c];
+        edges[static_cast<int>(c)] = cells[c];
+    }
+    topology::MeshData mesh = box(origin, edges, cells);
     const auto shell = [](const Vec3& x) { return x.cwiseAbs().maxCoeff(); };
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         double outer = 0.0;
@@ -97,6 +105,11 @@ inline topology::MeshData graded_quarter(const std::vector<double>& radii, bool 
         if (const double k = shell(x); k > 0.0)
             x *= radii[static_cast<std::size_t>(std::lround(k))] / k;
     return mesh;
+}
+
+/// Returns a quarter of such a block under the plane z = 0. If it is whole, it goes on above it.
+inline topology::MeshData graded_quarter(const std::vector<double>& radii, bool is_whole = false) {
+    return graded_block(radii, {0, 0, -1}, {1, 1, is_whole ? 1 : 0});
 }
 
 /// The materials of a graded body. Mass does not matter at rest. It is chosen such that waves take

@@ -34,6 +34,110 @@ void hold_graded(World& world, double extent) {
     fix("y", {false, true, false}, [&](const Vec3& x) { return x.y() == 0.0 && !is_far(x); });
 }
 
+/// A ball that is pressed into half of a slab, and then drawn aside in its plane of symmetry.
+class DrawnBall {
+  public:
+    static constexpr double radius = 0.02, depth = 0.01 * radius, friction = 0.3;  // m
+    static constexpr double contact_radius = 0.1 * radius;
+    static constexpr int num_cells = 6;  // from the middle of the contact to its rim
+
+    DrawnBall() : world_(make_world()) {
+        tool_ = world_.add_tool({"ball", cutting::Probe{cutting::Sphere{radius}, friction}});
+        world_.place_tool(tool_, at({0, 0, radius}));
+        move(-depth * Vec3::UnitZ());
+    }
+    void draw(double by) { move(by * Vec3::UnitX()); }
+    Vec3 force() const { return 2.0 * world_.report().tools[0].force; }  ///< on both halves, N
+
+    /// The areas of both halves that touch, and that stick: there the friction is below its limit.
+    struct Areas {
+        double touching = 0.0, sticking = 0.0;  // m2
+    };
+    Areas areas() {
+        std::vector<double> area_at(world_.mesh().node_capacity());
+        for (const auto& [p, q, r] : world_.surface().triangles()) {
+            const auto X = [&](NodeId n) { return world_.mesh().rest_position(n); };
+            const Vec3 area = 0.5 * (X(q) - X(p)).cross(X(r) - X(p));
+            for (const NodeId n : {p, q, r}) area_at[n.index()] += 2.0 * area.norm() / 3.0;
+        }
+        Areas sum;
+        const auto forces = world_.contact_forces();
+        for (const auto& [n, force] : forces.value()) {
+            const Vec3 outward =
+                (world_.tool_pose(tool_).position - world_.positions()[n.index()]).normalized();
+            const double normal = -force.dot(outward);
+            // Points of contact are between the nodes, where normals are others.
+            constexpr double nearly = 0.93;
+            if (normal <= 0.0) continue;
+            sum.touching += area_at[n.index()];
+            const Vec3 tangential = force + normal * outward;
+            if (tangential.norm() < nearly * friction * normal) sum.sticking += area_at[n.index()];
+        }
+        return sum;
+    }
+
+  private:
+    static World make_world() {
+        constexpr Solid solid{.young = 5e3, .poisson = 0.45};
+        const auto radii =
+            shells(contact_radius / num_cells, num_cells + 2, slab_growth, 15.0 * contact_radius);
+        WorldDef def;
+        def.mesh = graded_block(radii, {-1, 0, -1}, {1, 1, 0});
+        set_graded_materials(def, solid, radii);
+        def.damping = slab_damping;
+        World world(std::move(def));
+        const auto fix = [&](std::string name, std::array<bool, 3> components, const Part& part) {
+            physics::Constraint constraint{.name = std::move(name)};
+            constraint.nodes = physics::NodeSet(nodes_where(world, part));
+            constraint.components = components;
+            world.add_constraint(std::move(constraint));
+        };
+        const auto is_far = [=](const Vec3& x) {
+            return x.cwiseAbs().maxCoeff() > radii.back() * (1.0 - 1e-9);
+        };
+        fix("far", {true, true, true}, is_far);
+        fix("y", {false, true, false}, [&](const Vec3& x) { return x.y() == 0.0 && !is_far(x); });
+        return world;
+    }
+    void move(const Vec3& by) {
+        constexpr double duration = 0.02, wait = 0.04;  // s
+        const Vec3 from = world_.tool_pose(tool_).position;
+        const double begin = world_.time();
+        while (world_.time() < begin + duration) {
+            const double dt = 0.8 * world_.stable_step();
+            const double part = std::min(1.0, (world_.time() + dt - begin) / duration);
+            world_.set_tool_pose(tool_, at(from + part * by));
+            world_.step(dt);
+        }
+        run_until(world_, begin + duration + wait);
+    }
+
+    World world_;
+    ToolId tool_{};
+};
+
+// Drawn aside with less than the largest friction, a ball sticks within the radius c and slips
+// round it: c/a = (1 - Q/(mu P))^(1/3). Source: Cattaneo 1938, Mindlin 1949. They take equal
+// bodies; here one is rigid, and the slab almost incompressible, which is near to it.
+TEST(ContactPressure, OfABallThatIsDrawnAsidePartlySlips) {
+    DrawnBall ball;
+    double last = 1.0;
+    for (int i = 0; i < 3; ++i) {
+        ball.draw(0.1 * DrawnBall::depth);
+        const double ratio = std::abs(ball.force().x()) / (DrawnBall::friction * ball.force().z());
+        ASSERT_LT(ratio, 1.0);
+        const auto areas = ball.areas();
+        const double radius_ratio = std::sqrt(areas.sticking / areas.touching);
+        const double answer = std::cbrt(1.0 - ratio);
+        record_result("C14 ball drawn aside, Q/(mu P) = " +
+                          short_text(0.01 * std::round(100.0 * ratio)) + ": c/a",
+                      radius_ratio, answer);
+        EXPECT_NEAR(radius_ratio, answer, 0.5 / DrawnBall::num_cells);  // half an element
+        EXPECT_LT(radius_ratio, last);
+        last = radius_ratio;
+    }
+}
+
 /// A quarter of a slab and a rigid tool that touches it at the origin.
 class Indented {
   public:
