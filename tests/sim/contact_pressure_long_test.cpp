@@ -37,11 +37,11 @@ void hold_graded(World& world, double extent) {
 /// A ball that is pressed into half of a slab, and then drawn aside in its plane of symmetry.
 class DrawnBall {
   public:
-    static constexpr double radius = 0.02, depth = 0.01 * radius, friction = 0.3;  // m
+    static constexpr double radius = 0.02, depth = 0.01 * radius;  // m
     static constexpr double contact_radius = 0.1 * radius;
     static constexpr int num_cells = 6;  // from the middle of the contact to its rim
 
-    DrawnBall() : world_(make_world()) {
+    explicit DrawnBall(double friction) : friction_(friction), world_(make_world()) {
         tool_ = world_.add_tool({"ball", cutting::Probe{cutting::Sphere{radius}, friction}});
         world_.place_tool(tool_, at({0, 0, radius}));
         move(-depth * Vec3::UnitZ());
@@ -71,7 +71,7 @@ class DrawnBall {
             if (normal <= 0.0) continue;
             sum.touching += area_at[n.index()];
             const Vec3 tangential = force + normal * outward;
-            if (tangential.norm() < nearly * friction * normal) sum.sticking += area_at[n.index()];
+            if (tangential.norm() < nearly * friction_ * normal) sum.sticking += area_at[n.index()];
         }
         return sum;
     }
@@ -112,6 +112,7 @@ class DrawnBall {
         run_until(world_, begin + duration + wait);
     }
 
+    double friction_;
     World world_;
     ToolId tool_{};
 };
@@ -120,11 +121,12 @@ class DrawnBall {
 // round it: c/a = (1 - Q/(mu P))^(1/3). Source: Cattaneo 1938, Mindlin 1949. They take equal
 // bodies; here one is rigid, and the slab almost incompressible, which is near to it.
 TEST(ContactPressure, OfABallThatIsDrawnAsidePartlySlips) {
-    DrawnBall ball;
+    constexpr double friction = 0.3;
+    DrawnBall ball(friction);
     double last = 1.0;
     for (int i = 0; i < 3; ++i) {
         ball.draw(0.1 * DrawnBall::depth);
-        const double ratio = std::abs(ball.force().x()) / (DrawnBall::friction * ball.force().z());
+        const double ratio = std::abs(ball.force().x()) / (friction * ball.force().z());
         ASSERT_LT(ratio, 1.0);
         const auto areas = ball.areas();
         const double radius_ratio = std::sqrt(areas.sticking / areas.touching);
@@ -136,6 +138,11 @@ TEST(ContactPressure, OfABallThatIsDrawnAsidePartlySlips) {
         EXPECT_LT(radius_ratio, last);
         last = radius_ratio;
     }
+    // Without friction it slips everywhere.
+    DrawnBall slippery(0.0);
+    slippery.draw(0.1 * DrawnBall::depth);
+    EXPECT_LT(std::abs(slippery.force().x()), 0.01 * slippery.force().z());
+    EXPECT_EQ(slippery.areas().sticking, 0.0);
 }
 
 /// A quarter of a slab and a rigid tool that touches it at the origin.
