@@ -38,30 +38,13 @@ bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,
 
 }  // namespace
 
-namespace {
-
-/// Young's modulus at rest, Pa.
-struct YoungAtRest {
-    double operator()(const physics::HyperElasticLinks& links) const {
-        const double mu = physics::rest_mu(links.law), lambda = physics::rest_lambda(links.law);
-        return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-    }
-    double operator()(const physics::MassSprings& springs) const { return springs.young; }
-    /// For Poisson's ratio 1/4, which the springs have without the volume term.
-    double operator()(const physics::HybridSprings& springs) const {
-        return 2.5 * springs.shear_modulus;
-    }
-};
-
-}  // namespace
-
 std::string fault_of_toughness(const cutting::Blade& blade, const physics::MaterialTable& materials,
                                double size) {
     if (blade.cutting_force == cutting::CuttingForce::report) return "";
     constexpr double largest_dent = 1.5;  // of an element
     double young = std::numeric_limits<double>::infinity();
     for (const physics::Material& material : materials.materials)
-        young = std::min(young, std::visit(YoungAtRest{}, material.method));
+        young = std::min(young, physics::young_at_rest(material));
     const double largest = largest_dent * young * size;
     if (blade.toughness <= largest) return "";
     std::ostringstream text;

@@ -111,7 +111,21 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
             fracture_energy_ += blade->reported().fracture;
         }
     }
-    return !solver_.is_empty();
+    if (!solver_.is_empty()) return true;
+    // Nothing touches: the next touch begins without an impulse.
+    take_impulses(dt);
+    return false;
+}
+
+void Contact::take_impulses(double dt) {
+    tissue_.take_impulses(solver_);
+    for (auto& [number, tool] : tools_) {
+        const ToolImpulse done = std::visit(
+            [&](auto& contact) { return contact.take_impulses(solver_, dt); }, tool.contact);
+        tool.impulse += done;
+        tool_work_ += done.work;
+        fracture_ += done.fracture;
+    }
 }
 
 void Contact::project(physics::Model& model, double /*time*/, double dt) {
@@ -127,14 +141,7 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
                 inverse_masses_[n][c] = model.response_to_impulses() / masses[n];
     }
     solver_.solve(model.velocities(), inverse_masses_, dt, model.rest_stable_step());
-    tissue_.take_impulses(solver_);
-    for (auto& [number, tool] : tools_) {
-        const ToolImpulse done = std::visit(
-            [&](auto& contact) { return contact.take_impulses(solver_, dt); }, tool.contact);
-        tool.impulse += done;
-        tool_work_ += done.work;
-        fracture_ += done.fracture;
-    }
+    take_impulses(dt);
     impulses_.assign(masses.size(), Vec3::Zero());
     for (std::size_t i = 0; i < solver_.size(); ++i) {
         if (solver_.impulse(i).isZero(0.0)) continue;

@@ -96,6 +96,7 @@ class Contact final : public physics::VelocityProjection {
         ToolImpulse impulse = {};
     };
     Tool& tool_of(std::size_t tool, const cutting::ToolShape& shape);
+    void take_impulses(double dt);
     SurfaceContact tissue_;
     std::map<std::size_t, Tool> tools_;
     ContactSolver solver_{tissue_.size()};

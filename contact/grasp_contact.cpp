@@ -96,9 +96,11 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
         if (const auto middle = box ? middle_within(*box, corners) : std::nullopt)
             touches.push_back({closest_weights(corners, *middle), *middle, Vec3::Zero()});
         for (const RigidTouch& touch : touches) {
-            // A point on an edge belongs to several triangles.
+            // A point on an edge belongs to several triangles. The two sides of a closed cut have
+            // points at the same place, and no common nodes.
             const bool is_known = std::ranges::any_of(held_, [&](const Held& held) {
-                return (held.place - touch.point).norm() < 1e-9 * size_;
+                return (held.place - touch.point).norm() < 1e-9 * size_ &&
+                       std::ranges::find_first_of(held.nodes, triangle) != held.nodes.end();
             });
             if (!is_known) held_.push_back({triangle, touch.weights, touch.point});
         }

@@ -34,7 +34,8 @@ class GraspContact {
         after_ = after;
     }
     /// Takes hold of the nodes of a surface that are in the jaws; without any, of the points of its
-    /// triangles that are deepest in them. Cost: O(n) in the triangles.
+    /// triangles that are deepest in them, or in the middle of what is in a box. Cost: O(n) in the
+    /// triangles.
     void close(const physics::Model& model, std::span<const Triangle> surface, const Pose& pose);
     void open() { held_.clear(); }
     std::size_t num_held() const { return held_.size(); }

@@ -66,14 +66,11 @@ void RigidContact::find_triangles(std::span<const Vec3> positions, const TissueS
 /// True if a point or an edge of the tool is behind a triangle, but not in the tissue: that ends
 /// before.
 bool RigidContact::is_beyond_tissue(const RigidTouch& touch, std::uint32_t t,
-                                    const std::array<Vec3, 3>& corners, const physics::Model& model,
+                                    const physics::Model& model,
                                     const TissueSurface& surface) const {
     if (touch.tool_feature < 0 || touch.gap >= -deep_overlap * size_) return false;
-    Vec3 of_tissue = Vec3::Zero();
-    for (std::size_t k = 0; k < 3; ++k)
-        of_tissue += touch.weights[static_cast<int>(k)] * corners[k];
     return !is_way_inside(model.mesh(), model.mesh_positions(), surface.faces[t],
-                          before_.to_world(of_tissue), before_.to_world(touch.point));
+                          surface.triangles[t], touch.weights, before_.to_world(touch.point));
 }
 
 void RigidContact::add_points(const physics::Model& model, const TissueSurface& surface, double dt,
@@ -98,7 +95,7 @@ void RigidContact::add_points(const physics::Model& model, const TissueSurface& 
         else
             append_touches(probe_.shape, corners, probe_reach * size_, found_);
         for (const RigidTouch& touch : found_) {
-            if (is_beyond_tissue(touch, t, corners, model, surface)) continue;
+            if (is_beyond_tissue(touch, t, model, surface)) continue;
             const auto [it, is_new] = touches.try_emplace(feature_of(triangle, touch), touch, t);
             if (!is_new && touch.gap < it->second.first.gap) it->second = {touch, t};
         }

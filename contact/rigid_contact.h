@@ -73,8 +73,7 @@ class RigidContact {
     static Feature feature_of(const Triangle& triangle, const RigidTouch& touch);
     Vec3 last_impulse_at(const Feature& feature) const;
     double largest_move() const;
-    bool is_beyond_tissue(const RigidTouch& touch, std::uint32_t t,
-                          const std::array<Vec3, 3>& corners, const physics::Model& model,
+    bool is_beyond_tissue(const RigidTouch& touch, std::uint32_t t, const physics::Model& model,
                           const TissueSurface& surface) const;
     void find_triangles(std::span<const Vec3> positions, const TissueSurface& surface);
 

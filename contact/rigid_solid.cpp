@@ -31,6 +31,7 @@ RigidSolid::RigidSolid(const cutting::Solid& solid) : points_(solid.surface.poin
         triangles_.push_back({NodeId(static_cast<std::size_t>(a)),
                               NodeId(static_cast<std::size_t>(b)),
                               NodeId(static_cast<std::size_t>(c))});
+    for (const Vec3& x : points_) extent_.extend(x);
     tree_.set_triangles(triangles_, points_);
     tree_.fit(points_);
     point_normals_.assign(points_.size(), Vec3::Zero());
@@ -52,7 +53,7 @@ RigidSolid::RigidSolid(const cutting::Solid& solid) : points_(solid.surface.poin
             if (is_new) continue;
             // The third corner is below the plane of the other triangle.
             constexpr double least_sine = 1e-3;
-            if (it->second.dot(to_c) < -least_sine) {
+            if (it->second.dot(to_c) < -least_sine * to_b.cross(to_c).norm()) {
                 edges_of_[t].push_back(edges_.size());
                 edges_.push_back({a, b, {it->second, tree_.normal(t)}});
             }
@@ -126,7 +127,12 @@ void RigidSolid::append_corner(const Corners& corners, int k, const Vec3& outwar
                                std::vector<RigidTouch>& touches) const {
     const Vec3& x = corners[static_cast<std::size_t>(k)];
     Nearest nearest;
-    if (!find_nearest(x, farthest, nearest)) return;
+    if (!find_nearest(x, farthest, nearest)) {
+        // Deep inside it counts as well.
+        if (!extent_.contains(x) || !find_nearest(x, extent_.diagonal().norm(), nearest) ||
+            (x - nearest.point).dot(nearest.normal) > 0.0)
+            return;
+    }
     const bool is_outside = (x - nearest.point).dot(nearest.normal) >= 0.0;
     if (!is_outside) {
         constexpr double edge_reach = 0.1;  // of the longest edge of the triangle

@@ -48,6 +48,7 @@ class RigidSolid {
                      std::vector<RigidTouch>& touches) const;
 
     std::vector<Vec3> points_;
+    Box extent_;
     std::vector<Triangle> triangles_;  // numbers of points as node ids
     SurfaceTree tree_;
     std::vector<Vec3> point_normals_;                // by point

@@ -55,6 +55,10 @@ void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solv
         NearNode& near = near_[i];
         near.room -= moved;
         if (near.touched >= 0 || near.room < 0.0) find_touched(i, model);
+        if (near.touched < 0) continue;
+        const double gap = touches_[i].gap;
+        near.slack = gap > 0.0 ? 0.0 : std::max(gap, near.slack);
+        max_penetration_ = std::max(max_penetration_, -gap);
     }
     first_point_ = solver.size();
     nodes_of_points_.clear();
@@ -313,19 +317,17 @@ void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     near.touched = is_over(n, nearest, at, rim) ? static_cast<std::int32_t>(nearest) : -1;
     near.room = std::sqrt(least) - node_reach * size_;
     if (near.touched < 0 || near.touched == before) return;
-    if (at.gap < -deep_start * length_at(n, nearest) && at.weights.minCoeff() > 0.0 &&
-        !is_way_inside(model.mesh(), positions, faces_[nearest],
-                       positions[n.index()] - at.gap * at.normal, positions[n.index()]))
+    if (at.gap < -deep_start * length_at(n, nearest) &&
+        !is_way_inside(model.mesh(), positions, faces_[nearest], triangles_[nearest], at.weights,
+                       positions[n.index()]))
         near.touched = -1;
     else if (before < 0)
         near.slack = std::min(0.0, at.gap);
 }
 
 void SurfaceContact::add_point(std::size_t i, const physics::Model& model, ContactSolver& solver) {
-    NearNode& near = near_[i];
+    const NearNode& near = near_[i];
     const Touch& at = touches_[i];
-    max_penetration_ = std::max(max_penetration_, -at.gap);
-    near.slack = at.gap > 0.0 ? 0.0 : std::max(at.gap, near.slack);
     ContactPoint point;
     point.normal = at.normal;
     point.gap = at.gap - near.slack;

@@ -12,6 +12,9 @@ namespace {
 
 /// A thread tears where its tension is this share of the largest one.
 constexpr double tears_at = 0.999;
+/// A thread between two points is drawn to no less than this part of the size of an element. Where
+/// they meet, its direction is not known: it would turn from step to step, and do work each time.
+constexpr double shortest = 0.1;
 
 double length_of(std::span<const Vec3> way) {
     double sum = 0.0;
@@ -72,8 +75,10 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     is_in_solver_ = true;
     thread_ = solver.num_threads();
     direction_ = -gradients.front();
-    solver.begin_thread({.stretch = length - length_before_,
-                         .rest_rate = (length_ - length_before_) / dt,
+    const double least = shortest * size_ * static_cast<double>(points.size() - 1);
+    const double before = std::max(length_before_, least), now = std::max(length_, least);
+    solver.begin_thread({.stretch = length - before,
+                         .rest_rate = (now - before) / dt,
                          .stiffness = suture_.stiffness,
                          .largest_force = suture_.max_force,
                          .impulse = impulse_});

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "incise/base/types.h"
@@ -9,12 +10,14 @@
 
 namespace incise::contact {
 
-/// True if the straight way from a point of a face to a point behind it stays within the body.
-/// Faces with four corners count as two triangles. Cost: O(1) in the elements along the way.
-/// @param face       on the boundary
-/// @param from       a point of the face, m
+/// True if the straight way from a triangle of the surface to a point behind it stays within the
+/// body. Faces with four corners count as two triangles. Cost: O(1) in the elements along the way.
 /// @param positions  present ones, by node id, m
+/// @param face       of the triangle, on the boundary
+/// @param triangle   its nodes
+/// @param weights    of the corners at the point where the way begins. It is moved a little towards
+///                   the middle: along an edge of the mesh, rounding would decide.
 bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, FaceId face,
-                   const Vec3& from, const Vec3& to);
+                   const std::array<NodeId, 3>& triangle, const Vec3& weights, const Vec3& to);
 
 }  // namespace incise::contact

@@ -92,7 +92,7 @@ void Simulation::step() {
     }
     last_step_ = step.to - step.from;
     report_edits();
-    warn_of_torn_sutures();
+    warn_of_lost_holds();
     note_overlap();
     for (Observer* observer : observers_) observer->on_step(*this);
     if (is_finished()) {
@@ -129,10 +129,12 @@ void Simulation::move_jaws(sim::ToolId tool, double time) {
     const bool is_to_be_closed = time >= *close && !(open && time >= *open);
     if (is_to_be_closed == world_.is_grasper_closed(tool)) return;
     if (!is_to_be_closed) return world_.open_grasper(tool);
-    if (world_.close_grasper(tool) == 0)
+    if (world_.close_grasper(tool) == 0) {
+        lost_.push_back(tool.index);
         warnings_.push_back("grasper '" + world_.tool(tool).name +
                             "' closes on nothing at t = " + io::format_number(time) +
                             " s; check where its path and the tissue are then");
+    }
 }
 
 /// Ties a suture at its time, and draws its thread.
@@ -176,13 +178,21 @@ void Simulation::warn_of_overlaps() {
     warnings_.push_back(text.str());
 }
 
-void Simulation::warn_of_torn_sutures() {
+void Simulation::warn_of_lost_holds() {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
+        if (world_.is_grasper_closed({i}) && world_.num_held({i}) == 0 &&
+            std::ranges::find(lost_, i) == lost_.end()) {
+            lost_.push_back(i);
+            warnings_.push_back("grasper '" + world_.tool({i}).name +
+                                "' holds nothing from t = " + io::format_number(time()) +
+                                " s on: all tissue has slipped out of its jaws, or was removed");
+            continue;
+        }
         const bool is_suture = std::holds_alternative<cutting::Suture>(world_.tool({i}).shape);
         if (!is_suture || !world_.is_tool_present({i}) || world_.is_suture_tied({i}) ||
-            std::ranges::find(torn_, i) != torn_.end())
+            std::ranges::find(lost_, i) != lost_.end())
             continue;
-        torn_.push_back(i);
+        lost_.push_back(i);
         warnings_.push_back("suture '" + world_.tool({i}).name +
                             "' holds nothing from t = " + io::format_number(time()) +
                             " s on: its thread has torn at max_force, or its tissue was removed");
@@ -200,13 +210,13 @@ void Simulation::report_edits() {
 void Simulation::save(ArchiveWriter& ar) const {
     const std::vector<std::string> added(
         warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
-    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, torn_, warned_step_, added);
+    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, lost_, warned_step_, added);
 }
 
 void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
     std::vector<std::string> added;
-    ar(edits_, last_step_, num_frames_, overlap_, torn_, warned_step_, added);
+    ar(edits_, last_step_, num_frames_, overlap_, lost_, warned_step_, added);
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");

@@ -119,7 +119,7 @@ class Simulation {
     };
     void move_jaws(sim::ToolId tool, double time);
     void draw_suture(sim::ToolId tool, Interval step);
-    void warn_of_torn_sutures();
+    void warn_of_lost_holds();
     void note_overlap();
     void warn_of_overlaps();
 
@@ -130,7 +130,7 @@ class Simulation {
         static void archive(auto& ar, auto& self) { ar(self.depth, self.time); }
     };
     Overlap overlap_;
-    std::vector<std::size_t> torn_;  // sutures that a warning has named
+    std::vector<std::size_t> lost_;  // sutures and graspers that a warning has named
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;

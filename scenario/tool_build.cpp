@@ -118,8 +118,10 @@ CutMode usual_mode(const topology::Mesh& mesh) {
 
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
     auto* blade = std::get_if<BladeSpec>(&spec.kind);
-    if (blade && !blade->mode) blade->mode = usual_mode(mesh);
-    if (blade && blade->toughness > 0.0 && blade->mode == CutMode::separate)
+    const bool is_usual = blade && !blade->mode;
+    if (is_usual) blade->mode = usual_mode(mesh);
+    // A mode that was chosen has been judged before.
+    if (is_usual && blade->toughness > 0.0 && blade->mode == CutMode::separate)
         throw InputError("tool '" + spec.name +
                          "' has a toughness, and the mesh has elements that are no tetrahedra: "
                          "where it opens faces, its force is not known; leave toughness out");

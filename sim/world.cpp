@@ -165,6 +165,9 @@ void World::open_grasper(ToolId id) {
 }
 
 bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed; }
+std::size_t World::num_held(ToolId id) const {
+    return is_grasper_closed(id) && parts_->contact ? parts_->contact->num_held(id.index) : 0;
+}
 const cutting::Suture& World::Parts::suture_of(ToolId id) {
     const Tool& tool = tool_of(id);
     const auto* suture = std::get_if<cutting::Suture>(&tool.def.shape);

@@ -216,6 +216,8 @@ class World {
     void open_grasper(ToolId tool);
     /// True from close_grasper() to open_grasper(), also if all tissue has slipped out of the jaws.
     bool is_grasper_closed(ToolId tool) const;
+    /// Returns how many points a grasper holds: 0 if it is open, or if all have slipped out.
+    std::size_t num_held(ToolId tool) const;
     /// Passes the thread of a suture through its points, at the present positions of the tissue
     /// there. The thread is then as long as its way. Returns through how many points it passes:
     /// points without tissue in reach are left out. Throws InputError if the tool is no suture.

@@ -62,4 +62,15 @@ struct Material {
     }
 };
 
+/// Returns Young's modulus at rest, Pa. With viscosity it is the instantaneous one, and with fibres
+/// that across them. Springs count with Poisson's ratio 1/4, which they have alone.
+inline double young_at_rest(const Material& material) {
+    if (const auto* links = std::get_if<HyperElasticLinks>(&material.method)) {
+        const double mu = rest_mu(links->law), lambda = rest_lambda(links->law);
+        return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+    }
+    if (const auto* springs = std::get_if<MassSprings>(&material.method)) return springs->young;
+    return 2.5 * std::get<HybridSprings>(material.method).shear_modulus;
+}
+
 }  // namespace incise::physics

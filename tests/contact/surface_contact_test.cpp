@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "incise/contact/contact.h"
+#include "incise/topology/box_mesh.h"
+#include "incise/topology/mesh_metrics.h"
 #include "support/exact_plane.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
@@ -111,6 +113,60 @@ TEST(SurfaceContact, IsWhatStopsTheHalves) {
         if (halves.mesh.rest_position(n).z() == 1.0)
             lowest = std::min(lowest, halves.model.mesh_positions()[n.index()].z() - 1.0);
     EXPECT_LT(lowest, -0.1);
+}
+
+// Two thin plates, one just above the other, in the grid of one another or beside it. The upper one
+// falls upwards. What is behind a plate is not in it.
+TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
+    constexpr double edge = 0.01, thick = 0.0005, apart = 1e-5;  // m
+    for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(0.0013, 0.0013, 0), Vec3(0.0013, 0.0027, 0)}) {
+        SCOPED_TRACE(shift.transpose());
+        const auto plate = [&](const Vec3& origin) {
+            return topology::box_mesh(topology::CellKind::tetrahedron, origin,
+                                      Vec3(edge, edge, thick), {4, 4, 1});
+        };
+        topology::MeshData data = plate(Vec3::Zero());
+        const topology::MeshData upper = plate(shift + Vec3(0, 0, thick + apart));
+        const auto first = static_cast<std::int64_t>(data.points.size());
+        data.points.insert(data.points.end(), upper.points.begin(), upper.points.end());
+        for (std::size_t c = 0; c < upper.num_cells(); ++c) {
+            std::vector<std::int64_t> corners(upper.cell(c).begin(), upper.cell(c).end());
+            for (std::int64_t& corner : corners) corner += first;
+            data.add_cell(upper.kinds[c], corners, upper.regions[c]);
+        }
+        const Mesh mesh = Mesh::build(data).mesh;
+        const physics::MaterialTable table{
+            {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1500.0, 6000.0}}}},
+            {{0, 0}},
+            {}};
+        std::vector<NodeId> lower_nodes, upper_nodes;
+        for (const NodeId n : mesh.nodes())
+            (mesh.rest_position(n).z() < thick + 0.5 * apart ? lower_nodes : upper_nodes)
+                .push_back(n);
+        physics::BoundaryConditions held;
+        held.gravity = Vec3(0, 0, 1);
+        held.constraints.push_back({.name = "lower", .nodes = physics::NodeSet(lower_nodes)});
+        Model model(mesh, table, std::move(held));
+        const topology::BoundarySurface surface(mesh);
+        Contact contact({}, topology::mean_element_length(mesh));
+        contact.follow(model, surface);
+        physics::SemiImplicitEuler integrator;
+        integrator.add_projection(contact);
+        double time = 0.0, deepest = 0.0;
+        model.compute_forces(time);
+        while (time < 0.05) {
+            const double dt = 0.5 * model.rest_stable_step();
+            integrator.step(model, time, dt);
+            contact.book_work(model);
+            time += dt;
+            model.compute_forces(time);
+            deepest = std::max(deepest, contact.max_penetration());
+        }
+        EXPECT_LT(deepest, 0.02 * thick);
+        for (const NodeId n : upper_nodes)
+            EXPECT_NEAR(model.mesh_positions()[n.index()].z() - mesh.rest_position(n).z(),
+                        0.5 * time * time, 0.03 * 0.5 * time * time);
+    }
 }
 
 }  // namespace

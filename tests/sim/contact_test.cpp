@@ -303,6 +303,25 @@ TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
 }
 
 // Tissue slips out of jaws that are drawn away by more than they can hold.
+// Jaws that are smaller than a face, in the middle of one.
+TEST(Contact, OfAGrasperWithoutNodesHoldsAFace) {
+    for (const cutting::CarverShape& jaws :
+         {cutting::CarverShape(cutting::Cuboid{{0.004, 0.004, 0.004}}),
+          cutting::CarverShape(cutting::Sphere{0.002})}) {
+        World world = held_world();
+        const ToolId grasper = world.add_tool({"grasper", cutting::Grasper{jaws}});
+        const Vec3 place(size, 0.035, 0.04);  // on the side x = size
+        world.place_tool(grasper, at(place));
+        EXPECT_EQ(world.close_grasper(grasper), 1u);
+        EXPECT_EQ(world.num_held(grasper), 1u);
+        run_until(world, 0.05);
+        // It bears a part of the weight of the cube, which hangs in it.
+        EXPECT_LT(world.report().tools[0].force.z(), 0.0);
+        world.open_grasper(grasper);
+        EXPECT_EQ(world.num_held(grasper), 0u);
+    }
+}
+
 TEST(Contact, OfAGrasperSlipsAboveItsLargestForce) {
     auto [free, holding] = held_by_grasper();
     move_tool(free, holding, {0.05, 0.05, -0.02}, 0.4);
