@@ -68,10 +68,13 @@ void declare_run(CLI::App& app, Action& action) {
                      "How many threads compute (default: one a core); results are the same bits")
         ->type_name("N")
         ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
-    verb->add_flag("--resume", options->resume,
-                   "Go on with a run that was stopped, from its last checkpoint, to the same files "
-                   "as if it had not been; with the SCENARIO, --out, --set and --end-time that it "
-                   "began with");
+    auto* resume = verb->add_flag(
+        "--resume", options->resume,
+        "Go on with a run that was stopped, from its last checkpoint, to the same files as if it "
+        "had not been; with the SCENARIO, --out and --set that it began with. A later end makes a "
+        "finished run longer. Begin if nothing is there");
+    verb->add_flag("--force", options->force, "Replace another run that is in the folder")
+        ->excludes(resume);
     verb->add_flag("--dry-run", options->dry_run, "Do everything but simulate and write");
     verb->add_flag("--quiet", options->quiet, "No progress, only problems");
     verb->footer(

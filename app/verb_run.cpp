@@ -18,6 +18,7 @@
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
 #include "incise/physics/elements/workers.h"
+#include "incise/runner/kept_scenario.h"
 #include "incise/runner/run_writer.h"
 #include "incise/runner/simulation.h"
 #include "incise/scenario/body_problems.h"
@@ -144,6 +145,16 @@ auto with_refusal(const std::optional<OutputError>& refusal, Read read) {
     }
 }
 
+/// True if there is something to resume, or something that must not be replaced. A run of this
+/// scenario that was stopped before its first checkpoint is neither.
+bool is_to_be_resumed(const std::filesystem::path& folder, const scenario::Scenario& scenario) {
+    std::error_code none;
+    const bool has_checkpoints = std::filesystem::exists(folder / "checkpoints", none) &&
+                                 !std::filesystem::is_empty(folder / "checkpoints", none);
+    return has_checkpoints || std::filesystem::exists(folder / "summary.json", none) ||
+           runner::holds_another_run(folder, scenario);
+}
+
 /// Warns of tools that were present during the run and should have cut but did not, because this is
 /// rarely intended.
 void warn_of_idle_tools(const runner::Simulation& simulation) {
@@ -178,8 +189,9 @@ int print_expectations(const scenario::Scenario& scenario, const runner::Quantit
 }
 
 /// Runs the simulation from its present state to the end or to a signal. Returns the exit status.
-int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const RunOptions& options,
-             const StopSignals& signals) {
+/// @param is_new  nothing of the run has been written yet
+int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& writer,
+             const RunOptions& options, const StopSignals& signals) {
     const scenario::Scenario& scenario = simulation.scenario();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
@@ -206,7 +218,7 @@ int simulate(runner::Simulation& simulation, runner::RunWriter& writer, const Ru
         return text.str();
     };
     try {
-        if (!options.resume) simulation.start();
+        if (is_new) simulation.start();
         while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
     } catch (const PhysicsError& error) {
         throw PhysicsError(failure(error, simulation.num_steps() + 1));
@@ -250,7 +262,12 @@ int run(const RunOptions& options) {
         with_refusal(refusal, [&] { return load_scenario(options.scenario, overrides); });
 
     std::optional<StoppedRun> stopped;
-    if (options.resume) {
+    if (!options.resume && !options.force && !refusal &&
+        runner::holds_another_run(folder, scenario))
+        throw InputError(folder.string() +
+                         ": holds the results of another run; give this one another folder with "
+                         "--out, or replace the results with --force");
+    if (options.resume && is_to_be_resumed(folder, scenario)) {
         if (const auto quantities = runner::finished_quantities(folder, scenario)) {
             if (!options.dry_run)  // one is left if the run was killed at the very end
                 runner::remove_checkpoints_of_stops(folder);
@@ -265,6 +282,9 @@ int run(const RunOptions& options) {
     } else {
         require_inputs_elsewhere(scenario, folder);
     }
+    if (options.resume && !stopped && !options.quiet)
+        std::cerr << scenario.name << ": begins, as there is nothing to resume in "
+                  << folder.string() << '\n';
 
     const auto built = with_refusal(refusal, [&] { return build(scenario, options.scenario); });
     runner::Simulation& simulation = *built;
@@ -285,7 +305,7 @@ int run(const RunOptions& options) {
                                                            stopped->checkpoint.written())
                                        : runner::RunWriter(simulation, folder);
     try {
-        return simulate(simulation, writer, options, signals);
+        return simulate(simulation, !stopped, writer, options, signals);
     } catch (const OutputError& error) {
         if (!writer.has_checkpoint()) throw;
         throw OutputError(std::string(error.what()) +

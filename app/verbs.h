@@ -29,6 +29,7 @@ struct RunOptions {
     std::vector<std::string> overrides;  ///< KEY.PATH=VALUE; see scenario::read_scenario()
     int num_threads = 0;                 ///< 0: one for each core
     bool resume = false;
+    bool force = false;  ///< replace another run in the folder
     bool dry_run = false;
     bool quiet = false;
 };

@@ -76,6 +76,22 @@ void remove_checkpoints_if(const fs::path& folder, const Condition& condition) {
         if (condition(name)) io::remove_output_file(path);
 }
 
+/// True if a scenario differs from a former one only by a later end, and its steps up to then do
+/// not depend on that. Load steps of statics do.
+bool is_longer(const std::vector<std::pair<std::string, std::string>>& before,
+               const scenario::Scenario& now) {
+    const std::string end = "dynamics.end_time";
+    if (now.dynamics.mode == scenario::Mode::statics || before.size() != now.contents.size())
+        return false;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (before[i] == now.contents[i]) continue;
+        if (before[i].first != end || now.contents[i].first != end) return false;
+        const auto end_before = io::parse_number<double>(before[i].second);
+        if (!end_before || now.dynamics.end_time < *end_before) return false;
+    }
+    return true;
+}
+
 /// Returns "KEY was A and is B" for the first three values that differ.
 std::string differences(const std::vector<std::pair<std::string, std::string>>& before,
                         const std::vector<std::pair<std::string, std::string>>& now) {
@@ -191,11 +207,11 @@ Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& 
 }
 
 void Checkpoint::require_same(const scenario::Scenario& scenario) const {
-    if (contents_ == scenario.contents) return;
+    if (contents_ == scenario.contents || is_longer(contents_, scenario)) return;
     throw InputError(path_.string() + ": the run was of another scenario: " +
                      differences(contents_, scenario.contents) +
-                     "; resume with the scenario, --set and --end-time that it began with, or "
-                     "begin anew without --resume");
+                     "; resume with the scenario and --set that it began with, and an end that "
+                     "is not earlier, or begin anew without --resume");
 }
 
 void Checkpoint::restore(Simulation& simulation) const {

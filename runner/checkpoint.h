@@ -74,6 +74,7 @@ class Checkpoint {
                              std::vector<std::string>& warnings);
 
     /// Throws InputError if the scenario is not that of the run. The message lists the differences.
+    /// A dynamic run may have a later end: its steps up to the checkpoint are the same.
     void require_same(const scenario::Scenario& scenario) const;
     /// Restores the state of the checkpoint.
     /// Throws InputError if the scenario, the body at the start or the data are not those of the

@@ -11,6 +11,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
+#include "incise/runner/kept_scenario.h"
 
 namespace incise::runner {
 
@@ -98,6 +99,7 @@ io::OutputFolder prepared(io::OutputFolder folder, const Simulation& simulation,
     }
     // A summary belongs to a complete run. That of a former run must not outlive its frames.
     io::remove_output_file(folder.path() / "summary.json");
+    keep_scenario(folder.path(), simulation.scenario());
     return folder;
 }
 
@@ -215,6 +217,7 @@ void RunWriter::begin_checkpoint(const Simulation& simulation, CheckpointKind ki
     write_later([this, kind, moment, written] {
         history_.sync();
         edits_.sync();
+        series_.sync();
         Written all = written;
         all.frames.assign(series_.frames().begin(), series_.frames().end());
         moment->write(folder(), all, kind);
@@ -254,6 +257,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
         append_history(simulation, simulation.ledger().body_totals());
     history_.sync();
     edits_.sync();
+    series_.sync();
     Json summary;
     const scenario::Scenario& scenario = simulation.scenario();
     summary["status"] = outcome.status;

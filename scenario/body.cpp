@@ -14,6 +14,7 @@
 #include "incise/io/files/number_format.h"
 #include "incise/scenario/body_problems.h"
 #include "incise/scenario/elastic_constants.h"
+#include "incise/scenario/plausibility.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/single_precision.h"
 #include "incise/scenario/step_limit.h"
@@ -398,9 +399,16 @@ Parts build_parts(const Scenario& scenario) {
 /// depends on constraints and loads.
 void check_model(const Scenario& scenario, Parts& parts) {
     if (!parts.source || !parts.materials) return;
+    for (std::string& warning : implausible(scenario, parts.source->mesh, *parts.materials))
+        parts.warnings.push_back(std::move(warning));
     parts.problems.try_to("", [&] {
         const auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
         step_limit(scenario, model, model.rest_stable_step());
+        const DynamicsSpec& dynamics = scenario.dynamics;
+        const bool is_explicit = dynamics.mode == Mode::dynamic &&
+                                 dynamics.integrator == TimeIntegrator::semi_implicit_euler;
+        if (const auto warning = warning_of_costly_elements(model); warning && is_explicit)
+            parts.warnings.push_back(located(scenario.mesh.location, *warning));
     });
 }
 

@@ -241,6 +241,9 @@ struct Scenario {
     std::string hash;
     /// The values from which the hash is computed: path and text of each, in ascending order.
     std::vector<std::pair<std::string, std::string>> contents;
+    /// The scenario as TOML, with overrides. Names of files are absolute, so that it can be run
+    /// from any folder.
+    std::string text;
 };
 
 /// The names of fields and compressions in scenarios and frames, indexed by Field and

@@ -8,6 +8,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/vtk/series.h"
+#include "incise/scenario/document_text.h"
 #include "incise/scenario/quantities.h"
 #include "incise/scenario/scenario_sections.h"
 
@@ -383,6 +384,8 @@ ScenarioReport read_scenario(const std::filesystem::path& file,
         report.scenario = read_all(root, file);
         report.scenario.hash = content_hash(document);
         report.scenario.contents = contents_of(document);
+        make_files_absolute(document, file.parent_path());
+        report.scenario.text = toml_text(document);
     } catch (const DocumentError& failure) {
         diagnostics.error(failure.location, failure.text);
     } catch (const InputError& failure) {

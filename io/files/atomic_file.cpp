@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <new>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -192,7 +193,7 @@ void throw_output_error(const fs::path& path, int error_number) {
                       remedy(error_number));
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
+void write_file(const fs::path& path, std::string_view bytes, OnDisk on_disk) {
     const Target target = target_of(path);
     if (target.is_device) {
         // With O_NONBLOCK, opening a pipe without a reader fails instead of waiting.
@@ -204,10 +205,27 @@ void write_file(const fs::path& path, std::string_view bytes) {
     }
     const auto folder = folder_of(target.path);
     TemporaryFile temporary(folder, target.path.filename().string(), path);
+    const bool waits = on_disk == OnDisk::now;
     // Closed after the rename, since closing releases the lock.
-    if (!temporary.file().write(bytes) || !temporary.file().sync() ||
-        !temporary.rename_to(target.path) || !temporary.file().close() || !sync_folder(folder))
+    if (!temporary.file().write(bytes) || (waits && !temporary.file().sync()) ||
+        !temporary.rename_to(target.path) || !temporary.file().close() ||
+        (waits && !sync_folder(folder)))
         throw_output_error(path, errno);
+}
+
+void sync_files(std::span<const fs::path> paths) {
+    std::set<fs::path> folders;
+    for (const fs::path& path : paths) {
+        FileDescriptor file(path, O_RDONLY);
+        if (!file.is_open()) {
+            if (errno == ENOENT) continue;
+            throw_output_error(path, errno);
+        }
+        if (!file.sync() || !file.close()) throw_output_error(path, errno);
+        folders.insert(folder_of(follow_links(path)));
+    }
+    for (const fs::path& folder : folders)
+        if (!sync_folder(folder)) throw_output_error(folder, errno);
 }
 
 void require_writable(const fs::path& path) {

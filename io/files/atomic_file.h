@@ -3,12 +3,17 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace incise::io {
 
+/// When a file that is written is on the disk: at once, or after sync_files(). Until then a loss of
+/// power may damage it. A kill does not.
+enum class OnDisk { now, later };
+
 /// Replaces the contents of the file atomically. A reader finds the old contents or the new ones,
-/// also after a kill or a loss of power.
+/// also after a kill, and if it is on the disk also after a loss of power.
 ///
 /// The bytes go to a hidden file in the same folder, which is synchronised with the disk and then
 /// renamed. A symbolic link is followed and stays a link. A device or a pipe is written directly.
@@ -17,9 +22,14 @@ namespace incise::io {
 /// is then removed, and the file has its old contents. If only the last wait for the disk failed,
 /// the file has the new contents.
 ///
-/// Cost: two or three waits for the disk.
+/// Cost: two or three waits for the disk; none with OnDisk::later.
 /// @thread  SIGINT, SIGTERM and SIGHUP to this thread are blocked while the hidden file exists
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                OnDisk on_disk = OnDisk::now);
+
+/// Waits until files that write_file() has written are on the disk, with their names. Files that
+/// are gone are left out. Throws OutputError as write_file() does.
+void sync_files(std::span<const std::filesystem::path> paths);
 
 /// Checks in advance whether write_file() can write the file, for a file that is written after long
 /// work. Throws OutputError if the folder does not exist or is not writable, or if the path is a

@@ -121,9 +121,9 @@ Series::Series(fs::path folder, std::string name, Compression compression,
     // then leaves valid indexes.
     if (frames_.empty()) {
         remove_output_file(pvd_path());
-        remove_output_file(folder_ / (name_ + ".vtu.series"));
+        remove_output_file(series_path());
     } else {
-        write_indexes();
+        write_indexes(OnDisk::now);
     }
     remove_frames_from(frames_.size());
 }
@@ -133,13 +133,26 @@ void Series::add(const Frame& frame) {
     if (!std::isfinite(time) || (!frames_.empty() && !(time > frames_.back().time)))
         throw std::invalid_argument("the time of a frame must be finite and above the last one's");
     const std::string text = vtu_text(frame, compression_, &packed_);
-    write_file(folder_ / frame_name(name_, frames_.size()), text);
+    const fs::path path = folder_ / frame_name(name_, frames_.size());
+    write_file(path, text, OnDisk::later);
+    not_on_disk_.push_back(path);
     frames_.push_back({time, {}});
     frames_.back().file.append(text);
-    write_indexes();
+    write_indexes(OnDisk::later);
+    if (std::chrono::steady_clock::now() - last_sync_ > std::chrono::seconds(1)) sync();
+}
+
+// The frames first: indexes on the disk name only frames that are there.
+void Series::sync() {
+    last_sync_ = std::chrono::steady_clock::now();
+    if (not_on_disk_.empty()) return;
+    sync_files(not_on_disk_);
+    not_on_disk_.clear();
+    sync_files(std::array{pvd_path(), series_path()});
 }
 
 fs::path Series::pvd_path() const { return folder_ / (name_ + ".pvd"); }
+fs::path Series::series_path() const { return folder_ / (name_ + ".vtu.series"); }
 
 /// Removes the frames of this name (NAME_, digits, suffix) with the number `first` or a higher one.
 void Series::remove_frames_from(std::size_t first) {
@@ -163,7 +176,7 @@ void Series::remove_frames_from(std::size_t first) {
     for (const auto& path : stale) remove_output_file(path);
 }
 
-void Series::write_indexes() {
+void Series::write_indexes(OnDisk on_disk) {
     std::string pvd =
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
@@ -179,8 +192,8 @@ void Series::write_indexes() {
     }
     pvd += "  </Collection>\n</VTKFile>\n";
     series += "\n  ]\n}\n";
-    write_file(pvd_path(), pvd);
-    write_file(folder_ / (name_ + ".vtu.series"), series);
+    write_file(pvd_path(), pvd, on_disk);
+    write_file(series_path(), series, on_disk);
 }
 
 }  // namespace incise::io

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/io/files/atomic_file.h"
 #include "incise/io/files/written_bytes.h"
 #include "incise/io/vtk/frame.h"
 #include "incise/io/vtk/packed_blocks.h"
@@ -35,7 +37,8 @@ void require_frames(const std::filesystem::path& folder, const std::string& name
 /// FOLDER/NAME.pvd and FOLDER/NAME.vtu.series.
 ///
 /// Every file is written as write_file() does, a frame before the indexes. At any moment, also
-/// after a kill, the indexes name only frames that exist. Paths in the indexes are relative, so
+/// after a kill, the indexes name only frames that exist. Files are on the disk after sync(), which
+/// the series calls itself when a second has gone by. Paths in the indexes are relative, so
 /// that the folder can be moved. Every function throws OutputError if a file cannot be written or
 /// removed.
 class Series {
@@ -52,18 +55,24 @@ class Series {
     /// Cost: that of the frame, and of an index line for each frame so far.
     void add(const Frame& frame);
 
+    /// Waits until all files are on the disk.
+    void sync();
+
     std::span<const FrameWritten> frames() const { return frames_; }
     std::filesystem::path pvd_path() const;
 
   private:
     void remove_frames_from(std::size_t first);
-    void write_indexes();
+    void write_indexes(OnDisk on_disk);
+    std::filesystem::path series_path() const;
 
     std::filesystem::path folder_;
     std::string name_;
     Compression compression_;
     PackedBlocks packed_;  // of the last frame
     std::vector<FrameWritten> frames_;
+    std::vector<std::filesystem::path> not_on_disk_;  // frames
+    std::chrono::steady_clock::time_point last_sync_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace incise::io

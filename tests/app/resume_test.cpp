@@ -257,19 +257,38 @@ TEST_F(ResumedProcess, RefusesFoldersInThePlaceOfItsFiles) {
     refusal("scene.out/summary.json", "the summary of a run");
 }
 
-TEST_F(ResumedProcess, NeedsARunToResume) {
+TEST_F(ResumedProcess, BeginsWhereThereIsNothingToResume) {
     write("scene.toml", scene);
     auto outcome = run({"scene.toml", "--resume"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(
-        outcome.err,
-        "incise: scene.out: there is no run with checkpoints to resume; check --out, or begin "
-        "anew without --resume\n");
-    EXPECT_FALSE(fs::exists(folder_ / "scene.out"));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.err.starts_with("scene: begins, as there is nothing to resume in "))
+        << outcome.err;
+    const auto files = files_of(folder_ / "scene.out");
+    fs::remove_all(folder_ / "scene.out");
     fs::create_directories(folder_ / "scene.out/checkpoints");
-    outcome = run({"scene.toml", "--resume"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.err.find("there is no checkpoint of a run to resume"), std::string::npos);
+    outcome = run({"scene.toml", "--resume", "--quiet"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    expect_same(files_of(folder_ / "scene.out"), files);
+}
+
+// Also one whose end is between two frames.
+TEST_F(ResumedProcess, MakesAFinishedRunLonger) {
+    write("scene.toml", endless + "checkpoint_interval = 0.02\n");
+    ASSERT_EQ(run({"scene.toml", "--quiet", "--end-time", "0.2", "--out", "whole"}).status, 0);
+    const auto whole = files_of(folder_ / "whole");
+    for (const char* first_end : {"0.1", "0.0987"}) {
+        SCOPED_TRACE(first_end);
+        fs::remove_all(folder_ / "scene.out");
+        ASSERT_EQ(run({"scene.toml", "--quiet", "--end-time", first_end}).status, 0);
+        auto outcome = run({"scene.toml", "--quiet", "--end-time", "0.2", "--resume"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        expect_same(files_of(folder_ / "scene.out"), whole);
+        outcome = run({"scene.toml", "--quiet", "--end-time", "0.15", "--resume"});
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_NE(outcome.err.find("dynamics.end_time was 0.2 and is 0.15"), std::string::npos)
+            << outcome.err;
+    }
 }
 
 TEST_F(ResumedProcess, LeavesTheFolderOfAnotherRunAlone) {

@@ -84,14 +84,55 @@ TEST_F(Run, TakesValuesFromTheCommandLine) {
     EXPECT_EQ(run({"scene.toml", "--end-time", "0.02"}).status, 0);
     EXPECT_EQ(summary().at("time"), 0.02);
     const auto hash = summary().at("scenario_hash");
-    EXPECT_EQ(
-        run({"scene.toml", "--set", "dynamics.end_time=0.03", "--set", "material[0].density=2000"})
-            .status,
-        0);
+    EXPECT_EQ(run({"scene.toml", "--set", "dynamics.end_time=0.03", "--set",
+                   "material[0].density=2000", "--force"})
+                  .status,
+              0);
     EXPECT_EQ(summary().at("time"), 0.03);
     EXPECT_NEAR(summary().at("mass").get<double>() + summary().at("mass_removed").get<double>(),
                 2.0, 1e-12);
     EXPECT_NE(summary().at("scenario_hash"), hash);
+}
+
+TEST_F(Run, LeavesTheResultsOfAnotherRun) {
+    write("scene.toml", scene);
+    ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
+    const auto hash = summary().at("scenario_hash");
+    const std::vector<std::string> other{"scene.toml", "--quiet", "--set", "material[0].young=900"};
+    const auto outcome = run(other);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err,
+              "incise: scene.out: holds the results of another run; give this one another folder "
+              "with --out, or replace the results with --force\n");
+    EXPECT_EQ(summary().at("scenario_hash"), hash);
+    EXPECT_EQ(run({"scene.toml", "--quiet"}).status, 0);  // the same again
+    auto forced = other;
+    forced.push_back("--force");
+    EXPECT_EQ(run(forced).status, 0);
+    EXPECT_NE(summary().at("scenario_hash"), hash);
+}
+
+TEST_F(Run, KeepsTheScenarioThatItHasRun) {
+    fs::create_directories(folder_ / "given");
+    write("given/scene.toml", scene);
+    ASSERT_EQ(run({"given/scene.toml", "--quiet", "--out", "first"}).status, 0);
+    fs::copy_file(folder_ / "first/frames/scene_000000.vtu", folder_ / "given/mesh.vtu");
+    write("given/scene.toml",
+          "# Lost.\ntitle = \"a \\\"title\\\"\"\n[mesh]\nfile = \"mesh.vtu\"\n" +
+              scene.substr(scene.find("[[material]]")));
+    ASSERT_EQ(run({"given/scene.toml", "--quiet", "--out", "second", "--set",
+                   "material[0].young=1.5e3", "--end-time", "0.03"})
+                  .status,
+              0);
+    ASSERT_EQ(run({"second/scene.toml", "--quiet", "--out", "third"}).status, 0);
+    for (const char* file : {"history.csv", "edits.jsonl", "frames/scene_000002.vtu"})
+        EXPECT_EQ(support::read_text(folder_ / "third" / file),
+                  support::read_text(folder_ / "second" / file))
+            << file;
+    // Beside the results, the scenario stays as its author wrote it.
+    const std::string text = support::read_text(folder_ / "given/scene.toml");
+    EXPECT_EQ(run({"given/scene.toml", "--quiet", "--out", "given"}).status, 0);
+    EXPECT_EQ(support::read_text(folder_ / "given/scene.toml"), text);
 }
 
 TEST_F(Run, ReportsMissedExpectationsAndWritesAllTheSame) {
@@ -144,7 +185,7 @@ TEST_F(Run, RefusesAMeshThatItWouldReplace) {
     ASSERT_EQ(run({"scene.toml", "--quiet"}).status, 0);
     write("scene.toml", "[mesh]\nfile = \"scene.out/frames/scene_000001.vtu\"\n" +
                             scene.substr(scene.find("[[material]]")));
-    const auto outcome = run({"scene.toml", "--quiet"});
+    const auto outcome = run({"scene.toml", "--quiet", "--force"});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.err.find("scene_000001.vtu: lies among the frames in scene.out"),
               std::string::npos)
@@ -328,7 +369,7 @@ TEST_F(Run, LeavesWholeFilesWhenKilledAtAnyMoment) {
     }
     EXPECT_GT(most_frames, 2u);
     // And the next one that is let to its end finds nothing in its way.
-    EXPECT_EQ(run({"scene.toml", "--quiet"}).status, 0);
+    EXPECT_EQ(run({"scene.toml", "--quiet", "--force"}).status, 0);
     EXPECT_EQ(expect_readable(folder_ / "scene.out"), 51u);
     EXPECT_EQ(support::count_entries(folder_ / "scene.out/frames"), 51u);
 }

@@ -200,7 +200,7 @@ TEST_F(RunFiles, IndexesNameTheFramesAndTheirTimes) {
         EXPECT_GT(io::read_mesh(folder_ / ("out/" + files[i])).mesh.num_cells(), 0u);
     }
     EXPECT_EQ(support::count_entries(folder_ / "out/frames"), 11u);
-    EXPECT_EQ(support::count_entries(folder_ / "out"), 7u);
+    EXPECT_EQ(support::count_entries(folder_ / "out"), 8u);
 }
 
 TEST_F(RunFiles, FramesDeclareTheArraysOfTheContract) {

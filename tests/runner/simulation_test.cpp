@@ -311,7 +311,7 @@ TEST(Simulation, RepeatedEndsInTheSameBits) {
             << name;
         ++num_files;
     }
-    EXPECT_EQ(num_files, 21u + 4u + 2u);  // frames; two indexes, history, edits; checkpoints
+    EXPECT_EQ(num_files, 21u + 5u + 2u);  // frames; scenario, indexes, history, edits; checkpoints
 }
 
 /// Where surfaces meet, small differences grow, and the balance of energy is less exact.

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/plausibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "incise/scenario/body_problems.h"
+
+namespace incise::scenario {
+
+namespace {
+
+// A body is a part of a human or of a large animal, or a sample of some cells.
+constexpr double longest_body = 3.0, shortest_body = 1e-4;       // m
+constexpr double lowest_density = 100.0, highest_density = 5e3;  // kg/m3: lung, enamel
+constexpr double lowest_young = 50.0, highest_young = 1e11;      // Pa: mucus, enamel
+/// Own weight over stiffness: above it, the bottom of a column is squeezed by a quarter.
+constexpr double largest_own_strain = 0.25;
+
+class Findings {
+  public:
+    template <class... Parts>
+    void add(const std::string& location, const Parts&... parts) {
+        std::ostringstream text;
+        text.precision(4);
+        (text << ... << parts);
+        warnings_.push_back(located(location, text.str()));
+    }
+    std::vector<std::string> take() { return std::move(warnings_); }
+
+  private:
+    std::vector<std::string> warnings_;
+};
+
+void look_at_size(const Scenario& scenario, const Box& body, Findings& findings) {
+    const double longest = body.sizes().maxCoeff();
+    if (longest > longest_body)
+        findings.add(scenario.mesh.location, "the body is ", longest,
+                     " m long; if its coordinates are in millimetres, write scale = 0.001 in "
+                     "[mesh]");
+    else if (longest < shortest_body)
+        findings.add(scenario.mesh.location, "the body is only ", longest,
+                     " m long; coordinates are in metres: check 'scale' in [mesh]");
+}
+
+void look_at_materials(const Scenario& scenario, const physics::MaterialTable& materials,
+                       Findings& findings) {
+    for (std::size_t i = 0; i < materials.materials.size(); ++i) {
+        const double density = materials.materials[i].density;
+        const double young = physics::young_at_rest(materials.materials[i]);
+        const std::string& location = scenario.materials[i].location;
+        if (density < lowest_density || density > highest_density)
+            findings.add(location, "material ", i + 1, " has a density of ", density,
+                         " kg/m3; soft tissue has some 1000 (1 g/cm3 is 1000 kg/m3)");
+        if (young < lowest_young || young > highest_young)
+            findings.add(location, "material ", i + 1, " has a Young's modulus of ", young,
+                         " Pa at rest; soft tissue has 100 to 1e6 (moduli are in pascals: 5 kPa "
+                         "is 5000)");
+    }
+}
+
+/// True if something may bear the body: a constraint, an obstacle, a probe, a grasper or a load.
+bool is_borne(const Scenario& scenario) {
+    return !scenario.constraints.empty() || !scenario.loads.empty() ||
+           std::ranges::any_of(scenario.tools, [](const ToolSpec& tool) { return !cuts(tool); });
+}
+
+void look_at_weight(const Scenario& scenario, const Box& body,
+                    const physics::MaterialTable& materials, Findings& findings) {
+    const Vec3& gravity = scenario.dynamics.gravity;
+    if (gravity.isZero(0.0)) return;
+    if (!is_borne(scenario))
+        findings.add(scenario.mesh.location,
+                     "nothing holds the body against gravity, so it falls: add a [[constraint]], "
+                     "or an [[obstacle]] below it");
+    const double height = body.sizes().dot(gravity.cwiseAbs()) / gravity.norm();
+    double softest = std::numeric_limits<double>::infinity(), heaviest = 0.0;
+    for (const physics::Material& material : materials.materials) {
+        softest = std::min(softest, physics::young_at_rest(material));
+        heaviest = std::max(heaviest, material.density);
+    }
+    const double pressure = heaviest * gravity.norm() * height;
+    if (scenario.dynamics.mode == Mode::dynamic && pressure > largest_own_strain * softest)
+        findings.add(scenario.materials.front().location,
+                     "the weight of the body makes a pressure of "
+                     "up to ",
+                     pressure, " Pa, and its softest material has a Young's modulus of ", softest,
+                     " Pa: where it hangs or rests on little, its own weight may crush it. "
+                     "Give more support, less gravity, or a material that stiffens");
+}
+
+}  // namespace
+
+std::vector<std::string> implausible(const Scenario& scenario, const topology::Mesh& mesh,
+                                     const physics::MaterialTable& materials) {
+    Findings findings;
+    Box body;
+    for (const NodeId n : mesh.nodes()) body.extend(mesh.rest_position(n));
+    if (body.isEmpty()) return {};
+    look_at_size(scenario, body, findings);
+    look_at_materials(scenario, materials, findings);
+    look_at_weight(scenario, body, materials, findings);
+    return findings.take();
+}
+
+std::optional<std::string> warning_of_costly_elements(const physics::Model& model) {
+    constexpr std::size_t most_named = 5;
+    constexpr double costly = 0.5;  // of the step without them
+    std::vector<std::pair<double, ElementId>> steps;
+    for (const ElementId e : model.fragments().elements())
+        steps.emplace_back(model.element_stable_step(e), e);
+    std::ranges::sort(steps);
+    for (std::size_t k = 1; k <= most_named && k < steps.size(); ++k) {
+        const double ratio = steps.front().first / steps[k].first;
+        if (ratio > costly) continue;
+        std::ostringstream text;
+        text.precision(3);
+        text << (k == 1 ? "element " : "elements ");
+        for (std::size_t i = 0; i < k; ++i)
+            text << (i == 0 ? "" : ", ")
+                 << model.mesh().label(model.fragments().cells_of(steps[i].second).front());
+        text << (k == 1 ? " is" : " are") << " so thin or stiff that steps are "
+             << model.rest_stable_step() << " s; without " << (k == 1 ? "it" : "them")
+             << " they would be about " << model.rest_stable_step() / ratio
+             << " s: mesh anew there";
+        return text.str();
+    }
+    return std::nullopt;
+}
+
+}  // namespace incise::scenario

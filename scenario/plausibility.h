@@ -1,0 +1,25 @@
+// What a scenario may say, but hardly means: units that were mistaken, a body that falls.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "incise/physics/body/model.h"
+#include "incise/scenario/scenario.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::scenario {
+
+/// Returns warnings of a size, a density or a stiffness that no tissue has, of a body that nothing
+/// holds against gravity, and of one that its own weight would crush. Each begins with its
+/// location. Cost: O(n) in the nodes.
+std::vector<std::string> implausible(const Scenario& scenario, const topology::Mesh& mesh,
+                                     const physics::MaterialTable& materials);
+
+/// Returns a warning if a few elements alone make explicit steps less than half as long as the
+/// others would. It names them. Cost: O(n log n) in the elements.
+std::optional<std::string> warning_of_costly_elements(const physics::Model& model);
+
+}  // namespace incise::scenario

@@ -1,0 +1,87 @@
+// Warnings of scenarios that can be run, and are hardly meant.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/plausibility.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario_file.h"
+
+namespace incise::scenario {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A block of 10 cm that rests on its bottom.
+const std::string block = R"([mesh]
+box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
+[[material]]
+density = 1000
+young = 5000
+poisson = 0.4
+[[constraint]]
+name = "bottom"
+where = { box = { min = [-99, -99, 0], max = [99, 99, 0] } }
+fix = "xyz"
+[dynamics]
+end_time = 1
+gravity = [0, 0, -9.81]
+)";
+
+std::vector<std::string> warnings_of(const std::string& text,
+                                     const std::vector<std::string>& overrides = {}) {
+    const ScenarioReport report = ScenarioFile(text).read(overrides);
+    EXPECT_THAT(report.errors, IsEmpty());
+    return check_body(report.scenario).warnings;
+}
+
+TEST(Plausibility, OfABlockOfTissueIsNotDoubted) { EXPECT_THAT(warnings_of(block), IsEmpty()); }
+
+TEST(Plausibility, NamesTheUnitThatMayBeMeant) {
+    EXPECT_THAT(warnings_of(block, {"mesh.box.size=[100, 100, 100]", "material[0].young=1e9"}),
+                ElementsAre(HasSubstr("scene.toml:2:7: the body is 100 m long; if its coordinates "
+                                      "are in millimetres, write scale = 0.001")));
+    EXPECT_THAT(warnings_of(block, {"mesh.box.size=[1e-5, 1e-5, 1e-5]"}),
+                ElementsAre(HasSubstr("the body is only 1e-05 m long")));
+    EXPECT_THAT(warnings_of(block, {"material[0].density=1.06"}),
+                ElementsAre(HasSubstr("material 1 has a density of 1.06 kg/m3")));
+    EXPECT_THAT(warnings_of(block, {"material[0].young=5", "dynamics.gravity=[0, 0, 0]"}),
+                ElementsAre(HasSubstr("a Young's modulus of 5 Pa at rest")));
+}
+
+TEST(Plausibility, AsksWhatHoldsTheBodyAndWhetherItBearsItself) {
+    EXPECT_THAT(warnings_of(block.substr(0, block.find("[[constraint]]")) +
+                            block.substr(block.find("[dynamics]"))),
+                ElementsAre(HasSubstr("nothing holds the body against gravity")));
+    EXPECT_THAT(warnings_of(block, {"material[0].young=1000"}),
+                ElementsAre(HasSubstr("its own weight may crush it")));
+    // Lying flat it bears itself.
+    EXPECT_THAT(warnings_of(block, {"material[0].young=1000", "mesh.box.size=[0.1, 0.1, 0.02]"}),
+                IsEmpty());
+}
+
+// A body of two tetrahedra that share a face, one of which is flat.
+TEST(Plausibility, NamesElementsThatCostTheStep) {
+    for (const double height : {0.1, 0.002}) {
+        topology::MeshData data;
+        data.points = {
+            {0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.03, 0.03, -0.1}, {0.03, 0.03, height}};
+        data.add_cell(topology::CellKind::tetrahedron, std::vector<std::int64_t>{0, 2, 1, 3}, 0);
+        data.add_cell(topology::CellKind::tetrahedron, std::vector<std::int64_t>{0, 1, 2, 4}, 0);
+        const topology::Mesh mesh = topology::Mesh::build(data).mesh;
+        const physics::Model model(
+            mesh, {{{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1500.0, 6000.0}}}},
+                   {{0, 0}},
+                   {}});
+        const auto warning = warning_of_costly_elements(model);
+        EXPECT_EQ(warning.has_value(), height < 0.01);
+        if (warning) {
+            EXPECT_THAT(*warning, HasSubstr("element 1 is so thin or stiff that steps are"));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace incise::scenario
