@@ -41,7 +41,7 @@ const std::vector<Tissue>& tissue_table() {
     static const std::vector<Tissue> table = {
         {"liver",
          "Liver, parenchyma",
-         "saint-venant-kirchhoff",
+         "neo-hookean",
          1060.0,
          kaye_and_laby,
          given({{young, 1600.0}, {poisson, 0.48}}),
@@ -50,10 +50,10 @@ const std::vector<Tissue>& tissue_table() {
          "Advanced Modeling and Simulation in Engineering Sciences 2015, "
          "doi:10.1186/s40323-015-0049-1",
          "Published model configuration of a surgical simulator; its authors call it a "
-         "simplification that is to be validated. Elastic, no rate. Saint Venant-Kirchhoff "
-         "suits small strains (some 10 %): where the liver is compressed strongly add law = "
-         "\"neo-hookean\", which keeps these moduli at rest.",
-         ""},
+         "simplification that is to be validated. Elastic, no rate. It takes Saint "
+         "Venant-Kirchhoff, whose elements turn inside out where the liver is compressed by its "
+         "own weight; the neo-Hookean law has the same moduli at rest.",
+         "The law."},
         {"kidney",
          "Kidney",
          "neo-hookean",

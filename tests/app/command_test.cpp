@@ -414,7 +414,7 @@ TEST_F(Command, ListsTissues) {
     const auto liver = run("materials liver");
     EXPECT_EQ(liver.status, 0);
     for (const auto* text : {"preset = \"liver\"\n",
-                             "    law = \"saint-venant-kirchhoff\"\n    density = 1060\n    "
+                             "    law = \"neo-hookean\"\n    density = 1060\n    "
                              "young = 1600\n    poisson = 0.48\n",
                              "\nSource\n", "s40323-015-0049-1", "\nValidity\n", "76 to 225 J/m2"})
         EXPECT_NE(liver.out.find(text), std::string::npos) << text;
