@@ -32,18 +32,21 @@ std::string joined(std::span<const std::string> lines) {
     return text;
 }
 
-void add_body_findings(const scenario::Scenario& scenario, std::vector<std::string>& errors,
-                       std::vector<std::string>& warnings) {
+std::optional<scenario::BodyFindings::Effort> add_body_findings(
+    const scenario::Scenario& scenario, std::vector<std::string>& errors,
+    std::vector<std::string>& warnings) {
     try {
         const scenario::BodyFindings body = scenario::check_body(scenario);
         errors.insert(errors.end(), body.errors.begin(), body.errors.end());
         warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
+        return body.effort;
     } catch (const MemoryError& error) {
         if (errors.empty()) throw;
         errors.emplace_back(error.what());
     } catch (const std::bad_alloc&) {
         if (errors.empty()) throw;
     }
+    return std::nullopt;
 }
 
 scenario::Scenario load_scenario(const std::filesystem::path& file,

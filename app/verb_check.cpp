@@ -1,11 +1,13 @@
 // incise check: reports every problem of scenarios and meshes without changing anything.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <new>
 #include <set>
 
 #include "incise/app/messages.h"
+#include "incise/app/progress.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
@@ -21,7 +23,9 @@ namespace {
 
 struct Findings {
     std::vector<std::string> errors, warnings;
-    std::string summary;  ///< meaningful only without errors
+    std::string summary;          ///< meaningful only without errors
+    std::string effort;           ///< of the run, as far as it is known
+    std::size_t num_printed = 0;  ///< of the errors, the first
 };
 
 std::string count_of(std::size_t count, const std::string& noun) {
@@ -53,16 +57,39 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
     return findings;
 }
 
-/// Checks the scenario, and its body as far as the scenario can be read.
+/// Tells that it takes a while to build a body, if it does.
+void announce_body(const std::filesystem::path& path, const scenario::Scenario& scenario) {
+    constexpr double many = 1e6;  // elements: some seconds
+    const auto* box = std::get_if<scenario::BoxMeshSpec>(&scenario.mesh.source);
+    if (!box) return;
+    const double elements = (box->element == topology::CellKind::tetrahedron ? 6.0 : 1.0) *
+                            box->cells[0] * box->cells[1] * box->cells[2];
+    if (elements > many)
+        std::cerr << path.string() << ": builds the body of " << io::format_number(elements)
+                  << " elements, to check it\n";
+}
+
+/// Checks the scenario, and its body as far as the scenario can be read. What the scenario alone
+/// tells is printed at once, as it takes long to build a large body.
 Findings check_scenario(const std::filesystem::path& path) {
     auto [scenario, errors, warnings] = scenario::read_scenario(path);
-    Findings findings{std::move(errors), std::move(warnings), {}};
-    add_body_findings(scenario, findings.errors, findings.warnings);
+    for (const auto& warning : warnings) print_warning(warning);
+    for (const auto& error : errors) print_error(error);
+    announce_body(path, scenario);
+    const std::size_t num_printed = errors.size();
+    Findings findings;
+    findings.errors = std::move(errors);
+    const auto effort = add_body_findings(scenario, findings.errors, findings.warnings);
+    findings.num_printed = num_printed;
     findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +
                        count_of(scenario.materials.size(), "material") + ", " +
                        count_of(scenario.constraints.size(), "constraint") + ", " +
                        count_of(scenario.loads.size(), "load") + ", " +
                        count_of(scenario.tools.size(), "tool");
+    if (effort && effort->seconds_of_forces >= 1.0)  // a shorter run needs no plan
+        findings.effort = "some " + io::format_number(std::ceil(effort->num_steps)) +
+                          " steps; their forces take " + duration_text(effort->seconds_of_forces) +
+                          " on one core, and cuts and contact come on top";
     return findings;
 }
 
@@ -72,9 +99,11 @@ Findings check_file(const std::filesystem::path& file) {
 
 int print(const std::filesystem::path& file, const Findings& findings) {
     for (const auto& warning : findings.warnings) print_warning(warning);
-    for (const auto& error : findings.errors) print_error(error);
+    for (std::size_t i = findings.num_printed; i < findings.errors.size(); ++i)
+        print_error(findings.errors[i]);
     if (findings.errors.empty()) {
         std::cout << file.string() << ": OK, " << findings.summary << std::endl;
+        if (!findings.effort.empty()) std::cerr << file.string() << ": " << findings.effort << '\n';
         return done;
     }
     std::cout << file.string() << ": " << count_of(findings.errors.size(), "problem") << std::endl;

@@ -2,6 +2,7 @@
 #include "incise/scenario/body.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -348,6 +349,7 @@ struct Parts {
     std::vector<ScriptedTool> tools;
     std::vector<std::string> warnings;
     BodyProblems problems;
+    std::optional<BodyFindings::Effort> effort;
 };
 
 bool is_known(const MeshSpec& mesh) {
@@ -395,6 +397,18 @@ Parts build_parts(const Scenario& scenario) {
     return parts;
 }
 
+/// Measures how long it takes to compute the forces, s: the shortest of some times.
+double seconds_of_forces(physics::Model& model) {
+    using Clock = std::chrono::steady_clock;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4; ++i) {
+        const auto begin = Clock::now();
+        model.compute_forces(0.0);
+        least = std::min(least, std::chrono::duration<double>(Clock::now() - begin).count());
+    }
+    return least;
+}
+
 /// Adds the problems of the model and of the time step, if there are mesh and materials. Neither
 /// depends on constraints and loads.
 void check_model(const Scenario& scenario, Parts& parts) {
@@ -402,13 +416,16 @@ void check_model(const Scenario& scenario, Parts& parts) {
     for (std::string& warning : implausible(scenario, parts.source->mesh, *parts.materials))
         parts.warnings.push_back(std::move(warning));
     parts.problems.try_to("", [&] {
-        const auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
-        step_limit(scenario, model, model.rest_stable_step());
+        auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
+        const double step = step_limit(scenario, model, model.rest_stable_step());
         const DynamicsSpec& dynamics = scenario.dynamics;
-        const bool is_explicit = dynamics.mode == Mode::dynamic &&
-                                 dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-        if (const auto warning = warning_of_costly_elements(model); warning && is_explicit)
+        if (dynamics.mode == Mode::statics ||
+            dynamics.integrator != TimeIntegrator::semi_implicit_euler)
+            return;
+        if (const auto warning = warning_of_costly_elements(model))
             parts.warnings.push_back(located(scenario.mesh.location, *warning));
+        const double num_steps = dynamics.end_time / step;
+        parts.effort = {num_steps, num_steps * seconds_of_forces(model)};
     });
 }
 
@@ -465,7 +482,7 @@ Body build_body(const Scenario& scenario) {
 BodyFindings check_body(const Scenario& scenario) {
     Parts parts = build_parts(scenario);
     check_model(scenario, parts);
-    return {parts.problems.lines(), std::move(parts.warnings)};
+    return {parts.problems.lines(), std::move(parts.warnings), parts.effort};
 }
 
 }  // namespace incise::scenario

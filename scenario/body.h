@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,12 @@ Body build_body(const Scenario& scenario);
 /// The problems of a body, one a line.
 struct BodyFindings {
     std::vector<std::string> errors, warnings;
+    /// How much the run has to do, if nothing is wrong and it makes explicit steps.
+    struct Effort {
+        double num_steps;          ///< while the body is as it is at the start
+        double seconds_of_forces;  ///< of all of them, on one core of this machine
+    };
+    std::optional<Effort> effort;
 };
 
 /// Returns what build_body(), make_model() and step_limit() refuse and warn of. If the scenario has
