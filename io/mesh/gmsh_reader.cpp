@@ -1,6 +1,6 @@
-// Meshes of Gmsh (.msh), versions 2.x and 4.1.
-// Source: Gmsh reference manual, "Gmsh file formats" (4.8): MSH 4.1, MSH 2 (legacy).
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// Meshes of Gmsh (.msh), versions 1, 2.x and 4.1.
+// Source: Gmsh reference manual, "Gmsh file formats" (4.8): MSH 4.1, MSH 2 (legacy), MSH 1
+// (legacy). SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/mesh/gmsh_reader.h"
 
 #include <algorithm>
@@ -74,12 +74,17 @@ class GmshReader {
             const auto line = scanner_.rest_of_line();
             if (line.starts_with('$')) read_section(line.substr(1));
         }
-        if (!has_format_)
+        if (!has_format_ && !is_version_1_)
             throw InputError(file_.name() +
                              ": has no $MeshFormat section, so it is no mesh of Gmsh; save it as "
                              "Gmsh version 4.1 or 2.2");
-        if (!has_nodes_) throw InputError(file_.name() + ": has no $Nodes section");
-        if (!has_elements_) throw InputError(file_.name() + ": has no $Elements section");
+        const auto section = [&](const char* word, const char* word_1) {
+            return std::string("$") + (is_version_1_ ? word_1 : word);
+        };
+        if (!has_nodes_)
+            throw InputError(file_.name() + ": has no " + section("Nodes", "NOD") + " section");
+        if (!has_elements_)
+            throw InputError(file_.name() + ": has no " + section("Elements", "ELM") + " section");
         auto& warnings = result_.warnings;
         if (num_shared_entities_ > 0)
             warnings.push_back(std::to_string(num_shared_entities_) +
@@ -92,9 +97,16 @@ class GmshReader {
   private:
     void read_section(std::string_view line) {
         const auto name = line.substr(0, line.find_first_of(" \t"));
-        if (name == "NOD" || name == "NOE" || name == "ELM")
-            scanner_.fail("is a Gmsh file of version 1; save it as version 4.1 or 2.2");
-        if (name == "MeshFormat") {
+        auto end_prefix = std::string("$End");
+        if (name == "NOD" || name == "NOE" || name == "ELM") {
+            if (has_format_)
+                scanner_.fail("$" + std::string(name) +
+                              " belongs to version 1, which has no $MeshFormat; save the mesh anew "
+                              "as Gmsh version 4.1 or 2.2");
+            is_version_1_ = true;
+            end_prefix = "$END";
+            name == "ELM" ? read_elements_1() : read_nodes_2(false);
+        } else if (name == "MeshFormat") {
             read_format();
         } else if (name == "Nodes" || name == "ParametricNodes" || name == "Elements" ||
                    name == "Entities" || name == "PartitionedEntities") {
@@ -120,22 +132,24 @@ class GmshReader {
                               "; the file is cut short");
             return;
         }
-        const auto end = "$End" + std::string(name);
-        if (scanner_.at_end()) fail_unclosed(name, "the end of the file");
+        const auto end = end_prefix + std::string(name);
+        if (scanner_.at_end()) fail_unclosed(name, end, "the end of the file");
         const auto found = scanner_.token(end);
         if (found == end) return;
-        if (found.starts_with('$')) fail_unclosed(name, in_quotes(found));
+        if (found.starts_with('$')) fail_unclosed(name, end, in_quotes(found));
         scanner_.fail_expected(end, found);
     }
 
-    [[noreturn]] void fail_unclosed(std::string_view name, const std::string& before) const {
-        const auto end = "$End" + std::string(name);
+    [[noreturn]] void fail_unclosed(std::string_view name, const std::string& end,
+                                    const std::string& before) const {
         scanner_.fail("section " + in_quotes(name) + " has no " + in_quotes(end) + " before " +
                       before + "; the file is damaged: save the mesh anew, or add that line");
     }
 
     void read_format() {
         if (has_format_) scanner_.fail("has a second $MeshFormat section");
+        if (is_version_1_)
+            scanner_.fail("$MeshFormat comes behind sections of version 1; put it first");
         const auto version = scanner_.token("the version");
         is_version_2_ = version == "2" || version.starts_with("2.");
         if (!is_version_2_ && version != "4.1")
@@ -220,11 +234,11 @@ class GmshReader {
     }
 
     void begin_nodes() {
-        if (has_nodes_) scanner_.fail("has a second $Nodes section");
+        if (has_nodes_) scanner_.fail("has a second section of nodes");
     }
 
     void begin_elements() {
-        if (!has_nodes_) scanner_.fail("$Elements comes before $Nodes");
+        if (!has_nodes_) scanner_.fail("the elements come before the nodes; put the nodes first");
         has_elements_ = true;
     }
 
@@ -256,8 +270,8 @@ class GmshReader {
         collector_.keep(form, tag, nodes, region, result_.mesh);
     }
 
-    // --- version 2: n, then n times: tag x y z. A parametric node also has the dimension and the
-    // tag of its entity, and one parameter on a curve or two on a surface.
+    // --- versions 1 and 2: n, then n times: tag x y z. A parametric node also has the dimension
+    // and the tag of its entity, and one parameter on a curve or two on a surface.
     void read_nodes_2(bool are_parametric) {
         begin_nodes();
         const auto num_nodes = text_count("the number of nodes", are_parametric ? 6 : 4, 4);
@@ -272,6 +286,23 @@ class GmshReader {
                 skip_reals(static_cast<std::size_t>(dimension), "a parameter of a node");
         }
         finish_nodes();
+    }
+
+    // --- version 1: n, then n times: tag type physical_group entity num_nodes nodes
+    void read_elements_1() {
+        begin_elements();
+        const auto num_elements = text_count("the number of elements", 6, 4);
+        for (std::size_t i = 0; i < num_elements; ++i) {
+            const auto tag = int_value("an element tag");
+            const auto& form = form_of(int_value("an element type"));
+            const auto region = int_value("a physical group");
+            int_value("the tag of an entity");
+            const auto num_nodes = int_value("the number of nodes of an element");
+            if (num_nodes != form.num_nodes)
+                scanner_.fail(element_name(tag) + ": has " + std::to_string(num_nodes) +
+                              " nodes; a " + form.name + " has " + std::to_string(form.num_nodes));
+            read_element(form, tag, region);
+        }
     }
 
     // --- version 2: n, then in a text file n times: tag type num_tags tags nodes;
@@ -306,12 +337,17 @@ class GmshReader {
     }
 
     void read_element_2(const CellForm& form, std::int64_t tag, int num_tags) {
-        refuse_form(form, tag);
         int region = 0;
         for (int i = 0; i < num_tags; ++i) {
             const int value = int_value("a tag of an element");
             if (i == 0) region = value;  // the first tag is the physical group
         }
+        read_element(form, tag, region);
+    }
+
+    /// Reads the nodes of an element of version 1 or 2.
+    void read_element(const CellForm& form, std::int64_t tag, int region) {
+        refuse_form(form, tag);
         if (form.use == ignore) {
             skip_ints(static_cast<std::size_t>(form.num_nodes), "a node of an element");
             collector_.ignore(form);
@@ -431,6 +467,7 @@ class GmshReader {
     std::array<std::int64_t, 32> nodes_{};  ///< of the current element; refused forms may have more
     MeshFile result_;
     std::size_t num_shared_entities_ = 0;
+    bool is_version_1_ = false;
     bool is_version_2_ = false;
     bool has_short_sizes_ = false;
     bool has_format_ = false;

@@ -49,7 +49,7 @@ struct MeshFile {
 /// Elements of Abaqus are in the order of their numbers.
 ///
 /// The contents of the file decide its format, or else its suffix. Formats: VTU (all encodings),
-/// legacy VTK unstructured grids, Gmsh 2 and 4.1, MEDIT (text), TetGen (either file of the pair
+/// legacy VTK unstructured grids, Gmsh 1, 2 and 4.1, MEDIT (text), TetGen (either file of the pair
 /// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h).
 ///
 /// Vertices, lines and surface cells are left out with a warning. A point array `rest_position` of

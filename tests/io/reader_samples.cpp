@@ -265,6 +265,31 @@ std::vector<std::int64_t> gmsh_nodes(const MeshData& mesh, std::size_t c) {
     return nodes;
 }
 
+std::string gmsh_1() {
+    const auto mesh = sample_mesh();
+    GmshText out(GmshText::Mode::ascii);
+    out.text("$NOD\n" + std::to_string(mesh.points.size()) + "\n");
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        out.integer(tag_of(static_cast<std::int64_t>(i)));
+        for (const double x : mesh.points[i]) out.real(x);
+        out.end_line();
+    }
+    out.text("$ENDNOD\n$ELM\n" + std::to_string(mesh.num_cells() + 3) + "\n");
+    int tag = 1;
+    const auto element = [&](int type, int region, const auto& nodes) {
+        for (const int value : {tag++, type, region, 77, static_cast<int>(std::size(nodes))})
+            out.integer(value);
+        for (const auto node : nodes) out.integer(tag_of(node));
+        out.end_line();
+    };
+    element(1, 9, std::array<std::int64_t, 2>{0, 1});
+    for (const auto& triangle : sample_triangles) element(2, 9, triangle);
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c)
+        element(gmsh_type(mesh.kinds[c]), mesh.regions[c], gmsh_nodes(mesh, c));
+    out.text("$ENDELM\n");
+    return out.bytes();
+}
+
 /// Nodes are on points, curves, surfaces and in volumes by turns, with parameters if asked for.
 std::string gmsh_2(GmshText::Mode mode, bool is_parametric) {
     const auto mesh = sample_mesh();
@@ -420,7 +445,7 @@ std::string gmsh_4(GmshText::Mode mode, bool is_partitioned) {
 
 std::vector<Sample> gmsh_samples() {
     using enum GmshText::Mode;
-    std::vector<Sample> samples;
+    std::vector<Sample> samples{{"ascii-1.msh", gmsh_1()}};
     for (const auto& [mode, name] :
          {std::pair{ascii, "ascii"}, std::pair{binary, "binary"}, std::pair{swapped, "swapped"}}) {
         samples.push_back({std::string(name) + "-2.msh", gmsh_2(mode, false)});

@@ -26,8 +26,8 @@ topology::MeshData sample_mesh();
 std::vector<Sample> vtu_samples();
 /// Written by VTK: ascii and binary, versions 4.2 and 5.1, among all kinds of other attributes.
 std::vector<Sample> legacy_vtk_samples();
-/// Versions 2.2 and 4.1, ascii and binary in both byte orders, with and without parameters of
-/// nodes; tags with gaps, in disorder.
+/// Version 1; versions 2.2 and 4.1, ascii and binary in both byte orders, with and without
+/// parameters of nodes; tags with gaps, in disorder.
 std::vector<Sample> gmsh_samples();
 /// Every section that cells may be in.
 std::vector<Sample> medit_samples();
