@@ -101,6 +101,18 @@ void declare_bench(CLI::App& app, Action& action) {
     verb->callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 
+void declare_region_array(CLI::App* verb, std::string& region_array) {
+    verb->add_option("--region-array", region_array,
+                     "Cell array of VTK files that holds the regions")
+        ->capture_default_str();
+}
+
+void declare_linear(CLI::App* verb, bool& linear) {
+    verb->add_flag("--linear", linear,
+                   "Read second-order cells, and those of higher order, by their corners as linear "
+                   "ones");
+}
+
 void declare_check(CLI::App& app, Action& action) {
     auto options = std::make_shared<CheckOptions>();
     auto* verb =
@@ -108,7 +120,11 @@ void declare_check(CLI::App& app, Action& action) {
     verb->add_option("FILE", options->files, "Scenario (.toml) or mesh files")
         ->required()
         ->type_name("PATH ...");
-    verb->footer("Example: incise check liver.toml liver.vtu");
+    declare_linear(verb, options->input.linear);
+    verb->add_flag("--weld", options->input.weld, "Join points at the same position first");
+    verb->footer(
+        "--linear and --weld are for meshes; a scenario has keys of these names in [mesh].\n"
+        "Example: incise check liver.toml liver.vtu");
     verb->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 
@@ -116,9 +132,9 @@ void declare_info(CLI::App& app, Action& action) {
     auto options = std::make_shared<InfoOptions>();
     auto* verb = app.add_subcommand("info", "Describe a mesh: counts, size, regions, quality");
     verb->add_option("MESH", options->mesh, "Mesh file")->required()->type_name("PATH");
-    verb->add_option("--region-array", options->region_array,
-                     "Cell array of VTK files that holds the regions")
-        ->capture_default_str();
+    declare_region_array(verb, options->input.region_array);
+    declare_linear(verb, options->input.linear);
+    verb->add_flag("--weld", options->input.weld, "Join points at the same position first");
     verb->add_flag("--json", options->json, "One JSON object on stdout");
     verb->footer("Example: incise info liver.vtu --json");
     verb->callback([options, &action] { action = [options] { return info(*options); }; });
@@ -179,9 +195,7 @@ void declare_cut(CLI::App& app, Action& action) {
             "edge count as on it; from 0, exact, to 0.5 (default: " +
                 io::format_number(cutting::default_snap) + ")")
         ->type_name("SHARE");
-    verb->add_option("--region-array", options->region_array,
-                     "Cell array of VTK files that holds the regions")
-        ->capture_default_str();
+    declare_region_array(verb, options->region_array);
     for (const CutToolOption& tool : cut_tool_options())
         verb->add_option_function<std::string>(
                 tool.name,
@@ -203,10 +217,9 @@ void declare_convert(CLI::App& app, Action& action) {
     verb->add_option("OUT", options->out, "Mesh file to write; replaced if it is there")
         ->required()
         ->type_name("PATH");
-    verb->add_option("--region-array", options->region_array,
-                     "Cell array of VTK files that holds the regions")
-        ->capture_default_str();
-    verb->add_flag("--weld", options->weld,
+    declare_region_array(verb, options->input.region_array);
+    declare_linear(verb, options->input.linear);
+    verb->add_flag("--weld", options->input.weld,
                    "Join points at the same position, and check the mesh that this makes");
     verb->footer("Formats to write: " + written_formats() +
                  "\nExample: incise convert liver.msh liver.vtu");

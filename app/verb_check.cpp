@@ -32,11 +32,12 @@ std::string count_of(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-Findings check_mesh(const std::filesystem::path& path, const std::string& region_array) {
+Findings check_mesh(const std::filesystem::path& path, const MeshInput& input) {
     const std::string prefix = path.string() + ": ";
     Findings findings;
     try {
-        const auto file = io::read_mesh(path, {region_array});
+        auto file = read_input(path, input);
+        weld_input(file, input);
         for (const auto& warning : file.warnings) findings.warnings.push_back(prefix + warning);
         auto found = topology::check(file.mesh, scenario::weld_advice());
         // Warnings about connections exist only after the mesh is built.
@@ -45,7 +46,7 @@ Findings check_mesh(const std::filesystem::path& path, const std::string& region
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
         const std::set<int> regions(file.mesh.regions.begin(), file.mesh.regions.end());
-        findings.summary = "mesh with " + count_of(file.mesh.points.size(), "point") + ", " +
+        findings.summary = "mesh with " + count_of(num_points(file.mesh), "point") + ", " +
                            count_of(file.mesh.num_cells(), "cell") + ", " +
                            count_of(regions.size(), "region");
     } catch (const io::UnknownFormat& error) {
@@ -93,8 +94,8 @@ Findings check_scenario(const std::filesystem::path& path) {
     return findings;
 }
 
-Findings check_file(const std::filesystem::path& file) {
-    return file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, "region");
+Findings check_file(const std::filesystem::path& file, const MeshInput& input) {
+    return file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, input);
 }
 
 int print(const std::filesystem::path& file, const Findings& findings) {
@@ -116,9 +117,9 @@ int print_lack_of_memory(const std::filesystem::path& file, const std::string& t
     return out_of_memory;
 }
 
-int check(const std::filesystem::path& file) {
+int check(const std::filesystem::path& file, const MeshInput& input) {
     try {
-        return print(file, check_file(file));
+        return print(file, check_file(file, input));
     } catch (const MemoryError& error) {
         return print_lack_of_memory(file, error.what());
     } catch (const std::bad_alloc&) {
@@ -131,7 +132,7 @@ int check(const std::filesystem::path& file) {
 
 int check(const CheckOptions& options) {
     int status = done;
-    for (const auto& file : options.files) status = std::max(status, check(file));
+    for (const auto& file : options.files) status = std::max(status, check(file, options.input));
     return status;
 }
 

@@ -5,7 +5,6 @@
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/scenario/remedies.h"
 #include "incise/topology/mesh_check.h"
@@ -28,11 +27,11 @@ std::string weld(topology::MeshData& mesh, const std::string& prefix) {
 
 int convert(const ConvertOptions& options) {
     io::check_writable(options.out);
-    auto file = io::read_mesh(options.in, {options.region_array});
+    auto file = read_input(options.in, options.input);
     const std::string prefix = options.in.string() + ": ";
     for (const auto& warning : file.warnings) print_warning(prefix + warning);
     std::string report;
-    if (options.weld) report = "; " + weld(file.mesh, prefix);
+    if (options.input.weld) report = "; " + weld(file.mesh, prefix);
     if (const auto warning = topology::coincidence_warning(
             file.mesh, scenario::weld_advice()))  // gaps, after welding
         print_warning(prefix + *warning);

@@ -101,7 +101,7 @@ struct Result {
 Result carry_out(const CutOptions& options) {
     Job job = parse(options);
     const std::string prefix = options.mesh.string() + ": ";
-    auto file = io::read_mesh(options.mesh, {options.region_array});
+    auto file = read_input(options.mesh, {.region_array = options.region_array});
     try {
         auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         const auto mode = job.mode.value_or(scenario::usual_mode(built.mesh));

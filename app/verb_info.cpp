@@ -10,7 +10,6 @@
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#include "incise/io/mesh/mesh_reader.h"
 #include "incise/scenario/remedies.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_metrics.h"
@@ -32,9 +31,10 @@ struct MeshInfo {
 };
 
 MeshInfo look_at(const InfoOptions& options) {
-    auto file = io::read_mesh(options.mesh, {options.region_array});
+    auto file = read_input(options.mesh, options.input);
+    weld_input(file, options.input);
     MeshInfo info;
-    info.num_points = file.mesh.points.size();
+    info.num_points = num_points(file.mesh);
     info.warnings = std::move(file.warnings);
     try {
         const auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());

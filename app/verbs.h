@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "incise/app/mesh_input.h"
+
 namespace incise::app {
 
 /// Exit statuses. Errors that verbs throw become statuses in main.cpp. Verbs return done,
@@ -42,6 +44,7 @@ int bench(const BenchOptions& options);
 
 struct CheckOptions {
     std::vector<std::filesystem::path> files;
+    MeshInput input;  ///< of the mesh files; scenarios have keys of their own
 };
 /// Checks all files. Returns the highest status of a file: input_at_fault if it has a problem,
 /// out_of_memory if it is too large for the machine.
@@ -49,15 +52,14 @@ int check(const CheckOptions& options);
 
 struct InfoOptions {
     std::filesystem::path mesh;
-    std::string region_array = "region";
+    MeshInput input;
     bool json = false;
 };
 int info(const InfoOptions& options);
 
 struct ConvertOptions {
     std::filesystem::path in, out;
-    std::string region_array = "region";
-    bool weld = false;
+    MeshInput input;
 };
 int convert(const ConvertOptions& options);
 

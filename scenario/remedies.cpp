@@ -10,6 +10,11 @@ topology::WeldAdvice weld_advice() {
         "say 'weld = false' in [mesh] of a scenario"};
 }
 
+std::string linear_advice() {
+    return "read them by their corners as linear ones with 'incise convert --linear IN OUT' or "
+           "with 'linear = true' in [mesh] of a scenario";
+}
+
 std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
     switch (misfit.cause) {
         using enum physics::MaterialMisfit;

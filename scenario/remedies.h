@@ -13,6 +13,9 @@ namespace incise::scenario {
 /// What a user of the program can do about points that are not joined.
 topology::WeldAdvice weld_advice();
 
+/// What a user of the program can do about cells of higher order.
+std::string linear_advice();
+
 /// Returns the end of the message of a material that does not suit an element.
 std::string remedy_for(const physics::UnsuitableMaterial& misfit);
 

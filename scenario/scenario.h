@@ -44,6 +44,7 @@ struct MeshSpec {
     /// For a file: true if points at the same position are joined. False states that such points
     /// are separate on purpose. Without a value they are not joined, and a warning reports them.
     std::optional<bool> weld = std::nullopt;
+    bool linear = false;  ///< true if cells of higher order of a file are read by their corners
     /// FILE:line:column for messages, of the source and of two keys.
     std::string location = {}, scale_location = {}, region_array_location = {};
 };

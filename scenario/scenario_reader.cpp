@@ -21,7 +21,7 @@ using Keys = std::string_view;
 
 constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "contact", "constraint",
                               "load",  "tool", "obstacle", "output",   "expect"};
-constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array", "weld"};
+constexpr Keys mesh_keys[] = {"file", "box", "scale", "region_array", "weld", "linear"};
 constexpr Keys mesh_box_keys[] = {"size", "cells", "element", "origin"};
 constexpr Keys element_names[] = {"tet", "hex"};
 constexpr topology::CellKind element_kinds[] = {topology::CellKind::tetrahedron,
@@ -223,6 +223,9 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     spec.scale = mesh->number("scale", spec.scale, limits::positive);
     spec.region_array = mesh->text("region_array", spec.region_array);
     if (mesh->has("weld")) spec.weld = mesh->flag("weld", false);
+    spec.linear = mesh->flag("linear", spec.linear);
+    if (mesh->has("linear") && mesh->has("box"))
+        mesh->warning("linear", "'mesh.linear' has no effect on a box, whose elements are linear");
     if (mesh->has("weld") && mesh->has("box"))
         mesh->warning("weld", "'mesh.weld' has no effect on a box, whose elements are joined");
     return spec;

@@ -46,8 +46,10 @@ void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
 io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& materials,
                        double scale) {
     if (const auto* path = std::get_if<std::filesystem::path>(&spec.source)) {
-        io::MeshFile file = io::read_mesh(
-            *path, {.region_array = spec.region_array, .vector_arrays = arrays_of(materials)});
+        io::MeshFile file = io::read_mesh(*path, {.region_array = spec.region_array,
+                                                  .linear = spec.linear,
+                                                  .linear_advice = linear_advice(),
+                                                  .vector_arrays = arrays_of(materials)});
         if (spec.weld == true)
             file.warnings.push_back(topology::weld_report(topology::weld(file.mesh)));
         file.mesh.points_may_coincide = file.mesh.points_may_coincide || spec.weld == false;

@@ -10,18 +10,18 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// The code is the number of nodes. In a wedge of Abaqus, the normal of the first triangle points to
-// the second triangle; in VTK it points away.
+// The code is the number of nodes; corners come first. In a wedge of Abaqus, the normal of the
+// first triangle points to the second triangle; in VTK it points away.
 constexpr CellForm solids[] = {
     {4, "tetrahedron", 4, keep, CellKind::tetrahedron},
     {5, "pyramid", 5, keep, CellKind::pyramid},
     {6, "wedge", 6, keep, CellKind::wedge, {0, 2, 1, 3, 5, 4}},
     {8, "hexahedron", 8, keep, CellKind::hexahedron},
-    {10, "second-order tetrahedron", 10},
-    {13, "second-order pyramid", 13},
-    {15, "second-order wedge", 15},
-    {20, "second-order hexahedron", 20},
-    {27, "second-order hexahedron", 27},
+    {10, "second-order tetrahedron", 10, by_corners, CellKind::tetrahedron},
+    {13, "second-order pyramid", 13, by_corners, CellKind::pyramid},
+    {15, "second-order wedge", 15, by_corners, CellKind::wedge, {0, 2, 1, 3, 5, 4}},
+    {20, "second-order hexahedron", 20, by_corners, CellKind::hexahedron},
+    {27, "second-order hexahedron", 27, by_corners, CellKind::hexahedron},
 };
 constexpr CellForm surfaces[] = {
     {3, "triangle", 3, ignore},

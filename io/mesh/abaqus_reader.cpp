@@ -40,8 +40,8 @@ constexpr std::pair<std::string_view, const char*> refused_keywords[] = {
 
 class AbaqusReader {
   public:
-    explicit AbaqusReader(const InputFile& file)
-        : file_(file), lines_(file), collector_(file.name(), "TYPE") {}
+    AbaqusReader(const InputFile& file, const ReadOptions& options)
+        : file_(file), lines_(file), collector_(file.name(), "TYPE", options) {}
 
     MeshFile read() {
         while (lines_.next()) {
@@ -182,7 +182,7 @@ class AbaqusReader {
             row_.push_back(
                 lines_.number(field, row_.empty() ? "the number of an element" : "a node"));
         if (is_new) row_place_ = lines_.byte();
-        if (form_->use == CellForm::Use::refuse)
+        if (collector_.refuses(*form_))
             collector_.refuse(*form_, lines_.location() + ": " + element_name(row_.front()), type_);
         const auto num_nodes = row_.size() - 1, wanted = static_cast<std::size_t>(form_->num_nodes);
         if (num_nodes < wanted) return;
@@ -321,8 +321,8 @@ class AbaqusReader {
 
 }  // namespace
 
-MeshFile read_abaqus(const InputFile& file, const ReadOptions&) {
-    return AbaqusReader(file).read();
+MeshFile read_abaqus(const InputFile& file, const ReadOptions& options) {
+    return AbaqusReader(file, options).read();
 }
 
 }  // namespace incise::io

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::io {
@@ -19,9 +20,10 @@ namespace incise::io {
 /// One kind of cell of a file format.
 struct CellForm {
     enum class Use : std::uint8_t {
-        keep,    ///< a linear volume cell
-        ignore,  ///< a cell of fewer than three dimensions, left out with a warning
-        refuse   ///< a volume cell that is not supported, an error
+        keep,        ///< a linear volume cell
+        by_corners,  ///< a volume cell of higher order: kept by its corners, if asked for
+        ignore,      ///< a cell of fewer than three dimensions, left out with a warning
+        refuse       ///< a volume cell that is not supported, an error
     };
 
     int code;          ///< number of the kind in the format; 0 if the format has a word instead
@@ -47,9 +49,18 @@ class CellCollector {
   public:
     /// @param file       the name of the file in messages
     /// @param type_word  the word of the format for the code of a kind of cell
-    CellCollector(std::string file, std::string type_word)
-        : file_(std::move(file)), type_word_(std::move(type_word)) {}
+    /// @param options    whether cells of higher order are kept
+    CellCollector(std::string file, std::string type_word, const ReadOptions& options)
+        : file_(std::move(file)),
+          type_word_(std::move(type_word)),
+          linear_(options.linear),
+          linear_advice_(options.linear_advice) {}
 
+    /// True if cells of the form cannot be used.
+    bool refuses(const CellForm& form) const {
+        return form.use == CellForm::Use::refuse ||
+               (form.use == CellForm::Use::by_corners && !linear_);
+    }
     /// Throws InputError about a cell of a form that cannot be used. The message begins with the
     /// location, which is the file and the cell.
     [[noreturn]] void refuse(const CellForm& form, const std::string& location) const {
@@ -60,21 +71,28 @@ class CellCollector {
                              std::string_view code) const;
 
     /// Appends a cell of a form that is kept. `number` is the number of the cell in the file.
-    /// @pre  nodes.size() == form.num_nodes, and the nodes are points of the mesh
+    /// @pre  nodes has form.num_nodes nodes, or at least the corners if that is 0. They are points
+    ///       of the mesh.
     void keep(const CellForm& form, std::int64_t number, std::span<const std::int64_t> nodes,
-              int region, topology::MeshData& mesh) const {
+              int region, topology::MeshData& mesh) {
         std::array<std::int64_t, topology::max_corners> corners{};
-        for (std::size_t i = 0; i < nodes.size(); ++i) corners[i] = nodes[form.corner_order[i]];
-        mesh.add_cell(form.kind, std::span(corners).first(nodes.size()), region);
+        const auto num_corners = num_corners_of(form);
+        for (std::size_t i = 0; i < num_corners; ++i) corners[i] = nodes[form.corner_order[i]];
+        mesh.add_cell(form.kind, std::span(corners).first(num_corners), region);
         mesh.source_cells.push_back(number);
+        if (form.use != CellForm::Use::by_corners) return;
+        count(form, 1, by_corners_);
+        if (is_no_corner_.size() < mesh.points.size()) is_no_corner_.resize(mesh.points.size());
+        for (const auto node : nodes.subspan(num_corners))
+            is_no_corner_[static_cast<std::size_t>(node)] = true;
+    }
+    static std::size_t num_corners_of(const CellForm& form) {
+        return static_cast<std::size_t>(topology::traits(form.kind).num_corners);
     }
 
     /// Counts cells of a form that is ignored.
-    void ignore(const CellForm& form, std::size_t count = 1) {
-        auto row = std::find_if(ignored_.begin(), ignored_.end(),
-                                [&](const auto& entry) { return entry.first == &form; });
-        if (row == ignored_.end()) row = ignored_.insert(row, {&form, 0});
-        row->second += count;
+    void ignore(const CellForm& form, std::size_t num_cells = 1) {
+        count(form, num_cells, ignored_);
     }
 
     std::size_t num_ignored() const {
@@ -83,15 +101,31 @@ class CellCollector {
         return sum;
     }
 
-    /// Ends the collection. Adds a warning about ignored cells, if there are any. Clears the
-    /// numbers of the cells in the file if they are 0, 1, 2, ... Throws InputError if no cell was
-    /// kept.
+    /// Ends the collection. Adds a warning about ignored cells, if there are any. Removes the nodes
+    /// of cells of higher order that are no corner of any cell, with a warning. Clears the numbers
+    /// of the cells in the file if they are 0, 1, 2, ... Throws InputError if no cell was kept.
     void finish(topology::MeshData& mesh, std::vector<std::string>& warnings) const;
 
   private:
+    using Counts = std::vector<std::pair<const CellForm*, std::size_t>>;
+
+    static void count(const CellForm& form, std::size_t num_cells, Counts& counts) {
+        auto row = std::find_if(counts.begin(), counts.end(),
+                                [&](const auto& entry) { return entry.first == &form; });
+        if (row == counts.end()) row = counts.insert(row, {&form, 0});
+        row->second += num_cells;
+    }
+    static std::string list_of(const Counts& counts);
+    /// Returns the number of points that were removed.
+    std::size_t remove_nodes_between_corners(topology::MeshData& mesh) const;
+
     std::string file_;
     std::string type_word_;
-    std::vector<std::pair<const CellForm*, std::size_t>> ignored_;
+    bool linear_;
+    std::string linear_advice_;
+    Counts ignored_, by_corners_;
+    /// By point: true for a node of a cell of higher order that is no corner of that cell.
+    std::vector<bool> is_no_corner_;
 };
 
 }  // namespace incise::io

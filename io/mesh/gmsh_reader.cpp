@@ -24,8 +24,8 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// In a prism of Gmsh, the normal of the first triangle points to the second triangle; in VTK it
-// points away.
+// In cells of higher order, the corners come first. In a prism of Gmsh, the normal of the first
+// triangle points to the second triangle; in VTK it points away.
 constexpr CellForm gmsh_forms[] = {
     {1, "line", 2, ignore},
     {2, "triangle", 3, ignore},
@@ -37,15 +37,15 @@ constexpr CellForm gmsh_forms[] = {
     {8, "second-order line", 3, ignore},
     {9, "second-order triangle", 6, ignore},
     {10, "second-order quadrilateral", 9, ignore},
-    {11, "second-order tetrahedron", 10},
-    {12, "second-order hexahedron", 27},
-    {13, "second-order wedge", 18},
-    {14, "second-order pyramid", 14},
+    {11, "second-order tetrahedron", 10, by_corners, CellKind::tetrahedron},
+    {12, "second-order hexahedron", 27, by_corners, CellKind::hexahedron},
+    {13, "second-order wedge", 18, by_corners, CellKind::wedge, {0, 2, 1, 3, 5, 4}},
+    {14, "second-order pyramid", 14, by_corners, CellKind::pyramid},
     {15, "point element", 1, ignore},
     {16, "second-order quadrilateral", 8, ignore},
-    {17, "second-order hexahedron", 20},
-    {18, "second-order wedge", 15},
-    {19, "second-order pyramid", 13},
+    {17, "second-order hexahedron", 20, by_corners, CellKind::hexahedron},
+    {18, "second-order wedge", 15, by_corners, CellKind::wedge, {0, 2, 1, 3, 5, 4}},
+    {19, "second-order pyramid", 13, by_corners, CellKind::pyramid},
     {20, "third-order triangle", 9, ignore},
     {21, "third-order triangle", 10, ignore},
     {22, "fourth-order triangle", 12, ignore},
@@ -55,19 +55,19 @@ constexpr CellForm gmsh_forms[] = {
     {26, "third-order line", 4, ignore},
     {27, "fourth-order line", 5, ignore},
     {28, "fifth-order line", 6, ignore},
-    {29, "third-order tetrahedron", 20},
-    {30, "fourth-order tetrahedron", 35},
-    {31, "fifth-order tetrahedron", 56},
-    {92, "third-order hexahedron", 64},
-    {93, "fourth-order hexahedron", 125},
+    {29, "third-order tetrahedron", 20, by_corners, CellKind::tetrahedron},
+    {30, "fourth-order tetrahedron", 35, by_corners, CellKind::tetrahedron},
+    {31, "fifth-order tetrahedron", 56, by_corners, CellKind::tetrahedron},
+    {92, "third-order hexahedron", 64, by_corners, CellKind::hexahedron},
+    {93, "fourth-order hexahedron", 125, by_corners, CellKind::hexahedron},
 };
 static_assert(std::is_sorted(std::begin(gmsh_forms), std::end(gmsh_forms),
                              [](const auto& a, const auto& b) { return a.code < b.code; }));
 
 class GmshReader {
   public:
-    explicit GmshReader(const InputFile& file)
-        : file_(file), scanner_(file), collector_(file.name(), "Gmsh element type") {}
+    GmshReader(const InputFile& file, const ReadOptions& options)
+        : file_(file), scanner_(file), collector_(file.name(), "Gmsh element type", options) {}
 
     MeshFile read() {
         while (!scanner_.at_end()) {
@@ -253,7 +253,7 @@ class GmshReader {
     static std::string element_name(std::int64_t tag) { return "element " + std::to_string(tag); }
 
     void refuse_form(const CellForm& form, std::int64_t tag) const {
-        if (form.use == refuse)
+        if (collector_.refuses(form))
             collector_.refuse(form, scanner_.location() + ": " + element_name(tag));
     }
 
@@ -464,7 +464,7 @@ class GmshReader {
     CellCollector collector_;
     NodeTags node_tags_;
     std::map<int, int> group_of_volume_;
-    std::array<std::int64_t, 32> nodes_{};  ///< of the current element; refused forms may have more
+    std::array<std::int64_t, 125> nodes_{};  ///< of the current element; no form has more
     MeshFile result_;
     std::size_t num_shared_entities_ = 0;
     bool is_version_1_ = false;
@@ -477,6 +477,8 @@ class GmshReader {
 
 }  // namespace
 
-MeshFile read_gmsh(const InputFile& file, const ReadOptions&) { return GmshReader(file).read(); }
+MeshFile read_gmsh(const InputFile& file, const ReadOptions& options) {
+    return GmshReader(file, options).read();
+}
 
 }  // namespace incise::io

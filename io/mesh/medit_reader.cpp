@@ -26,8 +26,8 @@ struct CellSection {
     CellForm form;
 };
 
-// In a prism of MEDIT, the normal of the first triangle points to the second triangle; in VTK it
-// points away.
+// In cells of higher order, the corners come first. In a prism of MEDIT, the normal of the first
+// triangle points to the second triangle; in VTK it points away.
 constexpr CellSection cell_sections[] = {
     {"edges", {0, "line", 2, ignore}},
     {"triangles", {0, "triangle", 3, ignore}},
@@ -40,13 +40,13 @@ constexpr CellSection cell_sections[] = {
     {"edgesp2", {0, "second-order line", 3, ignore}},
     {"trianglesp2", {0, "second-order triangle", 6, ignore}},
     {"quadrilateralsq2", {0, "second-order quadrilateral", 9, ignore}},
-    {"tetrahedrap2", {0, "second-order tetrahedron", 10}},
-    {"prismsp2", {0, "second-order wedge", 18}},
-    {"pyramidsp2", {0, "second-order pyramid", 14}},
-    {"hexahedraq2", {0, "second-order hexahedron", 27}},
+    {"tetrahedrap2", {0, "second-order tetrahedron", 10, by_corners, CellKind::tetrahedron}},
+    {"prismsp2", {0, "second-order wedge", 18, by_corners, CellKind::wedge, {0, 2, 1, 3, 5, 4}}},
+    {"pyramidsp2", {0, "second-order pyramid", 14, by_corners, CellKind::pyramid}},
+    {"hexahedraq2", {0, "second-order hexahedron", 27, by_corners, CellKind::hexahedron}},
     {"edgesp3", {0, "third-order line", 4, ignore}},
     {"trianglesp3", {0, "third-order triangle", 10, ignore}},
-    {"tetrahedrap3", {0, "third-order tetrahedron", 20}},
+    {"tetrahedrap3", {0, "third-order tetrahedron", 20, by_corners, CellKind::tetrahedron}},
 };
 
 /// Sections of numbers that a volume mesh does not need. A warning reports other sections that are
@@ -80,10 +80,10 @@ constexpr std::string_view skipped_sections[] = {
 
 class MeditReader {
   public:
-    explicit MeditReader(const InputFile& file)
+    MeditReader(const InputFile& file, const ReadOptions& options)
         : file_(file),
           scanner_(file, Comments::before_any_word),
-          collector_(file.name(), "MEDIT section") {}
+          collector_(file.name(), "MEDIT section", options) {}
 
     MeshFile read() {
         bool has_end = false;
@@ -159,7 +159,7 @@ class MeditReader {
         const auto num_cells = scanner_.count("the number of rows of " + std::string(keyword),
                                               (num_nodes + 1) * bytes_of_number);
         if (num_cells == 0) return;
-        if (form.use == refuse) collector_.refuse(form, scanner_.location(), keyword);
+        if (collector_.refuses(form)) collector_.refuse(form, scanner_.location(), keyword);
         if (form.use == ignore) {
             for (std::size_t i = 0; i < num_cells * (num_nodes + 1); ++i)
                 scanner_.number<std::int64_t>("a vertex or a reference");
@@ -200,7 +200,7 @@ class MeditReader {
     const InputFile& file_;
     Scanner scanner_;
     CellCollector collector_;
-    std::array<std::int64_t, topology::max_corners> nodes_{};  ///< of the current cell
+    std::array<std::int64_t, 27> nodes_{};  ///< of the current cell; no form has more
     MeshFile result_;
     bool has_vertices_ = false;
     std::size_t num_unknown_ = 0;  ///< unknown sections
@@ -209,6 +209,8 @@ class MeditReader {
 
 }  // namespace
 
-MeshFile read_medit(const InputFile& file, const ReadOptions&) { return MeditReader(file).read(); }
+MeshFile read_medit(const InputFile& file, const ReadOptions& options) {
+    return MeditReader(file, options).read();
+}
 
 }  // namespace incise::io

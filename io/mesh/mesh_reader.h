@@ -22,6 +22,14 @@ struct ReadOptions {
     /// exist. Other formats ignore this option.
     std::string region_array{usual_region_array};
 
+    /// True if second-order cells, and those of higher order, are read by their corners as linear
+    /// ones, with a warning. Else they are refused.
+    bool linear = false;
+
+    /// What the refusal of such cells tells the user to do. The default is for programs that use
+    /// the library.
+    std::string linear_advice = "read them by their corners with ReadOptions::linear";
+
     /// For VTU and legacy VTK: cell arrays of three components that are also read. Each must exist.
     std::vector<std::string> vector_arrays = {};
 
@@ -52,7 +60,9 @@ struct MeshFile {
 /// legacy VTK unstructured grids, Gmsh 1, 2 and 4.1, MEDIT (text), TetGen (either file of the pair
 /// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h).
 ///
-/// Vertices, lines and surface cells are left out with a warning. A point array `rest_position` of
+/// Vertices, lines and surface cells are left out with a warning. So are the nodes of cells of
+/// higher order that are no corners, if ReadOptions::linear is set; the points that are left keep
+/// their order. A point array `rest_position` of
 /// a VTK file replaces its points. The arrays `carrier` and `carrier_corners` of a VTU file become
 /// MeshData::carriers. Regions are the cell array of the options, the physical groups
 /// of Gmsh, the references of MEDIT, the first attribute of TetGen, or the element sets of Abaqus.

@@ -22,10 +22,11 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
-// The code is the number of nodes. Tetrahedra of TetGen have positive volume in VTK's order too.
+// The code is the number of nodes; corners come first. Tetrahedra of TetGen have positive volume in
+// VTK's order too.
 constexpr CellForm tetrahedra_forms[] = {
     {4, "tetrahedron", 4, keep, CellKind::tetrahedron},
-    {10, "second-order tetrahedron", 10},
+    {10, "second-order tetrahedron", 10, by_corners, CellKind::tetrahedron},
 };
 
 /// A position in a file of lines of numbers. Comments and empty lines are skipped.
@@ -79,11 +80,11 @@ class NumberLines {
 
 class TetgenReader {
   public:
-    TetgenReader(const InputFile& nodes, const InputFile& elements)
+    TetgenReader(const InputFile& nodes, const InputFile& elements, const ReadOptions& options)
         : nodes_(nodes),
           elements_(elements),
           nodes_name_(nodes.name()),
-          collector_(elements.name(), "number of nodes") {}
+          collector_(elements.name(), "number of nodes", options) {}
 
     MeshFile read() {
         read_nodes();
@@ -144,35 +145,35 @@ class TetgenReader {
         constexpr std::size_t bytes_of_row = 10;
         elements_.next("the number of elements");
         const auto num_elements = elements_.num_rows("the number of elements", bytes_of_row);
-        const auto num_corners = elements_.number<int>(1, "the number of nodes of an element");
+        const auto num_nodes = elements_.number<int>(1, "the number of nodes of an element");
         const auto num_attributes = count_or_0(elements_, 2, "the number of attributes");
-        const auto columns =
-            "an index, 4 nodes and " + std::to_string(num_attributes) + " attributes";
-        const auto* form = find_form(tetrahedra_forms, num_corners);
+        const auto columns = "an index, " + std::to_string(num_nodes) + " nodes and " +
+                             std::to_string(num_attributes) + " attributes";
+        const auto* form = find_form(tetrahedra_forms, num_nodes);
         if (form == nullptr)
-            elements_.fail("elements have " + std::to_string(num_corners) +
+            elements_.fail("elements have " + std::to_string(num_nodes) +
                            " nodes; they must have 4");
-        if (form->use == refuse) collector_.refuse(*form, elements_.location());
+        if (collector_.refuses(*form)) collector_.refuse(*form, elements_.location());
         if (num_attributes > 1)
             result_.warnings.push_back("elements have " + std::to_string(num_attributes) +
                                        " attributes; the first one of each is taken as the region");
-        std::array<std::int64_t, 4> corners{};
+        std::vector<std::int64_t> nodes(static_cast<std::size_t>(num_nodes));
         for (std::uint64_t i = 0; i < num_elements; ++i) {
             elements_.next("an element");
-            elements_.expect_columns(5 + std::size_t{num_attributes}, columns);
+            elements_.expect_columns(1 + nodes.size() + num_attributes, columns);
             const auto index = elements_.number<std::int64_t>(0, "the index of an element");
-            for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = corner(index, 1 + k);
-            collector_.keep(*form, index, corners,
-                            num_attributes > 0 ? region(1 + corners.size()) : 0, result_.mesh);
+            for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = node(index, 1 + k);
+            collector_.keep(*form, index, nodes, num_attributes > 0 ? region(1 + nodes.size()) : 0,
+                            result_.mesh);
         }
         elements_.expect_end(std::to_string(num_elements) + " elements");
     }
 
-    std::int64_t corner(std::int64_t element, std::size_t column) const {
-        const auto node = elements_.number<std::int64_t>(column, "a node of an element");
-        const auto found = tags_.find(node);
+    std::int64_t node(std::int64_t element, std::size_t column) const {
+        const auto tag = elements_.number<std::int64_t>(column, "a node of an element");
+        const auto found = tags_.find(tag);
         if (!found)
-            elements_.fail("element " + std::to_string(element) + ": node " + std::to_string(node) +
+            elements_.fail("element " + std::to_string(element) + ": node " + std::to_string(tag) +
                            " is not one of the " + std::to_string(tags_.size()) + " nodes in " +
                            nodes_name_);
         return *found;
@@ -197,11 +198,12 @@ class TetgenReader {
 
 }  // namespace
 
-MeshFile read_tetgen_pair(const InputFile& nodes, const InputFile& elements) {
-    return TetgenReader(nodes, elements).read();
+MeshFile read_tetgen_pair(const InputFile& nodes, const InputFile& elements,
+                          const ReadOptions& options) {
+    return TetgenReader(nodes, elements, options).read();
 }
 
-MeshFile read_tetgen(const InputFile& file, const ReadOptions&) {
+MeshFile read_tetgen(const InputFile& file, const ReadOptions& options) {
     const auto suffix = file.path.extension().string();
     const bool has_nodes = lower_case(suffix) == ".node";
     const bool is_upper = suffix != lower_case(suffix);
@@ -214,7 +216,8 @@ MeshFile read_tetgen(const InputFile& file, const ReadOptions&) {
                          " of a mesh only; put " + path.filename().string() + ", which has its " +
                          (has_nodes ? "elements" : "nodes") + ", beside it");
     const auto other = load_input_file(path);
-    return has_nodes ? read_tetgen_pair(file, other) : read_tetgen_pair(other, file);
+    return has_nodes ? read_tetgen_pair(file, other, options)
+                     : read_tetgen_pair(other, file, options);
 }
 
 }  // namespace incise::io

@@ -14,6 +14,7 @@ namespace incise::io {
 MeshFile read_tetgen(const InputFile& file, const ReadOptions& options);
 
 /// The same, with both files given.
-MeshFile read_tetgen_pair(const InputFile& nodes, const InputFile& elements);
+MeshFile read_tetgen_pair(const InputFile& nodes, const InputFile& elements,
+                          const ReadOptions& options = {});
 
 }  // namespace incise::io

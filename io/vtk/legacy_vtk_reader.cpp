@@ -102,7 +102,7 @@ class LegacyVtkReader {
                 refuse_missing_vectors(file_.name(), name, other_vector_arrays_);
         piece_.is_frame = has_rest_positions_ && has_node_ids_;
         MeshFile result;
-        auto collector = make_vtk_collector(file_.name());
+        auto collector = make_vtk_collector(file_.name(), options_);
         append_piece(piece_, file_.name(), result, collector);
         collector.finish(result.mesh, result.warnings);
         return result;

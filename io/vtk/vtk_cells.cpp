@@ -12,6 +12,7 @@ namespace {
 using topology::CellKind;
 using enum CellForm::Use;
 
+// In cells of higher order, the corners come first, in the order of the linear cell.
 constexpr CellForm forms[] = {
     {0, "empty cell", 0, ignore},
     {1, "vertex cell", 1, ignore},
@@ -33,20 +34,20 @@ constexpr CellForm forms[] = {
     {21, "quadratic line", 3, ignore},
     {22, "quadratic triangle", 6, ignore},
     {23, "quadratic quadrilateral", 8, ignore},
-    {24, "quadratic tetrahedron", 10},
-    {25, "quadratic hexahedron", 20},
-    {26, "quadratic wedge", 15},
-    {27, "quadratic pyramid", 13},
+    {24, "quadratic tetrahedron", 10, by_corners, CellKind::tetrahedron},
+    {25, "quadratic hexahedron", 20, by_corners, CellKind::hexahedron},
+    {26, "quadratic wedge", 15, by_corners, CellKind::wedge},
+    {27, "quadratic pyramid", 13, by_corners, CellKind::pyramid},
     {28, "biquadratic quadrilateral", 9, ignore},
-    {29, "triquadratic hexahedron", 27},
+    {29, "triquadratic hexahedron", 27, by_corners, CellKind::hexahedron},
     {30, "quadratic linear quadrilateral", 6, ignore},
-    {31, "quadratic linear wedge", 12},
-    {32, "biquadratic wedge", 18},
-    {33, "biquadratic hexahedron", 24},
+    {31, "quadratic linear wedge", 12, by_corners, CellKind::wedge},
+    {32, "biquadratic wedge", 18, by_corners, CellKind::wedge},
+    {33, "biquadratic hexahedron", 24, by_corners, CellKind::hexahedron},
     {34, "biquadratic triangle", 7, ignore},
     {35, "cubic line", 4, ignore},
     {36, "quadratic polygon", 0, ignore},
-    {37, "triquadratic pyramid", 19},
+    {37, "triquadratic pyramid", 19, by_corners, CellKind::pyramid},
     {41, "convex point set", 0},
     {42, "polyhedron", 0},
     {51, "parametric curve", 0, ignore},
@@ -59,24 +60,24 @@ constexpr CellForm forms[] = {
     {61, "higher-order triangle", 0, ignore},
     {62, "higher-order quadrilateral", 0, ignore},
     {63, "higher-order polygon", 0, ignore},
-    {64, "higher-order tetrahedron", 0},
-    {65, "higher-order wedge", 0},
-    {66, "higher-order pyramid", 0},
-    {67, "higher-order hexahedron", 0},
+    {64, "higher-order tetrahedron", 0, by_corners, CellKind::tetrahedron},
+    {65, "higher-order wedge", 0, by_corners, CellKind::wedge},
+    {66, "higher-order pyramid", 0, by_corners, CellKind::pyramid},
+    {67, "higher-order hexahedron", 0, by_corners, CellKind::hexahedron},
     {68, "Lagrange line", 0, ignore},
     {69, "Lagrange triangle", 0, ignore},
     {70, "Lagrange quadrilateral", 0, ignore},
-    {71, "Lagrange tetrahedron", 0},
-    {72, "Lagrange hexahedron", 0},
-    {73, "Lagrange wedge", 0},
-    {74, "Lagrange pyramid", 0},
+    {71, "Lagrange tetrahedron", 0, by_corners, CellKind::tetrahedron},
+    {72, "Lagrange hexahedron", 0, by_corners, CellKind::hexahedron},
+    {73, "Lagrange wedge", 0, by_corners, CellKind::wedge},
+    {74, "Lagrange pyramid", 0, by_corners, CellKind::pyramid},
     {75, "Bezier line", 0, ignore},
     {76, "Bezier triangle", 0, ignore},
     {77, "Bezier quadrilateral", 0, ignore},
-    {78, "Bezier tetrahedron", 0},
-    {79, "Bezier hexahedron", 0},
-    {80, "Bezier wedge", 0},
-    {81, "Bezier pyramid", 0},
+    {78, "Bezier tetrahedron", 0, by_corners, CellKind::tetrahedron},
+    {79, "Bezier hexahedron", 0, by_corners, CellKind::hexahedron},
+    {80, "Bezier wedge", 0, by_corners, CellKind::wedge},
+    {81, "Bezier pyramid", 0, by_corners, CellKind::pyramid},
 };
 static_assert(std::is_sorted(std::begin(forms), std::end(forms),
                              [](const auto& a, const auto& b) { return a.code < b.code; }));
@@ -105,7 +106,9 @@ void refuse_missing_regions(const std::string& location, const std::string& name
                         : "; its cell arrays of whole numbers: " + quoted_list(others)));
 }
 
-CellCollector make_vtk_collector(const std::string& file) { return {file, "VTK cell type"}; }
+CellCollector make_vtk_collector(const std::string& file, const ReadOptions& options) {
+    return {file, "VTK cell type", options};
+}
 
 void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& location) {
     if (offsets.empty() || offsets.front() != 0)
@@ -130,14 +133,14 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
                                  piece.coordinates[i + 2]);
 
     const auto first_cell = static_cast<std::int64_t>(mesh.num_cells() + collector.num_ignored());
-    std::array<std::int64_t, topology::max_corners> nodes{};
+    std::vector<std::int64_t> nodes;
     for (std::size_t c = 0; c < piece.types.size(); ++c) {
         const auto here = [&] { return location + ": cell " + std::to_string(c); };
         const auto* form = find_form(forms, piece.types[c]);
         if (form == nullptr)
             throw InputError(here() + ": cell type " + std::to_string(piece.types[c]) +
                              " is not one of VTK's; export linear elements");
-        if (form->use == refuse) collector.refuse(*form, here());
+        if (collector.refuses(*form)) collector.refuse(*form, here());
         const auto begin = static_cast<std::size_t>(piece.offsets[c]);
         const auto size = static_cast<std::size_t>(piece.offsets[c + 1]) - begin;
         if (form->num_nodes != 0 && size != static_cast<std::size_t>(form->num_nodes))
@@ -148,6 +151,11 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
             collector.ignore(*form);
             continue;
         }
+        if (size < CellCollector::num_corners_of(*form))
+            throw InputError(here() + ": a " + form->name + " has at least " +
+                             std::to_string(CellCollector::num_corners_of(*form)) +
+                             " nodes, this one has " + std::to_string(size));
+        nodes.resize(size);
         for (std::size_t i = 0; i < size; ++i) {
             const auto node = piece.connectivity[begin + i];
             if (node < 0 || node >= num_points)
@@ -164,8 +172,7 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
             throw InputError(here() + ": region " + shown(piece.regions[c]) +
                              " is not a whole number of 32 bits; name another array as the "
                              "region array");
-        collector.keep(*form, first_cell + static_cast<std::int64_t>(c),
-                       std::span(nodes).first(size), *region, mesh);
+        collector.keep(*form, first_cell + static_cast<std::int64_t>(c), nodes, *region, mesh);
         if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);

@@ -56,6 +56,6 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
                                          const std::vector<std::string>& others);
 
 /// Makes a collector whose messages have the words of VTK.
-CellCollector make_vtk_collector(const std::string& file);
+CellCollector make_vtk_collector(const std::string& file, const ReadOptions& options);
 
 }  // namespace incise::io

@@ -56,7 +56,7 @@ VtuText cut_appended(const InputFile& file) {
 class VtuReader {
   public:
     VtuReader(const InputFile& file, const ReadOptions& options)
-        : file_(file), options_(options), collector_(make_vtk_collector(file.name())) {}
+        : file_(file), options_(options), collector_(make_vtk_collector(file.name(), options)) {}
 
     MeshFile read() {
         const auto text = cut_appended(file_);

@@ -88,6 +88,79 @@ TEST_F(FaultyMesh, IsWeldedOnConversion) {
               "joined\n");
 }
 
+TEST_F(FaultyMesh, IsWeldedFirstWhereThatIsAskedFor) {
+    write("soup.msh", soup({first, second}));
+    for (const std::string verb : {"info", "check"}) {
+        const auto outcome = run(verb + " --weld soup.msh");
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_EQ(outcome.err,
+                  "incise: warning: soup.msh: 3 points were joined to others at the same "
+                  "position\n");
+        EXPECT_NE(outcome.out.find(verb == "info" ? "points           5\n" : "with 5 points, 2 "),
+                  std::string::npos)
+            << outcome.out;
+    }
+    EXPECT_EQ(parsed(run("info --weld --json soup.msh").out)["components"], 1);
+    write("three.msh", soup({first, second, "1 0 0  0 1 0  0 0 1  2 2 2"}));
+    for (const std::string verb : {"info", "check"}) {
+        const auto outcome = run(verb + " --weld three.msh");
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_NE(outcome.err.find("three.msh: cells 0, 1 and 2 (in the file 1, 2 and 3) all share "
+                                   "one face"),
+                  std::string::npos)
+            << outcome.err;
+    }
+}
+
+const std::string second_order =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n"
+    "5 1 0 0\n6 1 1 0\n7 0 1 0\n8 0 0 1\n9 0 1 1\n10 1 0 1\n$EndNodes\n$Elements\n1\n"
+    "1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n";
+
+TEST_F(FaultyMesh, IsOfSecondOrderAndRefused) {
+    write("tet10.msh", second_order);
+    write("tet10.toml", "[mesh]\nfile = \"tet10.msh\"\n" + rest_of_scenario);
+    for (const auto* arguments :
+         {"info tet10.msh", "check tet10.msh", "check tet10.toml", "run tet10.toml --dry-run",
+          "convert tet10.msh a.vtu", "cut tet10.msh --out a.vtu --plane 0,0,0.2,0,0,1"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << arguments;
+        EXPECT_NE(outcome.err.find(
+                      "tet10.msh:19: element 1: a second-order tetrahedron (Gmsh element type 11) "
+                      "cannot be used; export linear elements (tetrahedra, hexahedra, wedges, "
+                      "pyramids), or read them by their corners as linear ones with 'incise "
+                      "convert --linear IN OUT' or with 'linear = true' in [mesh] of a scenario\n"),
+                  std::string::npos)
+            << outcome.err;
+    }
+}
+
+TEST_F(FaultyMesh, IsOfSecondOrderAndReadByItsCorners) {
+    write("tet10.msh", second_order);
+    write("tet10.toml", "[mesh]\nfile = \"tet10.msh\"\nlinear = true\n" + rest_of_scenario);
+    for (const auto* arguments :
+         {"info --linear tet10.msh", "check --linear tet10.msh", "check tet10.toml",
+          "run tet10.toml --dry-run", "convert --linear tet10.msh a.vtu"}) {
+        const auto outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << arguments << outcome.err;
+        EXPECT_EQ(outcome.err.find(
+                      "incise: warning: tet10.msh: read 1 second-order tetrahedron by the corners "
+                      "alone, as linear; 6 nodes that are no corners were left out\n"),
+                  0u)
+            << outcome.err;
+    }
+    const auto info = parsed(run("info --json a.vtu").out);
+    EXPECT_EQ(info["points"], 4);
+    EXPECT_EQ(info["tets"], 1);
+    EXPECT_EQ(info["warnings"].size(), 0u);
+    write("box.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nlinear = true\n" +
+                          rest_of_scenario);
+    EXPECT_EQ(
+        run("check box.toml").err,
+        "incise: warning: box.toml:3:10: 'mesh.linear' has no effect on a box, whose elements "
+        "are linear\n");
+}
+
 TEST_F(FaultyMesh, IsReportedWhereAGapIsTooWide) {
     write("gap.msh", soup({first, "1.001 0 0  0.001 1 0  0.001 0 1  1 1 1"}));
     for (const auto* arguments : {"check gap.msh", "convert gap.msh gap.vtu",

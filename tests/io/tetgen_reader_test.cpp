@@ -205,6 +205,24 @@ TEST(TetgenReader, RefusesEveryFileThatIsCutShort) {
         EXPECT_NE(refusal_of(node_file, element_file.substr(0, size)), "not refused") << size;
 }
 
+TEST(TetgenReader, ReadsSecondOrderTetrahedraByTheirCorners) {
+    std::string nodes = "11 3 0 0\n", element = "1 10 1\n1 7 8 9 10", rows;
+    for (int i = 0; i < 7; ++i) rows += std::to_string(i) + " 5 5 " + std::to_string(i) + "\n";
+    for (int i = 0; i < 6; ++i) element += " " + std::to_string(i);
+    const auto file =
+        read_tetgen_pair({"liver.node", nodes + rows + "7 0 0 0\n8 1 0 0\n9 0 1 0\n10 0 0 1\n"},
+                         {"liver.ele", element + " 3\n"}, {.linear = true});
+    // Node 6 belongs to no element at all, and is left to the warning about such points.
+    EXPECT_EQ(file.mesh.points.size(), 5u);
+    EXPECT_EQ(file.mesh.points[1], Vec3(0, 0, 0));
+    EXPECT_EQ(file.mesh.point_name(1), "point 1 (number 7 in the file)");
+    EXPECT_EQ(file.mesh.corners, (std::vector<std::int64_t>{1, 2, 3, 4}));
+    EXPECT_EQ(file.mesh.regions, std::vector<int>{3});
+    EXPECT_EQ(file.warnings,
+              std::vector<std::string>{"read 1 second-order tetrahedron by the corners alone, as "
+                                       "linear; 6 nodes that are no corners were left out"});
+}
+
 TEST(TetgenReader, RefusesWhatItCannotRead) {
     EXPECT_EQ(refusal_of_nodes("8  3", "8  2"), "liver.node:1: the dimension is 2; it must be 3");
     EXPECT_EQ(refusal_of_nodes("3    1  1  0", "3    1  nan  0"),

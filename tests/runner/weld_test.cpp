@@ -166,7 +166,7 @@ TEST(WeldKey, IsTrueOrFalseAndOfFiles) {
     EXPECT_EQ(folder.report(file_mesh + "wled = true\n" + rest).errors,
               Lines{(folder / "scene.toml").string() +
                     ":3:1: key 'mesh.wled': is not known; did you mean 'weld'? Known here: file, "
-                    "box, scale, region_array, weld"});
+                    "box, scale, region_array, weld, linear"});
     EXPECT_EQ(
         folder.report("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nweld = true\n" + rest)
             .warnings,
