@@ -11,6 +11,21 @@
 
 namespace incise::io {
 
+namespace {
+
+/// Throws InputError if the file is a pointer of Git LFS. The definition of the format limits
+/// pointers to 1024 bytes.
+void refuse_lfs_pointer(const InputFile& file) {
+    constexpr std::string_view mark = "version https://git-lfs.github.com/spec/v1";
+    constexpr std::size_t longest = 1024;
+    if (!file.bytes.starts_with(mark) || file.bytes.size() > longest) return;
+    throw InputError(file.name() +
+                     ": is a pointer of Git LFS, a text that stands for the file, and not the file "
+                     "itself; get the file with 'git lfs pull' in its repository");
+}
+
+}  // namespace
+
 std::size_t InputFile::line_of(std::size_t offset) const {
     const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(offset, bytes.size()));
     return 1 + static_cast<std::size_t>(std::count(bytes.begin(), end, '\n'));
@@ -46,6 +61,7 @@ InputFile load_input_file(const std::filesystem::path& path) {
                          std::to_string(size) +
                          " bytes could be read; it changed or the disk failed");
     if (file.bytes.starts_with("\xEF\xBB\xBF")) file.bytes.erase(0, 3);
+    refuse_lfs_pointer(file);
     return file;
 }
 

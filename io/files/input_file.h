@@ -21,7 +21,7 @@ struct InputFile {
 };
 
 /// Reads a file. Throws InputError if the path is not a readable regular file, or if the file is
-/// empty.
+/// empty or a pointer of Git LFS.
 InputFile load_input_file(const std::filesystem::path& path);
 
 /// Returns the text of a file for a message: each character that is not printable ASCII becomes a
