@@ -251,6 +251,8 @@ void declare_mesh(CLI::App& app, Action& action) {
             "Sample the image at the centres of cubes of this edge, which become the cells "
             "(default: one cell a voxel)")
         ->type_name("EDGE");
+    verb->add_flag("--labels", options->labels,
+                   "Take the values as labels, also where the image looks like a scan");
     verb->add_option("--scale", options->scale, "Multiply all coordinates (default: 1)")
         ->type_name("FACTOR");
     verb->footer("Formats to write: " + written_formats() + "\n" + mesh_footer);

@@ -76,7 +76,8 @@ topology::MeshData make(const MeshOptions& options) {
     const double factor = options.scale.empty() ? 1.0 : parse_positive("--scale", options.scale);
 
     const std::string prefix = options.in.string() + ": ";
-    const auto image = io::read_label_image(options.in);
+    const auto image = io::read_label_image(
+        options.in, {.has_labels = options.labels, .advice = "say so with --labels"});
     for (const auto& warning : image.warnings) print_warning(prefixed(prefix, warning));
     try {
         auto mesh = io::hex_mesh(image, size);

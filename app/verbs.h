@@ -66,6 +66,7 @@ int convert(const ConvertOptions& options);
 struct MeshOptions {
     std::filesystem::path in, out;
     bool hex = false;
+    bool labels = false;  ///< the image has labels, also if it looks like a scan
     std::string size;   ///< edge of the cells; if empty, one cell for each voxel
     std::string scale;  ///< factor of all coordinates; if empty, 1
 };

@@ -14,6 +14,7 @@
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/files/unpack.h"
+#include "incise/io/image/grey_values.h"
 #include "incise/io/image/image_header.h"
 
 namespace incise::io {
@@ -318,7 +319,7 @@ std::filesystem::path data_file_path(const InputFile& file, std::string_view nam
     return path;
 }
 
-LabelImage read_label_image(const std::filesystem::path& path) {
+LabelImage read_label_image(const std::filesystem::path& path, const LabelImageOptions& options) {
     const auto file = load_input_file(path);
     auto header = format_of(file).read(file);
     settle_pose(file, header);
@@ -332,6 +333,11 @@ LabelImage read_label_image(const std::filesystem::path& path) {
     image.labels = LabelDecoder(data_file, header).decode(without_lines(stored, header.skip_lines));
     if (std::ranges::all_of(image.labels, [](int label) { return label == 0; }))
         throw InputError(file.name() + ": no voxel with a label: all are 0");
+    const auto grey = options.has_labels ? std::nullopt : sign_of_grey_values(image.labels);
+    if (grey)
+        throw InputError(file.name() + ": looks like a scan, an image of grey values: it has " +
+                         *grey + "; give a segmentation of it, or, if each value is a label, " +
+                         options.advice);
     image.dimensions = header.dimensions;
     image.spacing = header.spacing;
     image.origin = header.origin;

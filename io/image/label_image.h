@@ -29,6 +29,15 @@ struct LabelImage {
     }
 };
 
+/// Options of read_label_image().
+struct LabelImageOptions {
+    /// True if the image has labels, however it looks. Else an image that looks like a scan is
+    /// refused; see grey_values.h.
+    bool has_labels = false;
+    /// What that refusal tells the user to do. The default is for programs that use the library.
+    std::string advice = "set LabelImageOptions::has_labels";
+};
+
 /// Reads NIfTI (1 and 2, .nii and .nii.gz), MetaImage (.mha, .mhd) and NRRD (.nrrd, .nhdr). The
 /// contents of the file decide its format, or else its suffix.
 ///
@@ -43,9 +52,11 @@ struct LabelImage {
 /// - other than three axes, or more than one component a voxel
 /// - values that are not whole numbers in the range of int
 /// - spacings that are not positive and finite, or directions that lie in a plane
+/// - more than 256 different values, or values below 0, unless the options allow them
 /// - an image without a label, or one that does not fit in memory
 ///
 /// Cost: some nanoseconds a voxel. Memory: the unpacked file, and four bytes a voxel.
-LabelImage read_label_image(const std::filesystem::path& path);
+LabelImage read_label_image(const std::filesystem::path& path,
+                            const LabelImageOptions& options = {});
 
 }  // namespace incise::io

@@ -48,6 +48,19 @@ TEST_F(Mesh, MakesAHexahedronOfEachLabelledVoxel) {
     EXPECT_EQ(info["warnings"], json::array());
 }
 
+TEST_F(Mesh, TakesNoScanForLabelsUnlessToldTo) {
+    auto scan = image;
+    scan.replace(scan.find("4 4  4 4"), 3, "-9 4");
+    write("scan.nrrd", scan);
+    EXPECT_EQ(refusal("scan.nrrd out.vtu --hex"),
+              "incise: scan.nrrd: looks like a scan, an image of grey values: it has values below "
+              "0, the lowest -9; give a segmentation of it, or, if each value is a label, say so "
+              "with --labels\n");
+    const auto outcome = run("mesh scan.nrrd out.vtu --hex --labels");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("region -9: 1;"), std::string::npos) << outcome.out;
+}
+
 TEST_F(Mesh, WritesRegionsInEveryFormatThatItReads) {
     for (const auto* out : {"b.vtu", "b.vtk", "b.msh"}) {
         ASSERT_EQ(run("mesh a.nrrd --hex " + std::string(out)).status, 0);

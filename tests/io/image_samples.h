@@ -130,11 +130,11 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& by
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Reads bytes as a file of this name.
+/// Reads bytes as a file of this name, whose values are labels however they look.
 inline LabelImage read_image(const std::string& name, const std::string& bytes) {
     const support::TemporaryFolder folder;
     write_bytes(folder / name, bytes);
-    return read_label_image(folder / name);
+    return read_label_image(folder / name, {.has_labels = true});
 }
 
 }  // namespace incise::io

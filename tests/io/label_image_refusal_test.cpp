@@ -64,6 +64,37 @@ TEST(LabelImage, RefusesFewerPackedBytesThanTheHeaderStates) {
                       "; get it anew");
 }
 
+/// A MetaImage of 32-bit numbers in a row.
+std::string row_of(const std::vector<int>& values) {
+    return replaced(replaced(meta_image_header("LOCAL"), "MET_UCHAR", "MET_INT"), "2 3 4",
+                    std::to_string(values.size()) + " 1 1") +
+           bytes_of<std::int32_t>(values);
+}
+
+TEST(LabelImage, RefusesScansUnlessToldThatTheyHaveLabels) {
+    std::vector<int> many(257);
+    std::iota(many.begin(), many.end(), 1000);
+    const std::vector<int> few(many.begin(), many.end() - 1);
+    const std::string remedy =
+        "; give a segmentation of it, or, if each value is a label, set "
+        "LabelImageOptions::has_labels";
+    EXPECT_EQ(image_refusal("a.mha", row_of(many)),
+              "a.mha: looks like a scan, an image of grey values: it has more than 256 different "
+              "values, from 1000 to 1256" +
+                  remedy);
+    EXPECT_EQ(image_refusal("a.mha", row_of({0, 3, -7, 0})),
+              "a.mha: looks like a scan, an image of grey values: it has values below 0, the "
+              "lowest -7" +
+                  remedy);
+    const support::TemporaryFolder folder;
+    write_bytes(folder / "few.mha", row_of(few));
+    EXPECT_EQ(read_label_image(folder / "few.mha").labels, few);
+    for (const auto& values : {many, std::vector<int>{0, 3, -7, 0}}) {
+        write_bytes(folder / "a.mha", row_of(values));
+        EXPECT_EQ(read_label_image(folder / "a.mha", {.has_labels = true}).labels, values);
+    }
+}
+
 TEST(LabelImage, RefusesDamagedNifti) {
     const auto refused = [](auto change) {
         Nifti nifti;
