@@ -43,7 +43,7 @@ std::optional<std::string> AbaqusKeyword::parameter(const std::string& wanted) c
 
 bool AbaqusLines::next() {
     while (scanner_.remaining() > 0) {
-        byte_ = file_.bytes.size() - scanner_.remaining();
+        byte_ = text_.whole().bytes.size() - scanner_.remaining();
         line_ = trimmed(scanner_.rest_of_line());
         if (!line_.empty() && !line_.starts_with("**")) return true;
     }
@@ -86,9 +86,7 @@ double AbaqusLines::real(std::string_view field, std::string_view what) const {
     return *parsed;
 }
 
-std::string AbaqusLines::location() const {
-    return file_.name() + ":" + std::to_string(file_.line_of(byte_));
-}
+std::string AbaqusLines::location() const { return text_.location(byte_); }
 
 void AbaqusLines::fail(const std::string& message) const {
     throw InputError(location() + ": " + message);

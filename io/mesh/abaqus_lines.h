@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "incise/io/files/scanner.h"
+#include "incise/io/mesh/abaqus_includes.h"
 
 namespace incise::io {
 
@@ -27,11 +28,12 @@ struct AbaqusKeyword {
 /// Returns the text as Abaqus compares it: in upper case, without blanks.
 std::string abaqus_word(std::string_view text);
 
-/// A position in an input file that moves line by line.
+/// A position in a deck, with the files that it includes, that moves line by line.
 class AbaqusLines {
   public:
+    /// Reads the included files. Throws InputError as AbaqusText does.
     /// @lifetime  the file must outlive the lines
-    explicit AbaqusLines(const InputFile& file) : file_(file), scanner_(file) {}
+    explicit AbaqusLines(const InputFile& file) : text_(file), scanner_(text_.whole()) {}
 
     /// Goes to the next line that is neither empty nor a comment. Returns false if there is none.
     bool next();
@@ -52,8 +54,8 @@ class AbaqusLines {
     /// InputError as number() does, and for a real that is not finite.
     double real(std::string_view field, std::string_view what) const;
 
-    /// Returns the byte whose line location() names: the beginning of this line, or the byte of the
-    /// last point_to().
+    /// Returns the byte of the text whose line location() names: the beginning of this line, or the
+    /// byte of the last point_to().
     std::size_t byte() const { return byte_; }
     void point_to(std::size_t byte) { byte_ = byte; }
     std::string location() const;
@@ -61,7 +63,7 @@ class AbaqusLines {
     [[noreturn]] void fail(const std::string& message) const;
 
   private:
-    const InputFile& file_;
+    AbaqusText text_;
     Scanner scanner_;
     std::string_view line_;
     std::size_t byte_ = 0;

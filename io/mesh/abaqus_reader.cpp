@@ -28,7 +28,6 @@ using Role = ElementSets::Role;
 
 /// Keywords that would change the mesh, and the reason in the error message.
 constexpr std::pair<std::string_view, const char*> refused_keywords[] = {
-    {"INCLUDE", "other files are not read; put the lines of that file in its place"},
     {"NGEN", "nodes are not generated; export all of them"},
     {"NFILL", "nodes are not generated; export all of them"},
     {"NCOPY", "nodes are not copied; export all of them"},
@@ -118,7 +117,9 @@ class AbaqusReader {
 
     void refuse_other_file() const {
         if (keyword_.parameter("INPUT"))
-            lines_.fail("INPUT: other files are not read; put the lines of that file here");
+            lines_.fail(
+                "INPUT: is not read here; put the lines of that file on the next lines, or "
+                "'*INCLUDE, INPUT=...'");
     }
 
     // --- *NODE: number, x, y, z

@@ -9,8 +9,9 @@ namespace incise::io {
 
 /// Reads an Abaqus or CalculiX file; see read_mesh(). Reads the nodes, elements and element sets of
 /// a model without parts, or with one part and at most one instance that is not moved. Skips all
-/// other sections. Throws InputError for keywords that generate nodes or elements (*NGEN, *ELGEN,
-/// ...) and for references to other files.
+/// other sections. The text of a file stands in place of a line *INCLUDE; see abaqus_includes.h.
+/// Throws InputError for keywords that generate nodes or elements (*NGEN, *ELGEN, ...) and for
+/// other references to files.
 ///
 /// Elements are in the order of their numbers, nodes in the order of the file. Regions are the sets
 /// that have a *SOLID SECTION. If no set has one, regions are the sets given with the elements. If

@@ -1,0 +1,140 @@
+// *INCLUDE in Abaqus and CalculiX decks: what it reads, and what is refused about it.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/io/mesh/abaqus_includes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "incise/base/error.h"
+#include "tests/io/reader_samples.h"
+#include "tests/support/temporary_folder.h"
+
+namespace incise::io {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using Files = std::map<std::string, std::string>;
+
+const std::string five_nodes =
+    "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1\n";
+
+class AbaqusInclude : public testing::Test {
+  protected:
+    void write(const Files& files) {
+        for (const auto& [name, text] : files) {
+            std::filesystem::create_directories((folder_ / name).parent_path());
+            std::ofstream(folder_ / name) << text;
+        }
+    }
+    MeshFile read(const Files& files) {
+        write(files);
+        return read_mesh(folder_ / "a.inp");
+    }
+    /// The message, without the folder.
+    std::string refused(const Files& files) {
+        try {
+            read(files);
+        } catch (const InputError& error) {
+            std::string text = error.what();
+            const auto prefix = (folder_ / "").string();
+            for (auto at = text.find(prefix); at != text.npos; at = text.find(prefix))
+                text.erase(at, prefix.size());
+            return text;
+        }
+        return "not refused";
+    }
+
+    support::TemporaryFolder folder_;
+};
+
+TEST_F(AbaqusInclude, ReadsFilesInPlaceOfTheLine) {
+    const auto file =
+        read({{"a.inp",
+               "** deck\n*include, input=nodes.txt\n*ELEMENT, TYPE=C3D4, ELSET=A\n"
+               "*INCLUDE, INPUT = parts/more.inp\n2, 2, 3, 4, 5\n"},
+              {"nodes.txt", five_nodes.substr(0, five_nodes.size() - 1)},  // no line feed
+              {"parts/more.inp", "1, 1, 2, 3,\n4\n"}});
+    EXPECT_EQ(file.mesh.points.size(), 5u);
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(1, 1));
+}
+
+TEST_F(AbaqusInclude, TakesNamesFromTheFolderOfTheDeck) {
+    const auto file = read(
+        {{"a.inp", "*INCLUDE,\n** a comment\nINPUT=\"parts/all of it.inp\"\n"},
+         {"parts/all of it.inp", "*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n"},
+         {"nodes.inp", five_nodes}});
+    EXPECT_EQ(file.mesh.num_cells(), 1u);
+}
+
+TEST_F(AbaqusInclude, MayComeTwice) {
+    const auto file =
+        read({{"a.inp", five_nodes + "*ELEMENT, TYPE=C3D4\n*INCLUDE, INPUT=one.inp\n*ELSET, "
+                                     "ELSET=A\n*INCLUDE, INPUT=set.inp\n*ELSET, ELSET=B\n"
+                                     "*INCLUDE, INPUT=set.inp\n"},
+              {"one.inp", "1, 1, 2, 3, 4\n"},
+              {"set.inp", "1\n"}});
+    EXPECT_THAT(file.mesh.regions, ElementsAre(1));
+}
+
+TEST_F(AbaqusInclude, NamesTheFileAndLineOfAFault) {
+    const std::string deck =
+        five_nodes + "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n*INCLUDE, INPUT=b.inp\n3, 2, 3, 4, 5\n";
+    EXPECT_THAT(refused({{"a.inp", deck}, {"b.inp", "** more\n2, 2, 3, 4, 9\n"}}),
+                StartsWith("b.inp:2: element 2: node 9 is not one of the 5 nodes"));
+    EXPECT_THAT(refused({{"a.inp", deck}, {"b.inp", "2, 2, x, 4, 5\n"}}),
+                StartsWith("b.inp:1: expected a node, from 1 on, found 'x'"));
+    EXPECT_THAT(refused({{"a.inp", deck + "4, 2, 3, 4, 9\n"}, {"b.inp", "2, 2, 3, 4, 5\n"}}),
+                StartsWith("a.inp:11: element 4: node 9"));
+    EXPECT_THAT(refused({{"a.inp", deck}, {"b.inp", "\n3, 2, 3, 4, 5\n"}}),
+                StartsWith("a.inp:10: number 3 is given to two elements"));
+}
+
+TEST_F(AbaqusInclude, RefusesFilesThatCannotBeRead) {
+    EXPECT_EQ(refused({{"a.inp", "** deck\n*INCLUDE, INPUT=b.inp\n"}}),
+              "a.inp:2: *INCLUDE: b.inp: no such file; check the path");
+    EXPECT_EQ(refused({{"a.inp", "*INCLUDE, INPUT=c.inp\n"}, {"c.inp", ""}}),
+              "a.inp:1: *INCLUDE: c.inp: the file is empty");
+    EXPECT_EQ(refused({{"a.inp", "*INCLUDE\n"}}),
+              "a.inp:1: *INCLUDE has no INPUT=...; name the file to include");
+    EXPECT_EQ(refused({{"a.inp", "*INCLUDE, INPUT=d.inp\n"}, {"d.inp", "\n*INCLUDE, INPUT=\n"}}),
+              "d.inp:2: *INCLUDE has no INPUT=...; name the file to include");
+}
+
+TEST_F(AbaqusInclude, RefusesCircles) {
+    EXPECT_THAT(refused({{"a.inp", "*INCLUDE, INPUT=a.inp\n"}}),
+                AllOf(StartsWith("a.inp:1: *INCLUDE: 'a.inp' is the file of this line, or"),
+                      HasSubstr("take the line out")));
+    EXPECT_THAT(refused({{"a.inp", "*INCLUDE, INPUT=b.inp\n"},
+                         {"b.inp", "**\n*INCLUDE, INPUT=c.inp\n"},
+                         {"c.inp", "**\n**\n*INCLUDE, INPUT=./b.inp\n"}}),
+                StartsWith("c.inp:3: *INCLUDE: './b.inp' is the file of this line, or includes"));
+}
+
+TEST_F(AbaqusInclude, BoundsTheNumberOfFiles) {
+    Files files;
+    for (int i = 0; i < 20; ++i) {
+        const std::string line = "*INCLUDE, INPUT=" + std::to_string(i + 1) + ".inp\n";
+        files[(i == 0 ? "a" : std::to_string(i)) + ".inp"] = line + line;
+    }
+    files["20.inp"] = "**\n";
+    EXPECT_THAT(refused(files), HasSubstr("more than 1000 files are included"));
+}
+
+TEST_F(AbaqusInclude, IsTheRemedyForDataInOtherFiles) {
+    EXPECT_EQ(refused({{"a.inp", "*NODE, INPUT=nodes.txt\n"}}),
+              "a.inp:1: INPUT: is not read here; put the lines of that file on the next lines, or "
+              "'*INCLUDE, INPUT=...'");
+}
+
+}  // namespace
+}  // namespace incise::io
