@@ -11,6 +11,7 @@
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
 #include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/febio_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
 #include "incise/io/mesh/medit_reader.h"
 #include "incise/io/mesh/mesh_text.h"
@@ -40,6 +41,7 @@ constexpr ReadFormat read_formats[] = {
     {"TetGen", ".node", "", read_tetgen},
     {"TetGen", ".ele", "", read_tetgen},
     {"Abaqus", ".inp", "*", read_abaqus},
+    {"FEBio", ".feb", "<febio_spec", read_febio},
 };
 // clang-format on
 
@@ -85,6 +87,13 @@ std::string known_formats() {
     return known;
 }
 
+/// Returns the format of XML, by its first element. The mark is that of VTU, which reports other
+/// XML.
+const ReadFormat* format_of_xml(std::string_view text) {
+    const auto read = begins_as_febio(text) ? read_febio : read_vtu;
+    return std::ranges::find(read_formats, read, &ReadFormat::read);
+}
+
 /// Returns the format with whose mark the text begins, or null.
 const ReadFormat* marked_format_of(const std::string& head) {
     for (const auto& format : read_formats)
@@ -123,6 +132,7 @@ const ReadFormat* read_format_of(const InputFile& file) {
                                  ", which cannot be read; convert it, with Gmsh or meshio for "
                                  "instance, to one of: " +
                                  known_formats());
+        if (text.starts_with('<')) return format_of_xml(text);
         if (const auto* format = marked_format_of(head)) return format;
         if (!text.starts_with('#')) break;  // MEDIT and TetGen files may begin with comments
         text.remove_prefix(std::min(text.find('\n'), text.size()));

@@ -142,6 +142,21 @@ std::string medit_text_of(const Forms& forms) {
     return text + "End\n";
 }
 
+std::string febio_text_of(const Forms& forms) {
+    const auto mesh = with_nodes(forms, true);
+    std::string text = "<febio_spec version=\"4.0\"><Mesh><Nodes>\n";
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        text +=
+            "<node id=\"" + std::to_string(i + 1) + "\">" + row(mesh.points[i], ",") + "</node>\n";
+    text += "</Nodes>\n";
+    for (std::size_t c = 0; c < 4; ++c)
+        text += "<Elements type=\"" + forms[c].code + "\" name=\"REGION_" +
+                std::to_string(sample_mesh().regions[c]) + "\">\n<elem id=\"" +
+                std::to_string(c + 1) + "\">" + row(mesh.cells[c], ",", 1) +
+                "</elem>\n</Elements>\n";
+    return text + "</Mesh></febio_spec>\n";
+}
+
 struct Case {
     const char* name;
     std::function<std::string(const Forms&)> text;
@@ -160,6 +175,8 @@ const std::vector<Case> cases = {
     {"c.vtu", vtu_text_of, {{{"80", 40}, {"79", 64}, {"81", 30}, {"78", 20}}}},
     {"a.inp", abaqus_text_of, {{{"C3D15", 15}, {"C3D20R", 20}, {"C3D13", 13}, {"C3D10M", 10}}}},
     {"b.inp", abaqus_text_of, {{{"C3D15V", 15}, {"C3D27", 27}, {"C3D13", 13}, {"C3D10", 10}}}},
+    {"a.feb", febio_text_of, {{{"penta15", 15}, {"HEX20", 20}, {"pyra13", 13}, {"tet10g8", 10}}}},
+    {"b.feb", febio_text_of, {{{"penta15", 15}, {"hex27", 27}, {"pyra13", 13}, {"tet5", 5}}}},
     {"a.mesh",
      medit_text_of,
      {{{"PrismsP2", 18}, {"HexahedraQ2", 27}, {"PyramidsP2", 14}, {"TetrahedraP2", 10}}}},

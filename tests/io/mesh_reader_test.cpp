@@ -45,7 +45,7 @@ TEST(MeshReader, KeepsWhatTheFileCallsCellsAndPoints) {
         if (is_a(".vtu") || is_a(".vtk")) {
             EXPECT_THAT(mesh.source_cells, ElementsAre(1, 3, 4, 6));
             EXPECT_EQ(mesh.point_name(3), "point 3");
-        } else if (is_a(".msh")) {
+        } else if (is_a(".msh") || is_a(".feb")) {
             EXPECT_THAT(mesh.source_cells, ElementsAre(4, 5, 6, 7));
             EXPECT_EQ(mesh.point_name(3), "point 3 (number 979 in the file)");
         } else if (is_a(".inp")) {

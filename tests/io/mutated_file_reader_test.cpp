@@ -7,6 +7,7 @@
 
 #include "incise/base/error.h"
 #include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/febio_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
 #include "incise/io/mesh/medit_reader.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
@@ -61,6 +62,10 @@ TEST(MutatedFileReader, ReadsOrRefusesLegacyVtk) {
 
 TEST(MutatedFileReader, ReadsOrRefusesAbaqus) {
     expect_read_or_refused(read_abaqus, abaqus_samples());
+}
+
+TEST(MutatedFileReader, ReadsOrRefusesFebio) {
+    expect_read_or_refused(read_febio, febio_samples());
 }
 
 TEST(MutatedFileReader, ReadsOrRefusesMedit) {

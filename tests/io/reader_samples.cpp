@@ -504,12 +504,64 @@ std::vector<Sample> abaqus_samples() {
     return {{"ascii.inp", text + "*STEP\n*STATIC\n0.1, 1.\n*END STEP\n"}};
 }
 
+std::vector<Sample> febio_samples() {
+    const auto mesh = sample_mesh();
+    std::vector<Sample> samples;
+    for (const std::string version : {"2.5", "3.0", "4.0"}) {
+        const std::string section = version == "2.5" ? "Geometry" : "Mesh";
+        std::string text = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n<!-- by <hand> -->\n" +
+                           ("<febio_spec version=\"" + version) +
+                           "\">\n<Module type=\"solid\"/>\n<" + section + ">\n<Nodes>\n";
+        for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+            if (i == 5) text += "</Nodes><Nodes name=\"more\">\n";
+            text += "<node id=\"" + std::to_string(tag_of(static_cast<std::int64_t>(i))) + "\">";
+            for (Eigen::Index k = 0; k < 3; ++k)
+                text += (k > 0 ? ", " : "") + std::to_string(mesh.points[i][k]);
+            text += "</node>\n";
+        }
+        text += "</Nodes>\n";
+        int id = 1;
+        const auto begin = [&](const std::string& type, int region) {
+            const auto number = std::to_string(region);
+            text += "<Elements type=\"" + type + "\" " +
+                    (version == "2.5" ? "mat=\"" + number + "\" name=\"Part\""
+                                      : "name=\"REGION_" + number + "\"") +
+                    ">\n";
+        };
+        const auto element = [&](const auto& nodes) {
+            text += "<elem id=\"" + std::to_string(id++) + "\">";
+            bool is_first = true;
+            for (const auto node : nodes) {
+                text += (is_first ? "" : ",") + std::to_string(tag_of(node));
+                is_first = false;
+            }
+            text += "</elem>\n";
+        };
+        begin("line2", 9);
+        element(std::array<std::int64_t, 2>{0, 1});
+        text += "</Elements>\n";
+        begin("tri3", 9);
+        for (const auto& triangle : sample_triangles) element(triangle);
+        text += "</Elements>\n";
+        constexpr std::array types = {"penta6", "hex8", "pyra5", "tet4"};
+        for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+            begin(types[c], mesh.regions[c]);
+            element(gmsh_nodes(mesh, c));
+            text += "</Elements>\n";
+        }
+        text += "<NodeSet name=\"held\"/>\n</" + section + ">\n</febio_spec>\n";
+        samples.push_back({"ascii-" + version + ".feb", text});
+    }
+    return samples;
+}
+
 std::vector<Sample> all_samples() {
     auto samples = vtu_samples();
     for (auto& sample : legacy_vtk_samples()) samples.push_back(std::move(sample));
     for (auto& sample : gmsh_samples()) samples.push_back(std::move(sample));
     for (auto& sample : medit_samples()) samples.push_back(std::move(sample));
     for (auto& sample : abaqus_samples()) samples.push_back(std::move(sample));
+    for (auto& sample : febio_samples()) samples.push_back(std::move(sample));
     return samples;
 }
 

@@ -33,6 +33,8 @@ std::vector<Sample> gmsh_samples();
 std::vector<Sample> medit_samples();
 /// Numbers of nodes and elements with gaps, in disorder; regions as sets.
 std::vector<Sample> abaqus_samples();
+/// Versions 2.5, 3.0 and 4.0; the blocks of elements name the regions.
+std::vector<Sample> febio_samples();
 std::vector<Sample> all_samples();
 
 /// Reads bytes as a file of this name in a temporary folder.
