@@ -67,8 +67,8 @@ struct MeshOptions {
     std::filesystem::path in, out;
     bool hex = false;
     bool labels = false;  ///< the image has labels, also if it looks like a scan
-    std::string size;   ///< edge of the cells; if empty, one cell for each voxel
-    std::string scale;  ///< factor of all coordinates; if empty, 1
+    std::string size;     ///< edge of the cells; if empty, one cell for each voxel
+    std::string scale;    ///< factor of all coordinates; if empty, 1
 };
 int mesh(const MeshOptions& options);
 

@@ -220,10 +220,12 @@ void report_conflicts(const Scenario& scenario, const topology::Mesh& mesh,
         const std::string& location = scenario.constraints[conflicts[i].second].location;
         if (i == max_told) {
             const std::size_t num_left = conflicts.size() - max_told;
-            problems.add(location, "and " + std::to_string(num_left) + " more pair" +
-                                       (num_left > 1 ? "s" : "") +
-                                       " of constraints from here on hold a node in the same "
-                                       "direction; make their selections disjoint");
+            problems.add(location,
+                         "and " + std::to_string(num_left) + " more pair" +
+                             (num_left > 1 ? "s" : "") +
+                             " of constraints from here on move a node differently in the "
+                             "same direction; make their selections disjoint or their "
+                             "motion there equal");
             return;
         }
         problems.add(location, describe(conflicts[i], mesh, constraints));

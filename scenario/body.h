@@ -25,7 +25,7 @@ physics::MaterialTable build_materials(const Scenario& scenario, const topology:
                                        std::vector<std::string>& warnings);
 
 /// Returns gravity, damping, constraints and loads. Throws BodyError with all empty selections, and
-/// with all constraints that prescribe the same component of a node.
+/// with all constraints that prescribe different values of a component of a node.
 physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
                                                       const topology::Mesh& mesh);
 

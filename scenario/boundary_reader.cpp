@@ -121,6 +121,10 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
         read_motion(constraint, end_time, spec);
         const bool moves = constraint.has("move") || constraint.has("rotate");
         if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
+        // Whether it agrees with other constraints cannot be judged then.
+        if (!constraint.is_sound("move") || !constraint.is_sound("rotate") ||
+            !constraint.is_sound("about"))
+            spec.fixed = {};
         if (!constraint.has("fix") && !moves)
             constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
         if (constraint.is_sound("where")) specs.push_back(std::move(spec));

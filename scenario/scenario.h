@@ -99,8 +99,8 @@ struct DynamicsSpec {
 struct ConstraintSpec {
     std::string name;
     sim::Selection where;
-    /// The fixed axes. At least one is true, unless the axes are not known. If the scenario moves
-    /// or rotates nodes and names no axes, all three are true.
+    /// The fixed axes. At least one is true, unless the axes or the motion are not known. If the
+    /// scenario moves or rotates nodes and names no axes, all three are true.
     std::array<bool, 3> fixed{};
     std::vector<TimeKey<Vec3>> move;      ///< `by`, m
     std::vector<TimeKey<double>> rotate;  ///< `angle`, radians

@@ -240,7 +240,7 @@ class World {
     /// Adds a constraint with a known motion: its curves are functions of the time of the world.
     /// The constraints of the definition have the first numbers.
     /// Throws InputError, and changes nothing, if a node does not exist, or if another constraint
-    /// prescribes the same component of a node.
+    /// prescribes another value of a component of a node.
     ConstraintId add_constraint(physics::Constraint constraint);
     /// Grasps nodes at their current positions. The nodes then move rigidly with a frame, for
     /// example that of a gripper.

@@ -15,6 +15,27 @@ namespace {
 /// be that of a node on a face of the carrier, by rounding of its rest position.
 constexpr double least_weight = 1e-9;
 
+/// True if two displacements have the same component `c` at all times.
+bool move_alike(const TimeCurve<Vec3>& a, const TimeCurve<Vec3>& b, std::size_t c) {
+    const auto axis = static_cast<Eigen::Index>(c);
+    const auto rests = [&](const TimeCurve<Vec3>& u) {
+        return std::ranges::all_of(u.keys(),
+                                   [&](const auto& key) { return key.second[axis] == 0.0; });
+    };
+    if (rests(a) && rests(b)) return true;
+    return std::ranges::equal(a.keys(), b.keys(), [&](const auto& p, const auto& q) {
+        return p.first == q.first && p.second[axis] == q.second[axis];
+    });
+}
+
+/// True if two constraints prescribe the same value of component `c` at every node and time.
+bool prescribe_alike(const Constraint& a, const Constraint& b, std::size_t c) {
+    if (!a.grip.is_empty() || !b.grip.is_empty()) return false;
+    const bool turn_alike = a.angle.keys() == b.angle.keys() &&
+                            (a.angle.is_empty() || (a.point == b.point && a.axis == b.axis));
+    return turn_alike && move_alike(a.displacement, b.displacement, c);
+}
+
 }  // namespace
 
 Vec3 Constraint::target(const topology::FragmentMesh& fragments, NodeId n, double time) const {
@@ -54,7 +75,8 @@ std::vector<ConstraintConflict> find_conflicts(const topology::Mesh& mesh,
                 std::size_t& first = first_of[member.node.index()][c];
                 if (first == nobody) {
                     first = s;
-                } else if (last_second[first] != s) {
+                } else if (last_second[first] != s &&
+                           !prescribe_alike(constraints[first], constraints[s], c)) {
                     last_second[first] = s;
                     conflicts.push_back({member.node, c, first, s});
                 }
@@ -66,17 +88,18 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
                      std::span<const Constraint> constraints) {
     return "node " + std::to_string(mesh.label(conflict.node)) + " is held in " +
            "xyz"[conflict.component] + " by both '" + constraints[conflict.first].name + "' and '" +
-           constraints[conflict.second].name + "'; make their selections disjoint";
+           constraints[conflict.second].name +
+           "', with different motion; make their selections disjoint or their motion there equal";
 }
 
 Constraints::Constraints(const Body& body, std::vector<Constraint> constraints,
                          std::span<const Vec3> positions)
     : constraints_(std::move(constraints)) {
-    require_disjoint(body.mesh);
+    require_agreement(body.mesh);
     index_all(body, positions);
 }
 
-void Constraints::require_disjoint(const topology::Mesh& mesh) const {
+void Constraints::require_agreement(const topology::Mesh& mesh) const {
     const auto conflicts = find_conflicts(mesh, constraints_);
     if (conflicts.empty()) return;
     const ConstraintConflict& first = conflicts.front();
@@ -147,7 +170,7 @@ void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
 void Constraints::add(const Body& body, Constraint constraint, std::span<const Vec3> positions) {
     constraints_.push_back(std::move(constraint));
     try {
-        require_disjoint(body.mesh);
+        require_agreement(body.mesh);
     } catch (const InputError&) {
         constraints_.pop_back();
         throw;

@@ -57,24 +57,26 @@ struct Constraint {
 /// @param pose   the pose of the frame of the grasp when it is added
 Constraint make_grip(std::string name, std::vector<NodeId> nodes, const Pose& pose);
 
-/// Two constraints that prescribe the same component of a node.
+/// Two constraints that prescribe different values of the same component of a node.
 struct ConstraintConflict {
     NodeId node;
     std::size_t component;
     std::size_t first, second;  ///< indices of the constraints, in ascending order
 };
 
-/// Thrown if two constraints prescribe the same component of a node.
+/// Thrown if two constraints prescribe different values of the same component of a node.
 struct ConflictingConstraints : InputError {
     ConflictingConstraints(const std::string& text, const ConstraintConflict& what)
         : InputError(text), conflict(what) {}
     ConstraintConflict conflict;
 };
 
-/// Returns the pairs of constraints that prescribe the same component of a living node. Each pair
-/// is given once, with its first such node and component. The first of a pair is the earliest
-/// constraint of that component. The pairs are in the order of their second constraints.
-/// Cost: O(n) in the nodes of the mesh and of all constraints.
+/// Returns the pairs of constraints that prescribe different values of the same component of a
+/// living node. Values are the same if both constraints move it along that component by the same
+/// keys, or not at all, and turn it by the same keys about the same axis, or not at all; those of
+/// grasps always differ. Each pair is given once, with its first such node and component. The first
+/// of a pair is the earliest constraint of that component. The pairs are in the order of their
+/// second constraints. Cost: O(n) in the nodes of the mesh and of all constraints.
 std::vector<ConstraintConflict> find_conflicts(const topology::Mesh& mesh,
                                                std::span<const Constraint> constraints);
 
@@ -88,8 +90,9 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
 /// of fragments that its material is between. A corner is prescribed if a fragment at it has a node
 /// of the constraint, and if the position of this node depends on the corner. So the copies of a
 /// node of a clamped face are prescribed as long as their fragments touch the face; a copy with no
-/// material at the face is free. Two constraints with different nodes may want the same corner.
-/// The earlier one gets it.
+/// material at the face is free. Two constraints with different nodes may want the same corner, and
+/// two constraints may prescribe the same value of a node. The earlier one gets it, with the
+/// reaction there.
 class Constraints {
   public:
     /// The mesh and its fragments, both after the edit that is followed.
@@ -98,8 +101,8 @@ class Constraints {
         const topology::FragmentMesh& fragments;
     };
 
-    /// Throws InputError, naming node and constraints, if two constraints prescribe the same
-    /// component of a node.
+    /// Throws InputError, naming node and constraints, if two constraints prescribe different
+    /// values of the same component of a node.
     /// @param positions  current, m, by node of the fragments: those at which grasps begin
     Constraints(const Body& body, std::vector<Constraint> constraints,
                 std::span<const Vec3> positions);
@@ -144,7 +147,7 @@ class Constraints {
                std::span<const Vec3> positions);
 
   private:
-    void require_disjoint(const topology::Mesh& mesh) const;
+    void require_agreement(const topology::Mesh& mesh) const;
     /// Calls visit(n) for each node of the fragments on which a node of the mesh depends; some of
     /// them more than once.
     template <class Visit>

@@ -229,8 +229,8 @@ class Model {
               const ModelChanges& done);
 
     /// Appends a constraint to the list. Throws InputError, and changes nothing, if another
-    /// constraint prescribes the same component of a node. Cost: O(n) in the nodes of the mesh and
-    /// of all constraints.
+    /// constraint prescribes another value of a component of a node. Cost: O(n) in the nodes of the
+    /// mesh and of all constraints.
     void add_constraint(Constraint constraint);
     /// Removes constraint `i`; the indices of later constraints decrease by one. Cost as for
     /// add_constraint().

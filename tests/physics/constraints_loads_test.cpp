@@ -54,6 +54,51 @@ TEST(Constraints, BearTheWeightInEquilibrium) {
     EXPECT_LT(model.totals().kinetic_energy, 1e-15 * model.totals().elastic_energy);
 }
 
+TEST(Constraints, MayAgreeAtANode) {
+    const Mesh mesh = bar();
+    BoundaryConditions s;
+    s.gravity = {0.0, 0.0, -0.5};
+    s.damping = 10.0;
+    s.constraints = {holding("clamp", left_end(mesh)), holding("again", left_end(mesh))};
+    // Displacements of zero are none, and so are those along axes that are not prescribed.
+    s.constraints[1].components = {false, true, true};
+    s.constraints[1].displacement =
+        TimeCurve<Vec3>({{0.0, Vec3(1.0, 0.0, 0.0)}, {1.0, Vec3(2.0, 0.0, 0.0)}});
+    Model model(mesh, table_of_one_law(soft_law, density), s);
+    const double dt = 0.8 * model.stable_step();
+    double time = 0.0;
+    for (int i = 0; i < 20; ++i) step(model, time, dt);
+    EXPECT_GT(model.reactions()[0].force.z(), 0.0);
+    EXPECT_EQ(model.reactions()[1].force, Vec3(0, 0, 0));  // the first has it all
+}
+
+TEST(Constraints, ConflictWhereTheirMotionDiffers) {
+    const Mesh mesh = bar();
+    const auto are_in_conflict = [&](auto change) {
+        std::vector<Constraint> two(2, holding("hand", left_end(mesh)));
+        for (Constraint& one : two) {
+            one.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 1.0, 2.0)}});
+            one.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.5}});
+        }
+        change(two[1]);
+        return !find_conflicts(mesh, two).empty();
+    };
+    EXPECT_FALSE(are_in_conflict([](Constraint&) {}));
+    EXPECT_TRUE(are_in_conflict([](Constraint& c) { c.point.x() = 0.1; }));
+    EXPECT_TRUE(are_in_conflict([](Constraint& c) { c.axis = Vec3::UnitX(); }));
+    EXPECT_TRUE(are_in_conflict([](Constraint& c) { c.angle = {}; }));
+    EXPECT_TRUE(are_in_conflict([](Constraint& c) { c.displacement = {}; }));
+    const auto slower = [](Constraint& c) {
+        c.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {2.0, Vec3(0.0, 1.0, 2.0)}});
+    };
+    EXPECT_TRUE(are_in_conflict(slower));
+    EXPECT_FALSE(are_in_conflict([&](Constraint& c) {
+        slower(c);
+        c.components = {true, false, false};  // along x both rest
+    }));
+    EXPECT_TRUE(are_in_conflict([](Constraint& c) { c.grip = TimeCurve<Pose>({{0.0, Pose{}}}); }));
+}
+
 TEST(Constraints, PrescribeDisplacementAndRotation) {
     const Mesh mesh = bar();
     BoundaryConditions s;
@@ -159,11 +204,12 @@ TEST(Constraints, DoNotSpreadToRestoredNodes) {
     }
 }
 
-TEST(Constraints, RefuseToHoldANodeTwice) {
+TEST(Constraints, RefuseToHoldANodeInTwoPlaces) {
     const Mesh mesh = bar();
     const auto table = table_of_one_law(soft_law);
     BoundaryConditions s;
     s.constraints.push_back(holding("clamp", left_end(mesh)));
+    s.constraints[0].displacement = TimeCurve<Vec3>({{0.0, Vec3(0.0, 0.0, 0.01)}});
     s.constraints.push_back(
         holding("rail", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
                 {false, false, true}));

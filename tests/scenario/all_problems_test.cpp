@@ -130,9 +130,11 @@ fix = "x"
 [[constraint]]
 where = { nodes = [3] }
 fix = "xy"
+move = [{ time = 0, by = [0, 0, 0] }, { time = 1, by = [1, 1, 0] }]
 [[constraint]]
 where = { nodes = [1, 3] }
 fix = "yx"
+move = [{ time = 0, by = [0, 0, 0] }, { time = 1, by = [2, 2, 0] }]
 [[constraint]]
 where = { nodes = [1, 3] }
 fix = "z"
@@ -140,12 +142,12 @@ fix = "z"
     const auto errors = ScenarioFile(text).all_errors();
     ASSERT_EQ(errors.size(), 4u);
     EXPECT_EQ(errors[0],
-              "scene.toml:14:9: node 3 is held in x by both 'constraint_1' and 'constraint_2'; "
-              "make their selections disjoint");
-    EXPECT_EQ(errors[1].find("scene.toml:17:9: node 3 is held in x by both 'constraint_1' and "
+              "scene.toml:14:9: node 3 is held in x by both 'constraint_1' and 'constraint_2', "
+              "with different motion; make their selections disjoint or their motion there equal");
+    EXPECT_EQ(errors[1].find("scene.toml:18:9: node 3 is held in x by both 'constraint_1' and "
                              "'constraint_3'"),
               0u);
-    EXPECT_EQ(errors[2].find("scene.toml:17:9: node 3 is held in y by both 'constraint_2' and "
+    EXPECT_EQ(errors[2].find("scene.toml:18:9: node 3 is held in y by both 'constraint_2' and "
                              "'constraint_3'"),
               0u);
     EXPECT_EQ(errors[3].find("scene.toml:9:13: dynamics.time_step of 5 s is above the stable"), 0u);
@@ -155,13 +157,15 @@ TEST(AllProblems, OfManyConstraintsAreTheFirstFew) {
     const auto errors = [](std::size_t num_constraints) {
         std::string text = minimal;
         for (std::size_t i = 0; i < num_constraints; ++i)
-            text += "[[constraint]]\nwhere = { region = 0 }\nfix = 'xyz'\n";
+            text += "[[constraint]]\nwhere = { region = 0 }\nmove = [{ time = 0, by = [" +
+                    std::to_string(i) + ", 0, 0] }]\n";
         return ScenarioFile(text).all_errors();
     };
     EXPECT_EQ(errors(11).size(), 10u);
     EXPECT_EQ(errors(12).back(),
-              "scene.toml:43:9: and 1 more pair of constraints from here on hold a node in the "
-              "same direction; make their selections disjoint");
+              "scene.toml:43:9: and 1 more pair of constraints from here on move a node "
+              "differently in the same direction; make their selections disjoint or their motion "
+              "there equal");
     const auto many = errors(1000);
     ASSERT_EQ(many.size(), 11u);
     EXPECT_EQ(many[9].find("scene.toml:40:9: node 0 is held in x by both 'constraint_1' and "
@@ -315,10 +319,16 @@ TEST(AllProblems, OfAnItemHideNoneOfItsOthers) {
         {loaded + "pressure = 1\nfactor = []\n", {"12:10", "10:9"}},
         {loaded, {"9:1"}},  // of what, is not known
         {"[[constraint]]\nwhere = { nodes = -1 }\nfix = 'w'\n", {"10:19", "11:7"}},
-        // Constraints that hold the same, as far as is known what they hold.
+        // Constraints of the same node, as far as is known what they prescribe.
+        {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'x'\n[[constraint]]\nname = '?'\nwhere = { "
+         "nodes = 1 }\nmove = [{ time = 0, by = [1, 0, 0] }]\n",
+         {"13:8", "14:9"}},
         {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'x'\n[[constraint]]\nname = '?'\nwhere = { "
          "nodes = 1 }\nfix = 'x'\n",
-         {"13:8", "14:9"}},
+         {"13:8"}},
+        {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'x'\n[[constraint]]\nwhere = { "
+         "nodes = 1 }\nmove = [{ time = -1, by = [1, 0, 0] }]\n",
+         {"14:18"}},
         {"[[constraint]]\nwhere = { nodes = 1 }\nfix = 'xx'\n[[constraint]]\nwhere = { "
          "nodes = 1 }\nfix = 'x'\n",
          {"11:7"}},

@@ -47,7 +47,12 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
              world.add_tool({"plane", cutting::PlaneCut{{}, Vec3::Zero()}});
          },
          "the normal of its plane is zero"},
-        {[&] { world.add_constraint({.name = "more", .nodes = floor}); },
+        {[&] {
+             world.add_constraint(
+                 {.name = "more",
+                  .nodes = floor,
+                  .displacement = physics::TimeCurve<Vec3>({{0.0, Vec3::Ones()}})});
+         },
          "is held in x by both 'floor' and 'more'"},
         {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
         {[&] { world.grasp("hand", {NodeId(99999)}, {}); }, "there is no node 99999"},
