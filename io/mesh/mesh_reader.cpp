@@ -16,6 +16,7 @@
 #include "incise/io/mesh/medit_reader.h"
 #include "incise/io/mesh/mesh_text.h"
 #include "incise/io/mesh/tetgen_reader.h"
+#include "incise/io/mesh/usda_reader.h"
 #include "incise/io/vtk/frame_index.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
@@ -42,6 +43,7 @@ constexpr ReadFormat read_formats[] = {
     {"TetGen", ".ele", "", read_tetgen},
     {"Abaqus", ".inp", "*", read_abaqus},
     {"FEBio", ".feb", "<febio_spec", read_febio},
+    {"USD as text", ".usda", "#usda", read_usda},
 };
 // clang-format on
 
@@ -50,7 +52,11 @@ constexpr ReadFormat read_formats[] = {
 struct ForeignFormat {
     const char* name;
     std::string_view magic;
+    const char* remedy = "convert it, with Gmsh or meshio for instance, to one of: ";
 };
+constexpr const char* usd_remedy =
+    "turn it into text, for instance by 'usdcat --flatten IN -o OUT.usda', or convert it to one "
+    "of: ";
 constexpr ForeignFormat foreign_formats[] = {
     {"a mesh of ANSYS Fluent", "("},
     {"an archive of ANSYS Mechanical", "/com"},
@@ -65,6 +71,8 @@ constexpr ForeignFormat foreign_formats[] = {
     {"a mesh of SU2", "ndime="},
     {"an HDF5 file, as of Fluent (.msh.h5), CGNS and MED", "\x89hdf"},
     {"a NetCDF file, as of Exodus", "cdf"},
+    {"a binary file of USD (.usdc or .usd)", "pxr-usdc", usd_remedy},
+    {"a packed archive, as of USD (.usdz)", "pk\x03\x04", usd_remedy},
 };
 
 constexpr std::size_t head_size = 128;  // longer than any magic
@@ -128,10 +136,8 @@ const ReadFormat* read_format_of(const InputFile& file) {
         const auto head = head_of(text);
         for (const auto& format : foreign_formats)
             if (head.starts_with(format.magic))
-                throw InputError(file.name() + ": is " + format.name +
-                                 ", which cannot be read; convert it, with Gmsh or meshio for "
-                                 "instance, to one of: " +
-                                 known_formats());
+                throw InputError(file.name() + ": is " + format.name + ", which cannot be read; " +
+                                 format.remedy + known_formats());
         if (text.starts_with('<')) return format_of_xml(text);
         if (const auto* format = marked_format_of(head)) return format;
         if (!text.starts_with('#')) break;  // MEDIT and TetGen files may begin with comments

@@ -58,15 +58,16 @@ struct MeshFile {
 ///
 /// The contents of the file decide its format, or else its suffix. Formats: VTU (all encodings),
 /// legacy VTK unstructured grids, Gmsh 1, 2 and 4.1, MEDIT (text), TetGen (either file of the pair
-/// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h), FEBio (see febio_reader.h).
+/// .node and .ele), Abaqus and CalculiX (see abaqus_reader.h), FEBio (see febio_reader.h),
+/// USD as text (see usda_reader.h).
 ///
 /// Vertices, lines and surface cells are left out with a warning. So are the nodes of cells of
 /// higher order that are no corners, if ReadOptions::linear is set; the points that are left keep
 /// their order. A point array `rest_position` of
 /// a VTK file replaces its points. The arrays `carrier` and `carrier_corners` of a VTU file become
 /// MeshData::carriers. Regions are the cell array of the options, the physical groups
-/// of Gmsh, the references of MEDIT, the first attribute of TetGen, or the element sets of Abaqus
-/// and FEBio.
+/// of Gmsh, the references of MEDIT, the first attribute of TetGen, or the element sets of
+/// Abaqus, FEBio and USD.
 ///
 /// If all cells have negative volume, the order of their corners is reversed, with a warning.
 /// Points may coincide (MeshData::points_may_coincide) in frames of runs, with carriers, and in

@@ -20,6 +20,8 @@ std::string legacy_vtk_text(const topology::MeshData& mesh);
 std::string gmsh_text(const topology::MeshData& mesh);
 std::string medit_text(const topology::MeshData& mesh);
 std::string abaqus_text(const topology::MeshData& mesh);
+/// @pre  all cells are tetrahedra
+std::string usda_text(const topology::MeshData& mesh);
 
 /// The corners of a cell in the order of Gmsh, MEDIT and Abaqus. The normal of the first triangle
 /// of a wedge points to the second triangle; in VTK it points away. Other kinds of cell have the

@@ -19,6 +19,7 @@ struct WrittenFormat {
     const char* suffix;
     std::string (*text)(const topology::MeshData&);
     bool has_carriers = false;
+    bool has_other_kinds = true;  ///< cells that are no tetrahedra
 };
 
 std::string plain_vtu_text(const topology::MeshData& mesh) {
@@ -30,10 +31,11 @@ std::string plain_vtu_text(const topology::MeshData& mesh) {
     return text;
 }
 
-constexpr std::array<WrittenFormat, 5> written_formats = {{
+constexpr std::array<WrittenFormat, 6> written_formats = {{
     {".inp", abaqus_text},
     {".mesh", medit_text},
     {".msh", gmsh_text},
+    {".usda", usda_text, false, false},
     {".vtk", legacy_vtk_text},
     {".vtu", plain_vtu_text, true},
 }};
@@ -74,7 +76,12 @@ void append_point(std::string& text, const Vec3& point, char separator) {
 }
 
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
-    write_file(path, written_format_of(path).text(mesh));
+    const auto& format = written_format_of(path);
+    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_other_kinds; ++c)
+        if (mesh.kinds[c] != topology::CellKind::tetrahedron)
+            throw InputError(path.string() + ": the format holds tetrahedra alone, and " +
+                             mesh.cell_name(c) + " is none; write .vtu");
+    write_file(path, format.text(mesh));
 }
 
 std::optional<std::string> loss_in_format(const std::filesystem::path& path,

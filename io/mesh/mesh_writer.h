@@ -19,10 +19,11 @@ namespace incise::io {
 /// - .mesh: MEDIT, with regions as references and cells grouped by kind
 /// - .inp: Abaqus and CalculiX, with regions as element sets and cells grouped by region and kind.
 ///   CalculiX itself has no pyramids.
+/// - .usda: USD as text, with regions other than 0 as subsets; tetrahedra alone
 ///
 /// If points may coincide, a comment says so. read_mesh() recognizes this comment.
-/// Throws InputError if the format is not known. Throws OutputError if the file cannot be written;
-/// its contents then do not change.
+/// Throws InputError if the format is not known, or has no place for a kind of cell of the mesh.
+/// Throws OutputError if the file cannot be written; its contents then do not change.
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);
 
 /// Returns a warning of what the format of the path cannot contain, and write_mesh() leaves out:

@@ -61,7 +61,8 @@ HigherOrderMesh with_nodes(const Forms& forms, bool has_wedges_inwards) {
 std::string row(const auto& numbers, const std::string& separator, std::int64_t shift = 0) {
     std::string text;
     for (const auto number : numbers)
-        text += (text.empty() ? "" : separator) + std::to_string(number + shift);
+        text += (text.empty() ? "" : separator) +
+                std::to_string(number + static_cast<std::decay_t<decltype(number)>>(shift));
     return text;
 }
 

@@ -42,12 +42,22 @@ class ForeignLocale {
     std::locale cpp_;
 };
 
+/// The tetrahedra alone, for formats that hold no others.
+topology::MeshData tetrahedra_of(const topology::MeshData& mesh) {
+    topology::MeshData result;
+    result.points = mesh.points;
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c)
+        if (mesh.kinds[c] == topology::CellKind::tetrahedron)
+            result.add_cell(mesh.kinds[c], mesh.cell(c), mesh.regions[c]);
+    return result;
+}
+
 /// What is written, by suffix.
 std::map<std::string, std::string> written(const topology::MeshData& mesh) {
     const support::TemporaryFolder folder;
     std::map<std::string, std::string> files;
     for (const auto& suffix : writable_suffixes()) {
-        write_mesh(folder / ("mesh" + suffix), mesh);
+        write_mesh(folder / ("mesh" + suffix), suffix == ".usda" ? tetrahedra_of(mesh) : mesh);
         files[suffix] = support::read_text(folder / ("mesh" + suffix));
     }
     return files;
