@@ -4,9 +4,11 @@
 #include <string>
 
 #include "incise/io/mesh/abaqus_reader.h"
+#include "incise/io/mesh/febio_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
 #include "incise/io/mesh/medit_reader.h"
 #include "incise/io/mesh/tetgen_reader.h"
+#include "incise/io/mesh/usda_reader.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
 #include "incise/topology/fragment_mesh.h"
@@ -44,7 +46,8 @@ using Reader = io::MeshFile (*)(const io::InputFile&, const io::ReadOptions&);
 
 void read_mesh(Reader reader, const char* name, std::string_view bytes) {
     const io::InputFile file{name, std::string(bytes)};
-    read_or_refuse(name, [&] { use(reader(file, {}).mesh); });
+    for (const bool linear : {false, true})
+        read_or_refuse(name, [&] { use(reader(file, {.linear = linear}).mesh); });
 }
 
 }  // namespace
@@ -54,6 +57,8 @@ void legacy_vtk(std::string_view bytes) { read_mesh(io::read_legacy_vtk, "fuzz.v
 void gmsh(std::string_view bytes) { read_mesh(io::read_gmsh, "fuzz.msh", bytes); }
 void medit(std::string_view bytes) { read_mesh(io::read_medit, "fuzz.mesh", bytes); }
 void abaqus(std::string_view bytes) { read_mesh(io::read_abaqus, "fuzz.inp", bytes); }
+void febio(std::string_view bytes) { read_mesh(io::read_febio, "fuzz.feb", bytes); }
+void usda(std::string_view bytes) { read_mesh(io::read_usda, "fuzz.usda", bytes); }
 
 void tetgen(std::string_view bytes) {
     constexpr std::string_view divider = "----\n";

@@ -14,6 +14,8 @@ void medit(std::string_view bytes);
 /// The two files of the pair, divided by a line ----.
 void tetgen(std::string_view bytes);
 void abaqus(std::string_view bytes);
+void febio(std::string_view bytes);
+void usda(std::string_view bytes);
 /// STL, PLY and OFF by their first bytes, else OBJ.
 void surface(std::string_view bytes);
 void label_image(std::string_view bytes);
@@ -25,8 +27,8 @@ struct Target {
 };
 
 inline constexpr Target targets[] = {
-    {"vtu", vtu},         {"legacy_vtk", legacy_vtk},   {"gmsh", gmsh},
-    {"medit", medit},     {"tetgen", tetgen},           {"abaqus", abaqus},
+    {"vtu", vtu},         {"legacy_vtk", legacy_vtk},   {"gmsh", gmsh},         {"medit", medit},
+    {"tetgen", tetgen},   {"abaqus", abaqus},           {"febio", febio},       {"usda", usda},
     {"surface", surface}, {"label_image", label_image}, {"scenario", scenario},
 };
 
