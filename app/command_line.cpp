@@ -38,7 +38,8 @@ constexpr const char* footer =
     "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
     "                                                    a cut without dynamics\n"
     "  incise convert liver.msh liver.vtu                from one format to another\n"
-    "  incise mesh liver.nii.gz liver.vtu --hex          from a label image to hexahedra\n"
+    "  incise mesh liver.stl liver.vtu --size 0.008      from a surface or a label image to "
+    "tetrahedra\n"
     "  incise render liver.out --out liver.png           a picture of the last frame\n"
     "\n"
     "Exit status: 0 done; 1 done, but an [expect] failed; 2 the input or the usage is at fault;\n"
@@ -116,8 +117,8 @@ void declare_linear(CLI::App* verb, bool& linear) {
 void declare_check(CLI::App& app, Action& action) {
     auto options = std::make_shared<CheckOptions>();
     auto* verb =
-        app.add_subcommand("check", "Report every problem of scenarios and meshes; change nothing");
-    verb->add_option("FILE", options->files, "Scenario (.toml) or mesh files")
+        app.add_subcommand("check", "Report every problem of scenarios, meshes and surfaces");
+    verb->add_option("FILE", options->files, "Scenario (.toml), mesh or surface files")
         ->required()
         ->type_name("PATH ...");
     declare_linear(verb, options->input.linear);
@@ -130,8 +131,10 @@ void declare_check(CLI::App& app, Action& action) {
 
 void declare_info(CLI::App& app, Action& action) {
     auto options = std::make_shared<InfoOptions>();
-    auto* verb = app.add_subcommand("info", "Describe a mesh: counts, size, regions, quality");
-    verb->add_option("MESH", options->mesh, "Mesh file")->required()->type_name("PATH");
+    auto* verb = app.add_subcommand("info", "Describe a mesh or a surface: counts, size, quality");
+    verb->add_option("MESH", options->mesh, "Mesh file, or a surface (.stl, .ply, .off, .obj)")
+        ->required()
+        ->type_name("PATH");
     declare_region_array(verb, options->input.region_array);
     declare_linear(verb, options->input.linear);
     verb->add_flag("--weld", options->input.weld, "Join points at the same position first");
@@ -227,30 +230,55 @@ void declare_convert(CLI::App& app, Action& action) {
 }
 
 constexpr const char* mesh_footer =
-    "IN is a segmentation: NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr) "
-    "of\n"
-    "one whole number a voxel. Each voxel whose label is not 0 becomes a box, the label its "
-    "region.\n"
-    "Lengths and --size are in the file's unit, usually millimetres: --scale 0.001 gives metres.\n"
-    "Points are placed as the file says: NIfTI to the right, front and head; MetaImage and NRRD "
-    "in\n"
-    "their own frame, usually to the left, back and head.\n"
+    "IN is a closed surface, or several: STL, PLY, OFF or OBJ (.stl, .ply, .off, .obj). Of one "
+    "file\n"
+    "each closed part is a region; a part that faces inwards within another one is a cavity. Of\n"
+    "several files each is a region. Parts may enclose and touch each other.\n"
     "\n"
-    "Example: incise mesh liver.nii.gz liver.vtu --hex --size 4 --scale 0.001";
+    "Or IN is a segmentation: NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd) or NRRD (.nrrd, "
+    ".nhdr)\n"
+    "of one whole number a voxel. Each label other than 0 is a region. With --hex each of its "
+    "voxels\n"
+    "becomes a box.\n"
+    "\n"
+    "Lengths are in the unit of OUT, which is that of IN times --scale: --scale 0.001 makes metres "
+    "of\n"
+    "millimetres. Points are placed as IN says: NIfTI to the right, front and head; MetaImage and\n"
+    "NRRD in their own frame, usually to the left, back and head.\n"
+    "\n"
+    "The same input gives the same bytes. The least altitude that is printed limits the time step "
+    "of\n"
+    "a run: a larger --size-surface makes it larger.\n"
+    "\n"
+    "Examples:\n"
+    "  incise mesh liver.stl liver.vtu --size 0.008 --size-surface 0.004 --scale 0.001\n"
+    "  incise mesh bone.stl marrow.stl femur.vtu --size 0.004 --features 40\n"
+    "  incise mesh liver.nii.gz liver.vtu --size 0.005 --scale 0.001\n"
+    "  incise mesh liver.nii.gz liver.vtu --hex --size 0.004 --scale 0.001";
 
 void declare_mesh(CLI::App& app, Action& action) {
     auto options = std::make_shared<MeshOptions>();
-    auto* verb = app.add_subcommand("mesh", "Make a mesh from a label image");
-    verb->add_option("IN", options->in, "Label image")->required()->type_name("PATH");
-    verb->add_option("OUT", options->out, "Mesh file to write; replaced if it is there")
+    auto* verb = app.add_subcommand("mesh", "Make a mesh of closed surfaces or of a label image");
+    verb->add_option("FILES", options->files,
+                     "IN, one label image or any number of surfaces, then OUT, the mesh file to "
+                     "write; replaced if it is there")
         ->required()
-        ->type_name("PATH");
-    verb->add_flag("--hex", options->hex, "Of hexahedra, the only kind in this version");
+        ->type_name("IN ... OUT");
+    verb->add_flag("--hex", options->hex, "Hexahedra of a label image (default: tetrahedra)");
     verb->add_option(
             "--size", options->size,
-            "Sample the image at the centres of cubes of this edge, which become the cells "
-            "(default: one cell a voxel)")
+            "Length of the edges of tetrahedra inside. With --hex: the image is sampled at "
+            "the centres of cubes of this edge, which become the cells (default: one cell "
+            "a voxel)")
         ->type_name("EDGE");
+    verb->add_option("--size-surface", options->size_surface,
+                     "Length of edges on surfaces; they grow inwards up to --size (default: "
+                     "--size)")
+        ->type_name("EDGE");
+    verb->add_option("--features", options->features,
+                     "Keep edges at which a surface turns by at least this angle, in degrees "
+                     "(default: edges are rounded off)")
+        ->type_name("ANGLE");
     verb->add_flag("--labels", options->labels,
                    "Take the values as labels, also where the image looks like a scan");
     verb->add_option("--scale", options->scale, "Multiply all coordinates (default: 1)")

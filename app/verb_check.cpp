@@ -1,4 +1,4 @@
-// incise check: reports every problem of scenarios and meshes without changing anything.
+// incise check: reports every problem of scenarios, meshes and surfaces without changing anything.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@
 
 #include "incise/app/messages.h"
 #include "incise/app/progress.h"
+#include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/scenario_reader.h"
 #include "incise/topology/mesh.h"
@@ -94,7 +96,25 @@ Findings check_scenario(const std::filesystem::path& path) {
     return findings;
 }
 
+/// Checks whether a body can be made of the surface. A surface that is not closed is no problem of
+/// its own, as a cut may follow it.
+Findings check_surface(const std::filesystem::path& path) {
+    const std::string prefix = path.string() + ": ";
+    Findings findings;
+    try {
+        const auto surface = surface_info(path);
+        for (const auto& warning : surface.warnings) findings.warnings.push_back(prefix + warning);
+        if (!surface.fault.empty())
+            findings.warnings.push_back(prefix + surface.fault + ", to make a body of it");
+        findings.summary = summary_of(surface);
+    } catch (const InputError& error) {
+        findings.errors.emplace_back(error.what());
+    }
+    return findings;
+}
+
 Findings check_file(const std::filesystem::path& file, const MeshInput& input) {
+    if (io::has_surface_suffix(file)) return check_surface(file);
     return file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, input);
 }
 

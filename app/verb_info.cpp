@@ -1,4 +1,4 @@
-// incise info: describes a mesh, as text or as JSON.
+// incise info: describes a mesh or a surface, as text or as JSON.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstdio>
 #include <iostream>
@@ -8,8 +8,10 @@
 
 #include "incise/app/body_measures.h"
 #include "incise/app/messages.h"
+#include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/remedies.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_metrics.h"
@@ -100,9 +102,22 @@ void print_text(const MeshInfo& info) {
     std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
 }
 
+int info_of_surface(const InfoOptions& options) {
+    const auto surface = surface_info(options.mesh);
+    if (options.json) {
+        std::cout << json_of(surface) << '\n';
+        return done;
+    }
+    for (const auto& warning : surface.warnings)
+        print_warning(prefixed(options.mesh.string() + ": ", warning));
+    std::cout << text_of(surface);
+    return done;
+}
+
 }  // namespace
 
 int info(const InfoOptions& options) {
+    if (io::has_surface_suffix(options.mesh)) return info_of_surface(options);
     const auto info = look_at(options);
     if (options.json) {
         // Warnings may quote names from the file, which can have any encoding.

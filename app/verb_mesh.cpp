@@ -1,4 +1,4 @@
-// incise mesh: generates a mesh from a label image.
+// incise mesh: makes hexahedra of a label image, or starts incise-tetmesh, which makes tetrahedra.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <array>
 #include <cmath>
@@ -7,12 +7,14 @@
 #include <map>
 #include <set>
 
+#include "incise/app/companion.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/image/label_mesh.h"
 #include "incise/io/mesh/mesh_writer.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/table_reader.h"
 #include "incise/topology/geometry.h"
 
@@ -51,14 +53,6 @@ Summary summarize(const topology::MeshData& mesh) {
     return summary;
 }
 
-void scale(topology::MeshData& mesh, double factor) {
-    for (Vec3& point : mesh.points) point *= factor;
-    const auto summary = summarize(mesh);
-    if (!(summary.volume > 0.0 && std::isfinite(summary.volume)))
-        throw InputError("--scale: " + io::shown(factor) +
-                         " makes coordinates beyond the range of numbers; give one nearer to 1");
-}
-
 /// Warns of labels of the image that no cell has, because no centre of a cube has the label.
 void warn_of_lost_labels(const std::string& prefix, const io::LabelImage& image,
                          const topology::MeshData& mesh) {
@@ -70,19 +64,28 @@ void warn_of_lost_labels(const std::string& prefix, const io::LabelImage& image,
                       " has no cell: no cube has its centre in it; give a smaller --size");
 }
 
-topology::MeshData make(const MeshOptions& options) {
+void require_finite(const topology::MeshData& mesh, double factor) {
+    const auto summary = summarize(mesh);
+    if (!(summary.volume > 0.0 && std::isfinite(summary.volume)))
+        throw InputError("--scale: " + io::shown(factor) +
+                         " makes coordinates beyond the range of numbers; give one nearer to 1");
+}
+
+topology::MeshData make_hexahedra(const std::string& in, const MeshOptions& options) {
     std::optional<double> size;
     if (!options.size.empty()) size = parse_positive("--size", options.size);
     const double factor = options.scale.empty() ? 1.0 : parse_positive("--scale", options.scale);
 
-    const std::string prefix = options.in.string() + ": ";
-    const auto image = io::read_label_image(
-        options.in, {.has_labels = options.labels, .advice = "say so with --labels"});
+    const std::string prefix = in + ": ";
+    auto image = io::read_label_image(
+        in, {.has_labels = options.labels, .advice = "say so with --labels"});
     for (const auto& warning : image.warnings) print_warning(prefixed(prefix, warning));
     try {
+        image.spacing *= factor;
+        image.origin *= factor;
         auto mesh = io::hex_mesh(image, size);
         if (size) warn_of_lost_labels(prefix, image, mesh);
-        if (factor != 1.0) scale(mesh, factor);
+        require_finite(mesh, factor);
         return mesh;
     } catch (const InputError& error) {
         throw InputError(prefixed(prefix, error.what()));
@@ -99,18 +102,53 @@ void print(const std::string& out, const topology::MeshData& mesh) {
                 low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
 }
 
+/// Makes hexahedra of an image. Throws InputError for what is only for tetrahedra.
+int mesh_of_hexahedra(const MeshOptions& options) {
+    const std::string &in = options.files.front(), &out = options.files.back();
+    if (options.files.size() > 2 || io::has_surface_suffix(in))
+        throw InputError("--hex makes cubes of one label image, and " + options.files[0] +
+                         (options.files.size() > 2 ? " is not the only file" : " is a surface") +
+                         "; leave --hex out for tetrahedra");
+    for (const auto& [name, value] : {std::pair("--size-surface", options.size_surface),
+                                      std::pair("--features", options.features)})
+        if (!value.empty())
+            throw InputError(std::string(name) +
+                             " is for tetrahedra, and cubes are all alike; leave it or --hex out");
+    io::check_writable(out);
+    const auto made = make_hexahedra(in, options);
+    io::write_mesh(out, made);
+    print(out, made);
+    return done;
+}
+
+/// Lets incise-tetmesh make tetrahedra. Throws InputError for options that it would refuse too, so
+/// that the message is the same where the program is not there.
+int mesh_of_tetrahedra(const MeshOptions& options) {
+    if (options.size.empty())
+        throw InputError(
+            "--size is required for tetrahedra: give the length of their edges, in the unit of the "
+            "mesh; or --hex for one cube a voxel");
+    std::vector<std::string> words = options.files;
+    for (const auto& [name, value] :
+         {std::pair("--size", options.size), std::pair("--size-surface", options.size_surface),
+          std::pair("--features", options.features), std::pair("--scale", options.scale)}) {
+        if (value.empty()) continue;
+        parse_positive(name, value);
+        words.push_back(name + ("=" + value));
+    }
+    io::check_writable(options.files.back());
+    return run_companion("incise-tetmesh", words,
+                         "it is built together with incise where CGAL's mesh generator is "
+                         "(libcgal-dev, CMake option INCISE_TETMESH); without it, --hex makes "
+                         "hexahedra of label images");
+}
+
 }  // namespace
 
 int mesh(const MeshOptions& options) {
-    io::check_writable(options.out);
-    if (!options.hex)
-        throw InputError(
-            "tetrahedra cannot be made from images by this version yet: use --hex for hexahedra, "
-            "or mesh the image with a mesher such as gmsh, saved as .msh (2 or 4.1), .vtu or .vtk");
-    const auto made = make(options);
-    io::write_mesh(options.out, made);
-    print(options.out.string(), made);
-    return done;
+    if (options.files.size() < 2)
+        throw InputError("OUT is required: name the files to read, then the file to write");
+    return options.hex ? mesh_of_hexahedra(options) : mesh_of_tetrahedra(options);
 }
 
 }  // namespace incise::app

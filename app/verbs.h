@@ -51,7 +51,7 @@ struct CheckOptions {
 int check(const CheckOptions& options);
 
 struct InfoOptions {
-    std::filesystem::path mesh;
+    std::filesystem::path mesh;  ///< or a surface
     MeshInput input;
     bool json = false;
 };
@@ -64,12 +64,16 @@ struct ConvertOptions {
 int convert(const ConvertOptions& options);
 
 struct MeshOptions {
-    std::filesystem::path in, out;
+    std::vector<std::string> files;  ///< those to read, then the one to write
     bool hex = false;
-    bool labels = false;  ///< the image has labels, also if it looks like a scan
-    std::string size;     ///< edge of the cells; if empty, one cell for each voxel
-    std::string scale;    ///< factor of all coordinates; if empty, 1
+    bool labels = false;       ///< the image has labels, also if it looks like a scan
+    std::string size;  ///< edge of the cells; with `hex` and if empty, one cell for each voxel
+    std::string size_surface;  ///< edge on the surface; if empty, that of `size`
+    std::string features;      ///< angle of edges to keep; if empty, none is kept
+    std::string scale;         ///< factor of all coordinates; if empty, 1
 };
+/// Makes hexahedra, or lets incise-tetmesh make tetrahedra. Returns the exit status of that
+/// program.
 int mesh(const MeshOptions& options);
 
 /// An option that adds a tool, with its value as given.

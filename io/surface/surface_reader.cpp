@@ -50,6 +50,12 @@ const SurfaceFormat* surface_format_of(const InputFile& file) {
 
 }  // namespace
 
+bool has_surface_suffix(const std::filesystem::path& path) {
+    const auto suffix = lower_case(path.extension().string());
+    return std::ranges::any_of(
+        surface_formats, [&](const SurfaceFormat& format) { return suffix == format.suffix; });
+}
+
 SurfaceFile read_surface(const std::filesystem::path& path) {
     const auto file = load_input_file(path);
     const auto* format = surface_format_of(file);

@@ -16,6 +16,10 @@ struct SurfaceFile {
     std::vector<std::string> warnings;  ///< one sentence each, without the name of the file
 };
 
+/// True if the name ends as those of surface files do: in .stl, .ply, .off or .obj, in upper or
+/// lower case.
+bool has_surface_suffix(const std::filesystem::path& path);
+
 /// Reads the polygons of a file as triangles, in the order and with the orientation of the file.
 /// The contents of the file decide its format, or else its suffix. Formats: STL (ascii and binary),
 /// PLY (ascii and binary of either byte order), OFF (text), OBJ (by its suffix only).
