@@ -2,7 +2,6 @@
 #include "incise/app/surface_info.h"
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -23,9 +22,7 @@ std::string line_of(const char* format, Values... values) {
 /// A twentieth of the longest side, with one digit: some thousand tetrahedra.
 double first_size(const Box& box) {
     const double size = box.sizes().maxCoeff() / 20.0;
-    if (!(size > 0.0)) return 1.0;
-    const double unit = std::pow(10.0, std::floor(std::log10(size)));
-    return std::stod(line_of("%.1g", std::ceil(size / unit) * unit));
+    return size > 0.0 ? std::stod(line_of("%.1g", size)) : 1.0;
 }
 
 std::string in_shell(const std::string& text) {

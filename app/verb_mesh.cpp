@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "incise/app/companion.h"
 #include "incise/app/messages.h"
@@ -64,9 +66,11 @@ void warn_of_lost_labels(const std::string& prefix, const io::LabelImage& image,
                       " has no cell: no cube has its centre in it; give a smaller --size");
 }
 
-void require_finite(const topology::MeshData& mesh, double factor) {
-    const auto summary = summarize(mesh);
-    if (!(summary.volume > 0.0 && std::isfinite(summary.volume)))
+void scale(io::LabelImage& image, double factor) {
+    image.spacing *= factor;
+    image.origin *= factor;
+    const double volume = image.spacing.prod();
+    if (!(volume > 0.0 && std::isfinite(volume) && image.origin.allFinite()))
         throw InputError("--scale: " + io::shown(factor) +
                          " makes coordinates beyond the range of numbers; give one nearer to 1");
 }
@@ -81,11 +85,9 @@ topology::MeshData make_hexahedra(const std::string& in, const MeshOptions& opti
         in, {.has_labels = options.labels, .advice = "say so with --labels"});
     for (const auto& warning : image.warnings) print_warning(prefixed(prefix, warning));
     try {
-        image.spacing *= factor;
-        image.origin *= factor;
+        scale(image, factor);
         auto mesh = io::hex_mesh(image, size);
         if (size) warn_of_lost_labels(prefix, image, mesh);
-        require_finite(mesh, factor);
         return mesh;
     } catch (const InputError& error) {
         throw InputError(prefixed(prefix, error.what()));

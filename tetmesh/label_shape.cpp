@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "incise/base/error.h"
 #include "tetmesh/first_points.h"

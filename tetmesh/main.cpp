@@ -51,9 +51,9 @@ BodyShape read_surfaces(const Options& options) {
 
 BodyShape read_image(const Options& options) {
     if (options.in.size() > 1)
-        throw InputError(options.in[1].string() +
-                         ": several files must all be surfaces (.stl, .ply, .off, .obj), and " +
-                         options.in[0].string() + " is none; mesh one label image alone");
+        throw InputError(
+            "is no surface (.stl, .ply, .off, .obj), and of several files all must be; mesh one "
+            "label image alone");
     if (options.angle)
         throw InputError("--features: a label image has no sharp edges to keep; leave it out");
     auto image = io::read_label_image(options.in[0]);
@@ -69,10 +69,12 @@ BodyShape read_body(const Options& options) {
     return are_surfaces ? read_surfaces(options) : read_image(options);
 }
 
-/// Throws InputError with a message that begins with the name of the file.
-[[noreturn]] void rethrow_named(const std::string& name, const InputError& error) {
+/// Throws InputError with a message that begins with the name of a file or of an option.
+[[noreturn]] void rethrow_named(const Options& options, const InputError& error) {
     const std::string text = error.what();
-    throw InputError(text.starts_with(name) || text.starts_with("--") ? text : name + ": " + text);
+    bool is_named = text.starts_with("--");
+    for (const auto& path : options.in) is_named |= text.starts_with(path.string());
+    throw InputError(is_named ? text : options.in[0].string() + ": " + text);
 }
 
 topology::MeshData make(const Options& options, std::vector<std::string>& warnings) {
@@ -105,7 +107,7 @@ void run(const Options& options) {
     try {
         mesh = make(options, warnings);
     } catch (const InputError& error) {
-        rethrow_named(options.in[0].string(), error);
+        rethrow_named(options, error);
     }
     print_warnings(options.in[0].string(), warnings);
     io::write_mesh(options.out, mesh);

@@ -120,13 +120,13 @@ Domain domain_of(const BodyShape& body, const ElementSizes& sizes, CGAL::Random&
 /// stay as short as it is.
 void insert_first_points(const BodyShape& body, const SizeField& sizes, const Domain& domain,
                          Complex& complex) {
-    constexpr double near_of_edge = 0.7, near_of_part = 0.3;
+    constexpr double near_of_edge = 0.7, near_of_part = 0.5;
     for (const PartPoints& part : body.first_points) {
         Box box;
         for (const Vec3& x : part.points) box.extend(x);
         for (const Vec3& x : part.points) {
             const double near =
-                std::min(near_of_edge * sizes.at(x), near_of_part * box.diagonal().norm());
+                std::min(near_of_edge * sizes.at(x), near_of_part * box.sizes().minCoeff());
             auto& triangulation = complex.triangulation();
             if (triangulation.number_of_vertices() > 0) {
                 const auto nearest = triangulation.nearest_power_vertex(to_point(x));
@@ -164,6 +164,8 @@ topology::MeshData mesh_of(const Complex& complex) {
 
 topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& sizes,
                                  const Observer& observer) {
+    // A body without a first triangle is refused below, in the words of this program.
+    CGAL::set_warning_handler([](const char*, const char*, const char*, int, const char*) {});
     CGAL::get_default_random() = CGAL::Random(seed);
     CGAL::Random random(seed);
     const SizeField field(body, sizes.inside, sizes.surface);

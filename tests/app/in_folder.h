@@ -25,10 +25,13 @@ class InFolder : public testing::Test {
     }
 
     /// Runs the program in the folder; the arguments are words of a shell.
-    Outcome run(const std::string& arguments, const std::string& program = INCISE_PROGRAM) {
+    /// @param environment  such as "PATH=bin"
+    Outcome run(const std::string& arguments, const std::string& program = INCISE_PROGRAM,
+                const std::string& environment = "") {
         const auto out = folder_ / "stdout", err = folder_ / "stderr";
-        const std::string line = "cd '" + folder_.path().string() + "' && '" + program + "' " +
-                                 arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+        const std::string line = "cd '" + folder_.path().string() + "' && " + environment + " '" +
+                                 program + "' " + arguments + " >'" + out.string() + "' 2>'" +
+                                 err.string() + "'";
         const int result = std::system(line.c_str());
         return {WIFEXITED(result) ? WEXITSTATUS(result) : -1, support::read_text(out),
                 support::read_text(err)};

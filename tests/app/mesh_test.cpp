@@ -72,7 +72,7 @@ TEST_F(Mesh, WritesRegionsInEveryFormatThatItReads) {
 }
 
 TEST_F(Mesh, SamplesCubesAndScales) {
-    const auto outcome = run("mesh a.nrrd out.vtu --hex --size 1 --scale 0.001");
+    const auto outcome = run("mesh a.nrrd out.vtu --hex --size 0.001 --scale 0.001");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(outcome.out.substr(0, outcome.out.find("points")), "out.vtu: 54 cells, 123 ");
@@ -105,12 +105,52 @@ TEST_F(Mesh, ReportsTheWarningsOfTheImage) {
               "taken\n");
 }
 
-TEST_F(Mesh, RefusesToMakeTetrahedra) {
-    const auto message = refusal("a.nrrd out.vtu");
-    EXPECT_EQ(message.find("incise: tetrahedra cannot be made from images by this version yet: "
-                           "use --hex for hexahedra, or mesh the image with a mesher such as gmsh"),
-              0u)
-        << message;
+TEST_F(Mesh, HandsTetrahedraOverWithAllArguments) {
+    const auto program = (folder_ / "incise").string();
+    std::filesystem::copy_file(INCISE_PROGRAM, program);
+    const auto missing = run("mesh a.nrrd out.vtu --size 2", program, "PATH=/none");
+    EXPECT_EQ(missing.status, 2);
+    EXPECT_EQ(missing.err.find("incise: incise-tetmesh: cannot be started, neither from "), 0u)
+        << missing.err;
+    EXPECT_NE(missing.err.find("libcgal-dev"), std::string::npos);
+
+    const auto script = [&](const std::string& folder, const std::string& last_words) {
+        const std::string name = folder + "incise-tetmesh";
+        write(name, "#!/bin/sh\nprintf '<%s>' \"$@\"\n" + last_words + "\n");
+        std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
+    };
+    std::filesystem::create_directory(folder_ / "bin");
+    script("bin/", "exit 4");
+    const std::string arguments = "mesh 'a b.stl' b.stl out.vtu --size 2 --scale 1e-3";
+    const auto words = "<a b.stl><b.stl><out.vtu><--size=2><--scale=1e-3>";
+    const auto in_path = run(arguments, program, "PATH=bin");
+    EXPECT_EQ(in_path.out, words);
+    EXPECT_EQ(in_path.status, 4);
+
+    script("", "kill -9 $$");
+    const auto beside = run(arguments + " --size-surface 1 --features 30", program);
+    EXPECT_EQ(beside.out,
+              "<a b.stl><b.stl><out.vtu><--size=2><--size-surface=1><--features=30>"
+              "<--scale=1e-3>");
+    EXPECT_EQ(beside.status, 5);
+    EXPECT_NE(beside.err.find("was killed"), std::string::npos) << beside.err;
+}
+
+TEST_F(Mesh, TellsHexahedraAndTetrahedraApart) {
+    EXPECT_EQ(refusal("a.nrrd out.vtu"),
+              "incise: --size is required for tetrahedra: give the length of their edges, in the "
+              "unit of the mesh; or --hex for one cube a voxel\n");
+    EXPECT_EQ(refusal("a.stl out.vtu --hex"),
+              "incise: --hex makes cubes of one label image, and a.stl is a surface; leave --hex "
+              "out for tetrahedra\n");
+    EXPECT_NE(refusal("a.nrrd b.nrrd out.vtu --hex").find("a.nrrd is not the only file"),
+              std::string::npos);
+    for (const std::string option : {"--size-surface", "--features"}) {
+        EXPECT_NE(refusal("a.nrrd out.vtu --hex " + option + " 1").find("is for tetrahedra"),
+                  std::string::npos);
+        EXPECT_NE(refusal("a.nrrd out.vtu --size 1 " + option + "=-1").find("above 0"),
+                  std::string::npos);
+    }
 }
 
 TEST_F(Mesh, RefusesArgumentsThatCannotBe) {
@@ -153,8 +193,9 @@ TEST_F(Mesh, ReportsOutputFailures) {
 
 TEST_F(Mesh, ExplainsItselfInItsHelp) {
     const auto help = run("mesh --help").out;
-    for (const auto* words : {"--hex", "--size EDGE", "--scale FACTOR", ".nii.gz",
-                              "right, front and head", "Example: incise mesh"})
+    for (const auto* words :
+         {"--hex", "--size EDGE", "--size-surface EDGE", "--features ANGLE", "--scale FACTOR",
+          ".nii.gz", ".stl", "right, front and head", "Examples:", "  incise mesh liver.nii.gz"})
         EXPECT_NE(help.find(words), std::string::npos) << words;
 }
 

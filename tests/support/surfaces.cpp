@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,34 @@ SurfaceData box_surface(const Box& box) {
     s.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     return s;
+}
+
+SurfaceData joined(const SurfaceData& a, const SurfaceData& b) {
+    SurfaceData both = a;
+    const auto first = static_cast<std::int64_t>(a.points.size());
+    both.points.insert(both.points.end(), b.points.begin(), b.points.end());
+    for (const auto& [p, q, r] : b.triangles)
+        both.triangles.push_back({first + p, first + q, first + r});
+    return both;
+}
+
+SurfaceData turned(SurfaceData surface) {
+    for (auto& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
+    return surface;
+}
+
+std::string stl_text(const SurfaceData& surface) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "solid s\n";
+    for (const auto& triangle : surface.triangles) {
+        text << "facet normal 0 0 0\nouter loop\n";
+        for (const auto p : triangle)
+            text << "vertex " << surface.points[static_cast<std::size_t>(p)].transpose() << '\n';
+        text << "endloop\nendfacet\n";
+    }
+    text << "endsolid s\n";
+    return text.str();
 }
 
 }  // namespace incise::test
