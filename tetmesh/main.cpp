@@ -96,6 +96,7 @@ topology::MeshData make(const Options& options, std::vector<std::string>& warnin
     // Only a fault of the program could leave errors, and no file is to hold them.
     if (const auto found = topology::check(mesh); !found.errors.empty())
         throw std::logic_error("the mesh that was made is not valid: " + found.errors.front());
+    refuse_remnant(mesh, body.volumes);
     warnings = losses_of(mesh, body.volumes);
     return mesh;
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -47,6 +48,19 @@ std::string report_of(const std::string& name, const topology::MeshData& mesh) {
                       metrics.mean_edge_length, metrics.min_altitude,
                       metrics.min_dihedral_angle * 180.0 / std::numbers::pi);
     return text;
+}
+
+void refuse_remnant(const topology::MeshData& mesh, const std::map<int, double>& volumes) {
+    constexpr double next_to_nothing = 0.1;
+    double wanted = 0.0, found = 0.0;
+    for (const auto& [region, volume] : volumes) wanted += volume;
+    for (const auto& [region, volume] : volumes_of(mesh)) found += volume;
+    if (found < next_to_nothing * wanted)
+        throw InputError(
+            formatted("the mesh would have a volume of %.4g, and the input has %.4g: "
+                      "it is thinner than the edges; give a smaller --size or "
+                      "--size-surface",
+                      found, wanted));
 }
 
 std::vector<std::string> losses_of(const topology::MeshData& mesh,

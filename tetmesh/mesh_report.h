@@ -14,6 +14,10 @@ namespace incise::tetmesh {
 /// The least altitude is that which limits the time step of a run.
 std::string report_of(const std::string& name, const topology::MeshData& mesh);
 
+/// Throws InputError if next to nothing of the body is left in the mesh, as happens where it is
+/// thinner than the edges.
+void refuse_remnant(const topology::MeshData& mesh, const std::map<int, double>& volumes);
+
 /// Returns warnings about regions that the mesh has lost, or whose volume is not that of the body.
 std::vector<std::string> losses_of(const topology::MeshData& mesh,
                                    const std::map<int, double>& volumes);
