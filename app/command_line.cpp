@@ -263,7 +263,7 @@ void declare_mesh(CLI::App& app, Action& action) {
                      "IN, one label image or any number of surfaces, then OUT, the mesh file to "
                      "write; replaced if it is there")
         ->required()
-        ->type_name("IN ... OUT");
+        ->type_name(" ");
     verb->add_flag("--hex", options->hex, "Hexahedra of a label image (default: tetrahedra)");
     verb->add_option(
             "--size", options->size,
