@@ -81,8 +81,8 @@ topology::MeshData make_hexahedra(const std::string& in, const MeshOptions& opti
     const double factor = options.scale.empty() ? 1.0 : parse_positive("--scale", options.scale);
 
     const std::string prefix = in + ": ";
-    auto image = io::read_label_image(
-        in, {.has_labels = options.labels, .advice = "say so with --labels"});
+    auto image =
+        io::read_label_image(in, {.has_labels = options.labels, .advice = "say so with --labels"});
     for (const auto& warning : image.warnings) print_warning(prefixed(prefix, warning));
     try {
         scale(image, factor);
@@ -138,6 +138,7 @@ int mesh_of_tetrahedra(const MeshOptions& options) {
         parse_positive(name, value);
         words.push_back(name + ("=" + value));
     }
+    if (options.labels) words.push_back("--labels");
     io::check_writable(options.files.back());
     return run_companion("incise-tetmesh", words,
                          "it is built together with incise where CGAL's mesh generator is "

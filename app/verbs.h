@@ -66,8 +66,8 @@ int convert(const ConvertOptions& options);
 struct MeshOptions {
     std::vector<std::string> files;  ///< those to read, then the one to write
     bool hex = false;
-    bool labels = false;       ///< the image has labels, also if it looks like a scan
-    std::string size;  ///< edge of the cells; with `hex` and if empty, one cell for each voxel
+    bool labels = false;  ///< the image has labels, also if it looks like a scan
+    std::string size;     ///< edge of the cells; with `hex` and if empty, one cell for each voxel
     std::string size_surface;  ///< edge on the surface; if empty, that of `size`
     std::string features;      ///< angle of edges to keep; if empty, none is kept
     std::string scale;         ///< factor of all coordinates; if empty, 1

@@ -56,7 +56,8 @@ BodyShape read_image(const Options& options) {
             "label image alone");
     if (options.angle)
         throw InputError("--features: a label image has no sharp edges to keep; leave it out");
-    auto image = io::read_label_image(options.in[0]);
+    auto image = io::read_label_image(
+        options.in[0], {.has_labels = options.has_labels, .advice = "say so with --labels"});
     print_warnings(options.in[0].string(), image.warnings);
     image.spacing *= options.scale;
     image.origin *= options.scale;

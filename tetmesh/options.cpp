@@ -44,6 +44,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--features", features,
                    "Keep edges at which a surface turns by at least this angle, degrees");
     app.add_option("--scale", scale, "Multiply all coordinates (default: 1)");
+    app.add_flag("--labels", options.has_labels,
+                 "Take the values as labels, also where the image looks like a scan");
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {  // --help, --version

@@ -17,6 +17,7 @@ struct Options {
     ElementSizes sizes;           ///< in the unit of `out`
     std::optional<double> angle;  ///< at which an edge is kept, rad
     double scale = 1.0;           ///< of the coordinates of `in`
+    bool has_labels = false;      ///< the image has labels, also if it looks like a scan
 };
 
 /// Returns the options, or the exit status if there is nothing more to do: after --help, or after

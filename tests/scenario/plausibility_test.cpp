@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A block of 10 cm that rests on its bottom.
-const std::string block = R"([mesh]
+const std::string rest_block = R"([mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
 [[material]]
 density = 1000
@@ -37,29 +37,32 @@ std::vector<std::string> warnings_of(const std::string& text,
     return check_body(report.scenario).warnings;
 }
 
-TEST(Plausibility, OfABlockOfTissueIsNotDoubted) { EXPECT_THAT(warnings_of(block), IsEmpty()); }
+TEST(Plausibility, OfABlockOfTissueIsNotDoubted) {
+    EXPECT_THAT(warnings_of(rest_block), IsEmpty());
+}
 
 TEST(Plausibility, NamesTheUnitThatMayBeMeant) {
-    EXPECT_THAT(warnings_of(block, {"mesh.box.size=[100, 100, 100]", "material[0].young=1e9"}),
+    EXPECT_THAT(warnings_of(rest_block, {"mesh.box.size=[100, 100, 100]", "material[0].young=1e9"}),
                 ElementsAre(HasSubstr("scene.toml:2:7: the body is 100 m long; if its coordinates "
                                       "are in millimetres, write scale = 0.001")));
-    EXPECT_THAT(warnings_of(block, {"mesh.box.size=[1e-5, 1e-5, 1e-5]"}),
+    EXPECT_THAT(warnings_of(rest_block, {"mesh.box.size=[1e-5, 1e-5, 1e-5]"}),
                 ElementsAre(HasSubstr("the body is only 1e-05 m long")));
-    EXPECT_THAT(warnings_of(block, {"material[0].density=1.06"}),
+    EXPECT_THAT(warnings_of(rest_block, {"material[0].density=1.06"}),
                 ElementsAre(HasSubstr("material 1 has a density of 1.06 kg/m3")));
-    EXPECT_THAT(warnings_of(block, {"material[0].young=5", "dynamics.gravity=[0, 0, 0]"}),
+    EXPECT_THAT(warnings_of(rest_block, {"material[0].young=5", "dynamics.gravity=[0, 0, 0]"}),
                 ElementsAre(HasSubstr("a Young's modulus of 5 Pa at rest")));
 }
 
 TEST(Plausibility, AsksWhatHoldsTheBodyAndWhetherItBearsItself) {
-    EXPECT_THAT(warnings_of(block.substr(0, block.find("[[constraint]]")) +
-                            block.substr(block.find("[dynamics]"))),
+    EXPECT_THAT(warnings_of(rest_block.substr(0, rest_block.find("[[constraint]]")) +
+                            rest_block.substr(rest_block.find("[dynamics]"))),
                 ElementsAre(HasSubstr("nothing holds the body against gravity")));
-    EXPECT_THAT(warnings_of(block, {"material[0].young=1000"}),
+    EXPECT_THAT(warnings_of(rest_block, {"material[0].young=1000"}),
                 ElementsAre(HasSubstr("its own weight may crush it")));
     // Lying flat it bears itself.
-    EXPECT_THAT(warnings_of(block, {"material[0].young=1000", "mesh.box.size=[0.1, 0.1, 0.02]"}),
-                IsEmpty());
+    EXPECT_THAT(
+        warnings_of(rest_block, {"material[0].young=1000", "mesh.box.size=[0.1, 0.1, 0.02]"}),
+        IsEmpty());
 }
 
 // A body of two tetrahedra that share a face, one of which is flat.
