@@ -80,7 +80,68 @@ bool is_at_or_below(std::string_view path, std::string_view owner) {
            (path.size() == owner.size() || path[owner.size()] == '.' || path[owner.size()] == '[');
 }
 
+namespace {
+
+struct Synonym {
+    std::string_view said, meant;
+};
+
+/// What people call things, where it is not what the program calls them.
+constexpr Synonym synonyms[] = {
+    // tools
+    {"scalpel", "blade"},
+    {"knife", "blade"},
+    {"scissors", "blade"},
+    {"wire", "blade"},
+    {"stitch", "suture"},
+    {"thread", "suture"},
+    {"seam", "suture"},
+    {"forceps", "grasper"},
+    {"gripper", "grasper"},
+    {"clamp", "grasper"},
+    {"jaws", "grasper"},
+    {"burr", "carver"},
+    {"drill", "carver"},
+    {"cautery", "carver"},
+    {"eraser", "carver"},
+    {"indenter", "probe"},
+    {"finger", "probe"},
+    {"needle", "probe"},
+    {"plane", "cut"},
+    // verbs
+    {"simulate", "run"},
+    {"start", "run"},
+    {"solve", "run"},
+    {"resume", "run"},
+    {"plot", "render"},
+    {"draw", "render"},
+    {"view", "render"},
+    {"picture", "render"},
+    {"validate", "check"},
+    {"verify", "check"},
+    {"lint", "check"},
+    {"describe", "info"},
+    {"export", "convert"},
+    {"tetrahedralize", "mesh"},
+    {"benchmark", "bench"},
+    // keys and names of laws
+    {"youngs_modulus", "young"},
+    {"E", "young"},
+    {"nu", "poisson"},
+    {"poisson_ratio", "poisson"},
+    {"rho", "density"},
+    {"mu", "friction"},
+    {"duration", "end_time"},
+    {"dt", "time_step"},
+    {"svk", "saint-venant-kirchhoff"},
+    {"stvk", "saint-venant-kirchhoff"},
+};
+
+}  // namespace
+
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {
+    for (const auto& [said, meant] : synonyms)
+        if (name == said && std::ranges::find(candidates, meant) != candidates.end()) return meant;
     std::string_view best;
     auto least = std::numeric_limits<std::size_t>::max();
     for (const auto candidate : candidates)

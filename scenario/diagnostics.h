@@ -63,7 +63,8 @@ class Diagnostics {
 /// True if `path` is `owner`, a key below it, or one of its elements.
 bool is_at_or_below(std::string_view path, std::string_view owner);
 
-/// Returns the candidate with the smallest edit distance from `name`. The distance counts
+/// Returns the candidate that people mean by `name`, such as "blade" by "scalpel", or else that
+/// with the smallest edit distance from it. The distance counts
 /// insertions, deletions, replacements and swaps of neighbours, and ignores case. Of equal
 /// candidates the first one is returned. Without candidates the result is empty.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);

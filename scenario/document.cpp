@@ -302,6 +302,40 @@ const Value* find(const Table& table, std::string_view key) {
     return nullptr;
 }
 
+namespace {
+
+struct Explanation {
+    std::string_view of_library, in_words;
+};
+
+/// What the library says of a fault of syntax, and what it means for who has written the file. The
+/// first that fits counts.
+constexpr Explanation explanations[] = {
+    {"parsing string: unescaped control", "the text has no closing quote on its line"},
+    {"parsing string: encountered end-of-file", "the text has no closing quote"},
+    {"redefine", "the name is there twice: of several tools or materials, each begins with [[ ]]"},
+    {"unicode scalar", "a backslash in a text begins a special character: write paths with /"},
+    {"escape", "a backslash in a text begins a special character: write paths with /"},
+    {"could not determine value type", "that is no value: a text needs quotes, as in \"xyz\""},
+    {"parsing array", "the values of a list need commas between them, and a ] at the end"},
+    {"parsing inline table",
+     "entries in { } are of the form key = value, with commas between them"},
+    {"expected a comment or whitespace",
+     "something follows the value: a number has a point, not a comma, and each key its own line"},
+    {"expected '='", "a key needs an equals sign and a value, as in end_time = 1"},
+    {"table header", "a section needs both brackets, as in [mesh] and [[tool]]"},
+    {"expected decimal digit", "a number has digits before and after its point, as in 0.5"},
+};
+
+std::string in_words(std::string_view description) {
+    for (const auto& [of_library, words] : explanations)
+        if (description.find(of_library) != description.npos)
+            return std::string(words) + " (" + std::string(description) + ")";
+    return std::string(description);
+}
+
+}  // namespace
+
 Value read_document(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
@@ -329,11 +363,15 @@ Value read_document(const std::filesystem::path& file) {
                          ": is a mesh, not a scenario; a scenario is a text file that names its "
                          "mesh: [mesh] file = \"" +
                          file.filename().string() + "\"");
+    if (text.find('\0') != text.npos)
+        throw InputError(file.string() +
+                         ": is no text, and a scenario is a text file; `incise info` tells what a "
+                         "mesh or a surface is");
     require_flat_keys(text, -1);
     try {
         return convert(toml::parse(text), -1);
     } catch (const toml::parse_error& failure) {
-        throw DocumentError{location_of(failure.source(), -1), std::string(failure.description())};
+        throw DocumentError{location_of(failure.source(), -1), in_words(failure.description())};
     }
 }
 

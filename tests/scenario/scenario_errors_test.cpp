@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "incise/scenario/diagnostics.h"
 #include "scenario_file.h"
 
 namespace incise::scenario {
@@ -421,6 +422,41 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
                   "reaction_floor_x, reaction_floor_y, reaction_floor_z, torque_floor_x, "
                   "torque_floor_y, torque_floor_z, " +
                   more);
+}
+
+// For each kind of fault, what is wrong comes before what the parser says.
+TEST(ScenarioErrors, ExplainFaultsOfSyntaxInWords) {
+    const std::vector<std::pair<std::string, std::string>> faults = {
+        {"title = A kidney\n", "1:9: that is no value: a text needs quotes"},
+        {"title = \"kidney\n", "the text has no closing quote on its line"},
+        {"title = \"C:\\users\"\n", "a backslash in a text begins a special character"},
+        {"title = \"C:\\data\"\n", "a backslash in a text begins a special character"},
+        {"gravity = [0, 0 -9]\n", "the values of a list need commas between them"},
+        {"mesh = { file = \"a\" scale = 1 }\n", "entries in { } are of the form key = value"},
+        {"damping = 10,5\n", "a number has a point, not a comma"},
+        {"end_time 1\n", "a key needs an equals sign"},
+        {"[mesh\n", "a section needs both brackets"},
+        {"[mesh]\n[mesh]\n", "the name is there twice"},
+        {"end_time = .5\n", "a number has digits before and after its point"}};
+    for (const auto& [text, words] : faults) {
+        const auto errors = ScenarioFile(text).errors();
+        ASSERT_EQ(errors.size(), 1u) << text;
+        EXPECT_NE(errors[0].find(words), std::string::npos) << errors[0];
+    }
+    const auto binary = ScenarioFile(std::string("a\0b", 3)).errors();
+    ASSERT_EQ(binary.size(), 1u);
+    EXPECT_NE(binary[0].find("is no text, and a scenario is a text file"), std::string::npos);
+}
+
+TEST(ScenarioErrors, KnowWhatPeopleCallThings) {
+    const std::string_view kinds[] = {"carver", "blade", "cut", "probe", "grasper", "suture"};
+    EXPECT_EQ(nearest("scalpel", kinds), "blade");
+    EXPECT_EQ(nearest("stitch", kinds), "suture");
+    EXPECT_EQ(nearest("forceps", kinds), "grasper");
+    EXPECT_EQ(nearest("blaed", kinds), "blade");
+    const std::string_view verbs[] = {"cut", "run", "render"};
+    EXPECT_EQ(nearest("simulate", verbs), "run");
+    EXPECT_NE(nearest("scalpel", verbs), "blade");  // which is none of these
 }
 
 }  // namespace
