@@ -34,6 +34,8 @@ constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
 constexpr Keys precision_names[] = {"double", "single"};
 constexpr Keys output_keys[] = {"interval", "fields", "compression", "checkpoint_interval"};
 constexpr Keys expectation_keys[] = {"min", "max"};
+constexpr Keys given_fields[] = {"contact_force", "contact_pressure", "rest_position", "region",
+                                 "fibre",         "node_id",          "element_id"};
 
 /// Boxes with more elements do not fit into the memory of usual machines.
 constexpr double max_box_elements = 1e8;
@@ -305,7 +307,7 @@ OutputSpec read_output(const TableReader& root, double end_time) {
                                         " s is longer than the run of " + format_number(end_time) +
                                         " s: only the first and last state are written");
     if (output->has("fields"))
-        for (const auto index : output->choices("fields", {field_names}))
+        for (const auto index : output->choices("fields", {field_names, given_fields}))
             spec.fields.push_back(static_cast<Field>(index));
     else
         all_fields();

@@ -31,6 +31,9 @@ std::string text_of_unknown(std::string_view meant, const Names& names) {
 
 std::optional<std::string> complaint(std::string_view name, const Names& names) {
     if (std::ranges::find(names.supported, name) != names.supported.end()) return std::nullopt;
+    if (std::ranges::find(names.given, name) != names.given.end())
+        return "need not be asked for: it is there wherever it exists. Known here: " +
+               list_of(names.supported);
     return text_of_unknown(nearest(name, names.supported), names);
 }
 

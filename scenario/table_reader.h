@@ -22,6 +22,8 @@ namespace incise::scenario {
 /// The names that are allowed in one place.
 struct Names {
     std::span<const std::string_view> supported;
+    /// What is there without being asked for.
+    std::span<const std::string_view> given = {};
 };
 
 /// Returns a message that `name` is not known, with the most similar supported name. Returns

@@ -151,17 +151,17 @@ bool knows_where(const TableReader& tool, Keys kind) {
 
 void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) {
     if (std::holds_alternative<BladeSpec>(spec.kind) && spec.path.size() == 1)
-        tool.error("path", "must have at least 2 keys: a blade cuts where it moves");
+        tool.error("path", "must have at least 2 times: a blade cuts where it moves");
     if (const auto* grasper = std::get_if<GrasperSpec>(&spec.kind)) {
         if (spec.path.size() == 1)
             tool.error("path",
-                       "must have at least 2 keys: a grasper is there from the first to the last");
+                       "must have at least 2 times: a grasper is there from the first to the last");
         if (spec.path.size() > 1)
             check_jaws(tool, *grasper, spec.path.front().time, spec.path.back().time);
     }
     if (std::holds_alternative<ProbeSpec>(spec.kind) && spec.path.size() == 1)
         tool.error("path",
-                   "must have at least 2 keys: a probe is there from the first to the last; "
+                   "must have at least 2 times: a probe is there from the first to the last; "
                    "for one that is always there, write an [[obstacle]]");
     if (const auto* suture = std::get_if<SutureSpec>(&spec.kind);
         suture && end_time > 0.0 && !spec.path.empty()) {

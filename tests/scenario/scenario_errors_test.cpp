@@ -448,6 +448,14 @@ TEST(ScenarioErrors, ExplainFaultsOfSyntaxInWords) {
     EXPECT_NE(binary[0].find("is no text, and a scenario is a text file"), std::string::npos);
 }
 
+TEST(ScenarioErrors, TellWhichFieldsAreThereAnyway) {
+    const auto errors = ScenarioFile(minimal + "[output]\nfields = [\"contact_force\"]\n").errors();
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_NE(errors[0].find("'contact_force': need not be asked for: it is there wherever"),
+              std::string::npos)
+        << errors[0];
+}
+
 TEST(ScenarioErrors, KnowWhatPeopleCallThings) {
     const std::string_view kinds[] = {"carver", "blade", "cut", "probe", "grasper", "suture"};
     EXPECT_EQ(nearest("scalpel", kinds), "blade");

@@ -11,7 +11,7 @@ TEST(ToolErrors, OfPathsAndKinds) {
     const std::string grasper =
         "[[tool]]\nkind = \"grasper\"\nshape = { sphere = { radius = 0.1 } }\nclose = 0.1\n";
     EXPECT_EQ(error_of(grasper + "path = [{ time = 0, at = [0, 0, 0] }]\n"),
-              "scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a grasper is there "
+              "scene.toml:13:8: key 'tool[0].path': must have at least 2 times: a grasper is there "
               "from the first to the last");
     EXPECT_EQ(
         error_of(grasper + "open = 3\npath = [{ time = 0, at = [0, 0, 0] }, { time = 1, at = "
@@ -38,7 +38,7 @@ TEST(ToolErrors, OfPathsAndKinds) {
                        "edge = [[0, 0, 1], [0, 0, 1]]\n" +
                        path),
               "scene.toml:12:8: key 'tool[0].edge': points 0 and 1 (from 0) are the same: leave "
-              "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 keys: a blade "
+              "one out | scene.toml:13:8: key 'tool[0].path': must have at least 2 times: a blade "
               "cuts where it moves");
     const std::string blade =
         "[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [1, 0, 0]]\n"
