@@ -154,6 +154,8 @@ void tidy_checkpoints(const fs::path& folder, std::uint64_t step) {
     });
 }
 
+bool has_checkpoints(const std::filesystem::path& folder) { return !checkpoints(folder).empty(); }
+
 void remove_checkpoints_of_stops(const fs::path& folder) {
     remove_checkpoints_if(
         folder, [](const CheckpointName& name) { return name.kind == CheckpointKind::of_a_stop; });

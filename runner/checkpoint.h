@@ -59,6 +59,8 @@ void remove_checkpoints(const std::filesystem::path& folder);
 /// run will write them again. Throws OutputError.
 /// @pre  there is an undamaged checkpoint of `step`
 void tidy_checkpoints(const std::filesystem::path& folder, std::uint64_t step);
+/// True if there is a checkpoint in the folder of a run, whole or not.
+bool has_checkpoints(const std::filesystem::path& folder);
 /// Removes the checkpoints of stops, at the end of a run. Throws OutputError.
 void remove_checkpoints_of_stops(const std::filesystem::path& folder);
 

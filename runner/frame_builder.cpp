@@ -34,6 +34,38 @@ double von_mises(const Eigen::Matrix3d& stress) {
     return std::sqrt(1.5) * deviator.norm();
 }
 
+/// True if a tetrahedron's face is on no face of its carrier: it is where a cut has divided that.
+bool is_within_carrier(const physics::Model& model, FaceId face) {
+    constexpr double tolerance = 0.02;  // of the carrier's longest edge: cuts move nodes by less
+    const topology::Mesh& mesh = model.mesh();
+    const topology::FragmentMesh& fragments = model.fragments();
+    const auto carrier = fragments.corners(fragments.fragment_of_cell(face.element));
+    const topology::CellTraits& traits = topology::traits(topology::CellKind::tetrahedron);
+    if (carrier.size() != 4) return false;
+    const auto corner = [&](int i) {
+        return fragments.rest_position(carrier[static_cast<std::size_t>(i)]);
+    };
+    double longest = 0.0;
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < i; ++k) longest = std::max(longest, (corner(i) - corner(k)).norm());
+    for (int f = 0; f < traits.num_faces; ++f) {
+        const auto side = traits.face(f);
+        const Vec3 a = corner(side[0]);
+        const Vec3 normal = (corner(side[1]) - a).cross(corner(side[2]) - a).normalized();
+        double farthest = 0.0;
+        for (int i = 0; i < mesh.face_size(face); ++i)
+            farthest = std::max(
+                farthest, std::abs(normal.dot(mesh.rest_position(mesh.face_corner(face, i)) - a)));
+        if (farthest <= tolerance * longest) return false;
+    }
+    return true;
+}
+
+bool is_on_cut(const physics::Model& model, FaceId face) {
+    if (model.mesh().neighbor(face).is_valid()) return false;
+    return model.mesh().was_inside(face) || is_within_carrier(model, face);
+}
+
 std::string name(scenario::Field field) {
     return std::string(scenario::field_names[static_cast<std::size_t>(field)]);
 }
@@ -85,6 +117,12 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     auto& cells = frame_.cell_fields;
     cells.push_back(field<std::int64_t>("element_id", 1, elements_,
                                         [&](ElementId e) { return mesh.label(e); }));
+    cells.push_back(field<std::int32_t>("cut_faces", 1, elements_, [&](ElementId e) {
+        std::int32_t faces = 0;
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (is_on_cut(model, {e, f})) faces |= 1 << f;
+        return faces;
+    }));
     const topology::FragmentMesh& fragments = model.fragments();
     if (const auto fibres = model.fibres(); !fibres.empty())
         cells.push_back(field<double>("fibre", 3, elements_, [&](ElementId e) {

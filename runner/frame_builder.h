@@ -18,10 +18,11 @@ namespace incise::runner {
 using ContactForces = std::vector<std::pair<NodeId, Vec3>>;
 
 /// A builder of one frame. The points of the frame are the current positions. It has the fields
-/// rest_position, node_id, element_id and region, and the requested fields. If a material has
-/// fibres, it has their directions at rest. node_id and element_id are labels: numbers in the
-/// source, and ids for nodes and elements that cuts have added. A frame of a divided body has the
-/// carriers at rest, so that it can be read back as that body.
+/// rest_position, node_id, element_id, cut_faces and region, and the requested fields. Bit f of
+/// cut_faces says that face f of the element, in the order of cell_kind.h, is on a cut. If a
+/// material has fibres, it has their directions at rest. node_id and element_id are labels: numbers
+/// in the source, and ids for nodes and elements that cuts have added. A frame of a divided body
+/// has the carriers at rest, so that it can be read back as that body.
 ///
 /// The constructor copies the state of the model, which is fast. finish() then computes the fields
 /// of elements.

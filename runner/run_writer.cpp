@@ -233,7 +233,8 @@ bool RunWriter::has_checkpoint() {
     } catch (...) {
         // The caller already has an error to report.
     }
-    return has_checkpoint_;
+    // If only the last wait for the disk has failed, the file is there.
+    return has_checkpoint_ || has_checkpoints(folder());
 }
 
 /// Sets the time of the next checkpoint: the end of the present interval, even if the last

@@ -61,18 +61,37 @@ std::string list_fields(vtkDataSet& data) {
     return list + "none";
 }
 
+struct Unit {
+    std::string_view array, unit;
+};
+
+/// The units of the fields that a run writes.
+constexpr Unit units[] = {{"displacement", "m"},  {"velocity", "m/s"},
+                          {"force", "N"},         {"mass", "kg"},
+                          {"stress", "Pa"},       {"von_mises", "Pa"},
+                          {"contact_force", "N"}, {"contact_pressure", "Pa"},
+                          {"rest_position", "m"}, {"energy_density", "J/m3"}};
+
+/// Returns the title of an array, with its unit if that is known.
+std::string with_unit(const std::string& title, std::string_view array) {
+    for (const auto& [known, unit] : units)
+        if (array == known) return title + ", " + std::string(unit);
+    return title;
+}
+
 std::optional<ColorField> find_field(vtkDataSet& data, const std::string& name) {
     for (const auto place : {Place::points, Place::cells}) {
         auto* array = attributes(data, place).GetArray(name.c_str());
         if (!array) continue;
         switch (array->GetNumberOfComponents()) {
             case 1:
-                return ColorField{place, name, Measure::value, 0, name};
+                return ColorField{place, name, Measure::value, 0, with_unit(name, name)};
             case 6:
             case 9:
-                return ColorField{place, name, Measure::von_mises, 0, "von Mises " + name};
+                return ColorField{place, name, Measure::von_mises, 0,
+                                  with_unit("von Mises " + name, name)};
             default:
-                return ColorField{place, name, Measure::magnitude, 0, name + " magnitude"};
+                return ColorField{place, name, Measure::magnitude, 0, with_unit(name, name)};
         }
     }
     return std::nullopt;
@@ -89,7 +108,7 @@ std::optional<ColorField> find_component(vtkDataSet& data, const std::string& wa
         return std::nullopt;
     field->measure = Measure::component;
     field->component = static_cast<int>(component);
-    field->title = field->array + " " + wanted.back();
+    field->title = with_unit(field->array + " " + wanted.back(), field->array);
     return field;
 }
 
@@ -162,11 +181,7 @@ vtkSmartPointer<vtkLookupTable> make_scale(const std::array<Rgb, N>& stops, doub
 }  // namespace
 
 ColorField choose_color_field(vtkDataSet& data, const std::optional<std::string>& wanted) {
-    if (!wanted) {
-        for (const auto* name : {"displacement", "region"})
-            if (const auto field = find_field(data, name)) return *field;
-        return {};
-    }
+    if (!wanted) return {};
     if (const auto field = find_field(data, *wanted)) return *field;
     if (const auto field = find_component(data, *wanted)) return *field;
     if (*wanted == "none") return {};
@@ -201,9 +216,11 @@ void ColorRange::include(vtkDataSet& data, const ColorField& field) {
     // Scales of lengths and von Mises stresses begin at zero.
     if (field.measure == Measure::magnitude || field.measure == Measure::von_mises) lowest_ = 0;
     auto* values = vtkDoubleArray::SafeDownCast(arrays.GetArray(color_array));
+    const vtkIdType stride = 1 + values->GetNumberOfValues() / samples_a_frame;
     for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i) {
         const double value = values->GetValue(i);
         if (!std::isfinite(value)) continue;
+        if (i % stride == 0) samples_.push_back(value);
         lowest_ = std::min(lowest_, value);
         highest_ = std::max(highest_, value);
         if (!is_integer_) continue;
@@ -215,7 +232,18 @@ void ColorRange::include(vtkDataSet& data, const ColorField& field) {
 
 std::pair<double, double> ColorRange::limits() const {
     if (!(lowest_ <= highest_)) return {0.0, 1.0};
-    if (lowest_ < highest_) return {lowest_, highest_};
+    if (lowest_ < highest_) {
+        constexpr double share = 0.005;  // of all values, at either end
+        constexpr double far = 0.25;     // of the range of the others, beyond it
+        std::vector<double> sorted = samples_;
+        std::sort(sorted.begin(), sorted.end());
+        const auto last = static_cast<double>(sorted.size() - 1);
+        const double low = sorted[static_cast<std::size_t>(share * last)],
+                     high = sorted[static_cast<std::size_t>((1.0 - share) * last)];
+        const double beyond = far * (high - low);
+        return {low > lowest_ + beyond && high > low && lowest_ != 0.0 ? low : lowest_,
+                high < highest_ - beyond && high > low ? high : highest_};
+    }
     const double margin = lowest_ == 0 ? 1.0 : std::abs(lowest_) * 1e-3;
     return {lowest_, lowest_ + margin};
 }

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace incise::render {
 
@@ -28,8 +29,7 @@ struct ColorField {
 
 /// Returns the field with the name `wanted`: an array of points or cells, a component of an array
 /// ("displacement_z"), or "none". The measure of vectors is their length. That of tensors (9
-/// components, or 6 in the order of VTK) is the von Mises stress. Without `wanted`, the field is
-/// "displacement" if present, else "region" if present, else none.
+/// components, or 6 in the order of VTK) is the von Mises stress. Without `wanted`, it is none.
 /// Throws InputError if there is no such field. The message lists the fields.
 ColorField choose_color_field(vtkDataSet& data, const std::optional<std::string>& wanted);
 
@@ -52,17 +52,22 @@ class ColorRange {
     bool is_categorical() const { return is_integer_ && !categories_.empty(); }
     const std::set<int>& categories() const { return categories_; }
 
-    /// Returns the lowest and the highest finite value, or (0, 1) if there is none. The second is
-    /// always above the first.
+    /// Returns the values of the first and the last colour, or (0, 1) if there is no value. The
+    /// second is always above the first. Where few values are far beyond all others, it is the
+    /// range of the others.
     std::pair<double, double> limits() const;
+    /// Returns the lowest and the highest finite value.
+    std::pair<double, double> extremes() const { return {lowest_, highest_}; }
 
   private:
     static constexpr std::size_t max_categories = 12;
+    static constexpr vtkIdType samples_a_frame = 20000;
 
     double lowest_ = std::numeric_limits<double>::infinity();
     double highest_ = -std::numeric_limits<double>::infinity();
     bool is_integer_ = true;
     std::set<int> categories_;
+    std::vector<double> samples_;  // at even steps, of all frames
 };
 
 /// Returns a colour for each category if the range is categorical, otherwise a perceptually uniform

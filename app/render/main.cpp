@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -142,6 +144,32 @@ vtkSmartPointer<vtkUnstructuredGrid> read_colored(const fs::path& path,
     return grid;
 }
 
+/// Returns what values are beyond the colours: an empty text if there are none.
+std::string note_of(const SceneSettings& settings) {
+    if (settings.field.place == ColorField::Place::none || settings.range.is_categorical())
+        return "";
+    const auto [lowest, highest] = settings.range.extremes();
+    char text[96] = "";
+    if (lowest < settings.limits.first && highest > settings.limits.second)
+        std::snprintf(text, sizeof text, "values from %.3g\nto %.3g", lowest, highest);
+    else if (highest > settings.limits.second)
+        std::snprintf(text, sizeof text, "values up to\n%.3g", highest);
+    else if (lowest < settings.limits.first)
+        std::snprintf(text, sizeof text, "values down to\n%.3g", lowest);
+    return text;
+}
+
+/// Returns the title of a run, as its summary has it, or its name.
+std::string title_of(const FrameList& list) {
+    if (!list.is_run) return list.name;
+    std::ifstream file(list.folder / "summary.json");
+    const auto summary = nlohmann::json::parse(file, nullptr, false);
+    const bool has_title = summary.is_object() && summary.contains("title") &&
+                           summary["title"].is_string() && summary.contains("scenario") &&
+                           summary["scenario"] == list.name;
+    return has_title ? summary["title"].get<std::string>() : list.name;
+}
+
 /// Reads all frames to be drawn and returns the settings that their pictures share.
 SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& frames,
                      const Options& options) {
@@ -149,7 +177,7 @@ SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& fram
     settings.size = options.size;
     settings.view = options.view;
     settings.has_edges = options.has_edges;
-    settings.title = list.name;
+    settings.title = title_of(list);
     std::optional<ColorField> field;
     Progress progress("looking through", frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -162,6 +190,7 @@ SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& fram
     settings.field = *field;
     if (!settings.bounds.IsValid()) settings.bounds.SetBounds(0, 1, 0, 1, 0, 1);
     settings.limits = options.range.value_or(settings.range.limits());
+    settings.note = note_of(settings);
     return settings;
 }
 

@@ -51,7 +51,8 @@ void add_list_options(CLI::App& app, Options& options) {
                if (!(values[0] < values[1])) refuse("--range", text, "LOW must be below HIGH");
                options.range.emplace(values[0], values[1]);
            },
-           "values of the first and the last colour (default: all that occur)")
+           "values of the first and the last colour (default: all that occur, without a "
+           "two-hundredth at the ends that is far beyond the others)")
         ->type_name("LOW,HIGH");
     app.add_option_function<std::string>(
            "--size",
@@ -101,10 +102,10 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
         ->excludes(frame_option);
     app.add_option("--color", options.color,
                    "field of points or cells; vectors by length, or displacement_z for a "
-                   "component; stress by von Mises; none (default: displacement, else region)")
+                   "component; stress by von Mises; none: tissue, with cut faces in red (default)")
         ->type_name("FIELD");
     add_list_options(app, options);
-    app.add_flag("--edges", options.has_edges, "draw the mesh in full");
+    app.add_flag("--edges", options.has_edges, "draw the lines of the mesh");
 
     try {
         app.parse(argc, argv);

@@ -23,7 +23,7 @@ struct Options {
     std::optional<std::pair<double, double>> range;
     std::array<int, 2> size = {1280, 960};  ///< pixels
     Vec3 view = {-0.55, -1.0, 0.55};        ///< from the body to the eye
-    bool has_edges = false;                 ///< if true, the mesh is drawn in full
+    bool has_edges = false;                 ///< if true, the lines of the mesh are drawn
 };
 
 /// Returns the options. Returns an exit status after --help and --version, and after an error,

@@ -2,7 +2,11 @@
 #include "incise/app/render/scene.h"
 
 #include <vtkActor.h>
+#include <vtkActor2D.h>
+#include <vtkAxesActor.h>
 #include <vtkCamera.h>
+#include <vtkCaptionActor2D.h>
+#include <vtkCellArray.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkErrorCode.h>
 #include <vtkExtractEdges.h>
@@ -11,8 +15,10 @@
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkPolyDataMapper2D.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
@@ -25,8 +31,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <numbers>
 
+#include "incise/app/render/tissue_look.h"
 #include "incise/base/error.h"
 
 namespace incise::render {
@@ -84,25 +92,6 @@ void aim(vtkCamera& camera, const vtkBoundingBox& box, const Vec3& view, double 
     camera.SetWindowCenter(1 - free_part, 0);
 }
 
-/// Returns the opacity of the lines of the mesh. Dense lines fade, so that they do not hide the
-/// surface.
-double edge_opacity(double pixels_an_edge) {
-    constexpr double none = 3, full = 14, darkest = 0.35;
-    return darkest * std::clamp((pixels_an_edge - none) / (full - none), 0.0, 1.0);
-}
-
-double mean_edge_length(vtkPolyData& edges) {
-    double sum = 0;
-    for (vtkIdType i = 0; i < edges.GetNumberOfCells(); ++i) {
-        const vtkIdType* ends = nullptr;
-        vtkIdType count = 0;
-        edges.GetCellPoints(i, count, ends);
-        if (count == 2)
-            sum += (Vec3(edges.GetPoint(ends[0])) - Vec3(edges.GetPoint(ends[1]))).norm();
-    }
-    return sum / static_cast<double>(std::max<vtkIdType>(1, edges.GetNumberOfCells()));
-}
-
 /// Returns the number of drawn pixels for each pixel of the picture, in both directions. It smooths
 /// edges independently of the driver. It is 1 for very large pictures, because VTK could not draw
 /// more pixels.
@@ -138,34 +127,42 @@ vtkSmartPointer<vtkImageData> reduce(vtkImageData& image, int factor) {
 
 struct Scene::Parts {
     int oversampling = 1;
-    bool has_edges = false;
-    double pixels_a_length = 1;  ///< at the centre of the body
+    bool has_field = false;
     vtkNew<vtkDataSetSurfaceFilter> surface;
+    vtkNew<vtkPolyData> body;  // the surface, with what the pictures add
     vtkNew<vtkPolyDataNormals> normals;
     vtkNew<vtkExtractEdges> edges;
     vtkNew<vtkPolyDataMapper> surface_mapper, edge_mapper;
     vtkNew<vtkActor> surface_actor, edge_actor;
     vtkNew<vtkScalarBarActor> legend;
-    vtkNew<vtkTextActor> legend_title, caption, title;
+    vtkNew<vtkTextActor> legend_title, legend_note, caption, title, scale_label;
+    vtkNew<vtkPolyData> scale_line;
+    vtkNew<vtkPolyDataMapper2D> scale_mapper;
+    vtkNew<vtkActor2D> scale_actor;
+    vtkNew<vtkAxesActor> axes;
+    vtkNew<vtkRenderer> axes_renderer;
     vtkNew<vtkLightKit> lights;
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkRenderWindow> window;
 
     void make_body(const SceneSettings& settings);
     void make_legend(const SceneSettings& settings);
+    void make_axes(const SceneSettings& settings);
+    void make_scale(const SceneSettings& settings, double pixels_a_metre);
     void add_text(vtkTextActor& actor, int pixels, double x, double y);
 };
 
 void Scene::Parts::make_body(const SceneSettings& settings) {
     constexpr double sharp_edge = 35;  // degrees; larger angles between faces are not smoothed
-    normals->SetInputConnection(surface->GetOutputPort());
+    normals->SetInputData(body);
     normals->SetFeatureAngle(sharp_edge);
     normals->SplittingOn();
     normals->ConsistencyOff();  // normals of cell faces point outwards already
     surface_mapper->SetInputConnection(normals->GetOutputPort());
     if (settings.field.place == ColorField::Place::none) {
-        surface_mapper->ScalarVisibilityOff();
-        surface_actor->GetProperty()->SetColor(0.80, 0.49, 0.45);
+        surface_mapper->SetScalarModeToUseCellFieldData();
+        surface_mapper->SelectColorArray(look_array);
+        surface_mapper->SetColorModeToDirectScalars();
     } else {
         const bool is_at_points = settings.field.place == ColorField::Place::points;
         const auto colors = make_colors(settings.range, settings.limits);
@@ -187,7 +184,7 @@ void Scene::Parts::make_body(const SceneSettings& settings) {
     surface_actor->SetMapper(surface_mapper);
     renderer->AddActor(surface_actor);
 
-    edges->SetInputConnection(surface->GetOutputPort());
+    edges->SetInputData(body);
     edge_mapper->SetInputConnection(edges->GetOutputPort());
     edge_mapper->ScalarVisibilityOff();
     // Lines lie in the faces, so that they must be moved a little towards the eye.
@@ -199,7 +196,8 @@ void Scene::Parts::make_body(const SceneSettings& settings) {
     line->SetColor(0.05, 0.05, 0.08);
     line->SetLineWidth(static_cast<float>(oversampling));
     edge_actor->SetMapper(edge_mapper);
-    renderer->AddActor(edge_actor);
+    line->SetOpacity(0.8);
+    if (settings.has_edges) renderer->AddActor(edge_actor);
 }
 
 void Scene::Parts::add_text(vtkTextActor& actor, int pixels, double x, double y) {
@@ -226,6 +224,10 @@ void Scene::Parts::make_legend(const SceneSettings& settings) {
     add_text(*legend_title, text_height, 0.975, bottom + height + 0.03);
     legend_title->GetTextProperty()->SetJustificationToRight();
     legend_title->SetInput(settings.field.title.c_str());
+    add_text(*legend_note, text_height * 4 / 5, 0.975, bottom - 0.05);
+    legend_note->GetTextProperty()->SetJustificationToRight();
+    legend_note->GetTextProperty()->SetVerticalJustificationToTop();
+    legend_note->SetInput(settings.note.c_str());
 
     legend->SetLookupTable(surface_mapper->GetLookupTable());
     legend->SetTitle("");
@@ -248,11 +250,72 @@ void Scene::Parts::make_legend(const SceneSettings& settings) {
     renderer->AddActor2D(legend);
 }
 
+/// Draws the directions of the axes in a corner, as the camera sees them.
+void Scene::Parts::make_axes(const SceneSettings& settings) {
+    constexpr double part = 0.16;  // of the picture's height
+    const double width = part * settings.size[1] / settings.size[0];
+    axes_renderer->SetViewport(0.015, 0.07, 0.015 + width, 0.07 + part);
+    axes_renderer->SetLayer(1);
+    axes_renderer->InteractiveOff();
+    for (auto* label : {axes->GetXAxisCaptionActor2D(), axes->GetYAxisCaptionActor2D(),
+                        axes->GetZAxisCaptionActor2D()})
+        style_text(*label->GetCaptionTextProperty(), oversampling * 14);
+    axes->SetShaftTypeToCylinder();
+    axes->SetCylinderRadius(0.04);
+    axes->SetConeRadius(0.3);
+    axes_renderer->AddActor(axes);
+    auto& camera = *axes_renderer->GetActiveCamera();
+    const Vec3 eye = 5.5 * settings.view.normalized();
+    camera.SetFocalPoint(0, 0, 0);
+    camera.SetPosition(eye.data());
+    camera.SetViewUp(renderer->GetActiveCamera()->GetViewUp());
+    window->SetNumberOfLayers(2);
+    window->AddRenderer(axes_renderer);
+}
+
+/// Draws a bar of a round length, as it is in the middle of the body.
+void Scene::Parts::make_scale(const SceneSettings& settings, double pixels_a_metre) {
+    const double longest = 0.2 * settings.size[0] / pixels_a_metre;  // m
+    const double power = std::pow(10.0, std::floor(std::log10(longest)));
+    const double length = longest >= 5 * power   ? 5 * power
+                          : longest >= 2 * power ? 2 * power
+                                                 : power;
+    char text[32];
+    if (length < 0.0095)
+        std::snprintf(text, sizeof text, "%.3g mm", 1e3 * length);
+    else if (length < 0.95)
+        std::snprintf(text, sizeof text, "%.3g cm", 1e2 * length);
+    else
+        std::snprintf(text, sizeof text, "%.3g m", length);
+    const double right = 0.975 * oversampling * settings.size[0];
+    const double y = 0.03 * oversampling * settings.size[1];
+    const double left = right - oversampling * pixels_a_metre * length;
+    const double tick = 0.008 * oversampling * settings.size[1];
+    vtkNew<vtkPoints> points;
+    for (const auto& [x, height] : {std::pair(left, tick), std::pair(left, 0.0),
+                                    std::pair(right, 0.0), std::pair(right, tick)})
+        points->InsertNextPoint(x, y + height, 0.0);
+    vtkNew<vtkCellArray> lines;
+    lines->InsertNextCell({0, 1, 2, 3});
+    scale_line->SetPoints(points);
+    scale_line->SetLines(lines);
+    scale_mapper->SetInputData(scale_line);
+    scale_actor->SetMapper(scale_mapper);
+    scale_actor->GetProperty()->SetColor(text_gray, text_gray, text_gray);
+    scale_actor->GetProperty()->SetLineWidth(static_cast<float>(1.5 * oversampling));
+    renderer->AddActor2D(scale_actor);
+    add_text(*scale_label, oversampling * std::max(11, settings.size[1] / 44), 0.975, 0.045);
+    scale_label->GetTextProperty()->SetJustificationToRight();
+    scale_label->SetInput(text);
+}
+
 Scene::Scene(const SceneSettings& settings) : parts_(std::make_unique<Parts>()) {
     auto& parts = *parts_;
     const auto [width, height] = settings.size;
-    parts.has_edges = settings.has_edges;
     parts.oversampling = oversampling(settings.size);
+    parts.has_field = settings.field.place != ColorField::Place::none;
+    parts.surface->PassThroughCellIdsOn();
+    parts.surface->PassThroughPointIdsOn();
     parts.make_body(settings);
     parts.make_legend(settings);
     parts.lights->SetKeyLightElevation(40);
@@ -271,7 +334,8 @@ Scene::Scene(const SceneSettings& settings) : parts_(std::make_unique<Parts>()) 
     aim(camera, settings.bounds, settings.view, static_cast<double>(width) / height,
         settings.field.place != ColorField::Place::none);
     const double half_angle = camera.GetViewAngle() / 2 * std::numbers::pi / 180;
-    parts.pixels_a_length = height / (2 * camera.GetDistance() * std::tan(half_angle));
+    parts.make_axes(settings);
+    parts.make_scale(settings, height / (2 * camera.GetDistance() * std::tan(half_angle)));
 }
 
 Scene::~Scene() = default;
@@ -279,13 +343,10 @@ Scene::~Scene() = default;
 std::string Scene::png(vtkUnstructuredGrid& grid, const std::string& caption) {
     auto& parts = *parts_;
     parts.surface->SetInputData(&grid);
+    parts.surface->Update();
+    parts.body->ShallowCopy(parts.surface->GetOutput());
+    if (!parts.has_field) add_tissue_look(grid, *parts.body);
     parts.caption->SetInput(caption.c_str());
-    parts.edges->Update();
-    const double edge_pixels = mean_edge_length(*parts.edges->GetOutput()) * parts.pixels_a_length;
-    const double opacity = parts.has_edges ? 0.8 : edge_opacity(edge_pixels);
-    parts.edge_actor->GetProperty()->SetOpacity(opacity);
-    parts.edge_actor->SetVisibility(opacity > 0);
-
     parts.renderer->ResetCameraClippingRange();
     parts.window->Render();
     vtkNew<vtkWindowToImageFilter> grabber;

@@ -19,12 +19,13 @@ namespace incise::render {
 struct SceneSettings {
     std::array<int, 2> size{};  ///< pixels
     Vec3 view;                  ///< from the body to the eye, of any length above zero
-    bool has_edges = false;     ///< if true, mesh lines are dark and do not fade
+    bool has_edges = false;     ///< if true, the lines of the mesh are drawn
     vtkBoundingBox bounds;      ///< of all frames
     ColorField field;
     ColorRange range;
     std::pair<double, double> limits{0, 1};
     std::string title;
+    std::string note;  ///< below the legend: what its colours leave out
 };
 
 /// A renderer of pictures with the same settings.

@@ -21,21 +21,31 @@
 
 namespace {
 
-long num_calls = 0;
+std::atomic<long> num_calls = 0;
 
 template <class Function>
 Function* original(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// Whether this call is to fail, with errno set. Does not return if it is to be the last one.
-bool fails(bool opens = false) {
+/// Counts this call. Returns whether it is the one that is to fail.
+bool is_the_one(bool opens = false) {
     if (opens != (std::getenv("INCISE_FAULT_OPEN") != nullptr)) return false;
     const char* at = std::getenv("INCISE_FAULT_AT");
-    if (++num_calls != (at ? std::atol(at) : 0)) return false;
+    return ++num_calls == (at ? std::atol(at) : 0);
+}
+
+/// Makes the call fail that is_the_one(), with errno set; or ends the process.
+void fail() {
     const char* fault = std::getenv("INCISE_FAULT");
     if (std::strcmp(fault, "kill") == 0) ::raise(SIGKILL);
     errno = std::strcmp(fault, "half") == 0 ? ENOSPC : std::atoi(fault);
+}
+
+/// Whether this call is to fail, with errno set. Does not return if it is to be the last one.
+bool fails(bool opens = false) {
+    if (!is_the_one(opens)) return false;
+    fail();
     return true;
 }
 
@@ -44,7 +54,7 @@ struct Counter {
         const char* path = std::getenv("INCISE_FAULT_COUNT");
         if (!path) return;
         if (std::FILE* file = std::fopen(path, "w")) {
-            std::fprintf(file, "%ld", num_calls);
+            std::fprintf(file, "%ld", num_calls.load());
             std::fclose(file);
         }
     }
@@ -121,9 +131,10 @@ ssize_t write(int file, const void* bytes, size_t size) {
     const char* fault = std::getenv("INCISE_FAULT");
     const bool halves = fault && (std::strcmp(fault, "half") == 0 ||
                                   (std::strcmp(fault, "kill") == 0 && size > few_pages));
-    const char* at = std::getenv("INCISE_FAULT_AT");
-    if (halves && num_calls + 1 == (at ? std::atol(at) : 0)) (void)!next(file, bytes, size / 2);
-    return fails() ? -1 : next(file, bytes, size);
+    if (!is_the_one()) return next(file, bytes, size);
+    if (halves) (void)!next(file, bytes, size / 2);
+    fail();
+    return -1;
 }
 int fsync(int file) { return fails() ? -1 : original<int(int)>("fsync")(file); }
 int rename(const char* from, const char* to) {

@@ -140,14 +140,15 @@ TEST(SteadyState, AllocatesNothing) {
 
 // A thread has a buffer for positions, two for the stable step, and one more for positions before
 // if the body is viscous. It takes them when it first gets work: it may come to that in any step.
-// TBB takes memory of its own, not by operator new, for tasks that go to the other thread.
+// A buffer may grow once, if the first work of its thread is small. TBB takes memory of its own,
+// not by operator new, for tasks that go to the other thread.
 TEST(SteadyState, AllocatesOnlyTheSecondThreadsBuffers) {
     for (const auto& [name, body] : bodies) {
         SCOPED_TRACE(name);
         const bool is_viscous = body.find("prony") != std::string::npos;
         EXPECT_LE(
             allocations_of_steps(body + boundary_conditions + motion("double"), 2, 250, num_news),
-            is_viscous ? 4u : 3u);
+            is_viscous ? 8u : 6u);
     }
 }
 

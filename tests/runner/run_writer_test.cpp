@@ -240,7 +240,8 @@ TEST_F(RunFiles, FramesDeclareTheArraysOfTheContract) {
     EXPECT_EQ(cells.at("energy_density").second, 1);
     EXPECT_EQ(cells.at("stress").second, 9);
     EXPECT_EQ(cells.at("von_mises").second, 1);
-    EXPECT_EQ(cells.size(), 6u);
+    EXPECT_EQ(cells.at("cut_faces"), (std::pair<std::string, int>{"Int32", 1}));
+    EXPECT_EQ(cells.size(), 7u);
     EXPECT_TRUE(arrays(section("FieldData")).contains("TimeValue"));
 }
 
@@ -361,7 +362,7 @@ TEST(RunWriter, WritesOnlyTheFieldsAskedFor) {
     };
     EXPECT_EQ(names(frame.point_fields),
               (std::set<std::string>{"rest_position", "node_id", "mass"}));
-    EXPECT_EQ(names(frame.cell_fields), (std::set<std::string>{"element_id", "J"}));
+    EXPECT_EQ(names(frame.cell_fields), (std::set<std::string>{"element_id", "cut_faces", "J"}));
     EXPECT_EQ(frame.active_vectors, "");
 }
 
