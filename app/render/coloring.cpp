@@ -233,7 +233,7 @@ void ColorRange::include(vtkDataSet& data, const ColorField& field) {
 std::pair<double, double> ColorRange::limits() const {
     if (!(lowest_ <= highest_)) return {0.0, 1.0};
     if (lowest_ < highest_) {
-        constexpr double share = 0.005;  // of all values, at either end
+        constexpr double share = 0.001;  // of all values, at either end
         constexpr double far = 0.25;     // of the range of the others, beyond it
         std::vector<double> sorted = samples_;
         std::sort(sorted.begin(), sorted.end());

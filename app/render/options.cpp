@@ -52,7 +52,7 @@ void add_list_options(CLI::App& app, Options& options) {
                options.range.emplace(values[0], values[1]);
            },
            "values of the first and the last colour (default: all that occur, without a "
-           "two-hundredth at the ends that is far beyond the others)")
+           "thousandth at the ends that is far beyond the others)")
         ->type_name("LOW,HIGH");
     app.add_option_function<std::string>(
            "--size",

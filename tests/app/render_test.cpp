@@ -15,6 +15,7 @@
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/io/vtk/series.h"
+#include "incise/io/vtk/vtu_writer.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/support/temporary_folder.h"
 
@@ -127,6 +128,39 @@ TEST(Render, DrawsAllFramesWithOneCameraAndRange) {
     const auto picture = read_text(folder / "film/bar_000001.png");
     EXPECT_EQ(render(folder, "run --all --out film --size 320x240").status, 0);
     EXPECT_EQ(read_text(folder / "film/bar_000001.png"), picture);
+}
+
+/// The part of the pixels that are dark red, as the faces of cuts are.
+double red_part(const Picture& picture) {
+    const auto count = std::count_if(
+        picture.pixels.begin(), picture.pixels.end(),
+        [](const auto& p) { return p[0] > 70 && p[0] > 2.5 * p[1] && p[0] > 2.5 * p[2]; });
+    return static_cast<double>(count) / static_cast<double>(picture.pixels.size());
+}
+
+// A block of which one half has cut faces on all sides, in one region and in two.
+TEST(Render, DrawsTheFacesOfCutsInRed) {
+    const TemporaryFolder folder;
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron})
+        for (const int cut_faces : {0, 63}) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(kind) << ", " << cut_faces);
+            io::Frame frame;
+            frame.mesh = topology::box_mesh(kind, {0, 0, 0}, {2, 1, 1}, {2, 1, 1});
+            std::vector<std::int32_t> cuts(frame.mesh.num_cells(), 0);
+            for (std::size_t c = 0; c < cuts.size() / 2; ++c) cuts[c] = cut_faces;
+            frame.cell_fields = {{"cut_faces", 1, cuts}};
+            io::write_vtu(folder / "block.vtu", frame);
+            const auto outcome = render(folder, "block.vtu --out p.png --size 320x240");
+            EXPECT_EQ(outcome.status, 0) << outcome.err;
+            const auto picture = read_picture(folder / "p.png");
+            EXPECT_GT(picture.colored_part(), 0.1);
+            if (cut_faces == 0) {
+                EXPECT_LT(red_part(picture), 0.003);  // but for an arrow
+            } else {
+                EXPECT_GT(red_part(picture), 0.1 * picture.colored_part());
+                EXPECT_LT(red_part(picture), 0.9 * picture.colored_part());
+            }
+        }
 }
 
 TEST(Render, ColorsByEveryKindOfField) {
