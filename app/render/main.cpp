@@ -18,6 +18,7 @@
 
 #include "incise/app/render/coloring.h"
 #include "incise/app/render/display.h"
+#include "incise/app/render/film.h"
 #include "incise/app/render/frame_list.h"
 #include "incise/app/render/frame_reader.h"
 #include "incise/app/render/options.h"
@@ -144,6 +145,15 @@ vtkSmartPointer<vtkUnstructuredGrid> read_colored(const fs::path& path,
     return grid;
 }
 
+/// Returns how many frames a second of the run has, as far as a film can show them.
+double pictures_a_second(const FrameList& list) {
+    const auto &first = list.frames.front().time, &last = list.frames.back().time;
+    constexpr double fewest = 1.0, most = 60.0;
+    if (!first || !last || !(*last > *first)) return 25.0;
+    const double rate = static_cast<double>(list.frames.size() - 1) / (*last - *first);
+    return std::clamp(rate, fewest, most);
+}
+
 /// Returns what values are beyond the colours: an empty text if there are none.
 std::string note_of(const SceneSettings& settings) {
     if (settings.field.place == ColorField::Place::none || settings.range.is_categorical())
@@ -216,6 +226,9 @@ void run(const Options& options) {
             throw OutputError("stdout: cannot be written");
         progress.show(i + 1);
     }
+    if (options.film.empty()) return;
+    make_film({destination.folder, destination.name, pictures_a_second(list)}, options.film);
+    std::cout << options.film.string() << std::endl;
 }
 
 }  // namespace

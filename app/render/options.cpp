@@ -89,7 +89,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     app.formatter(std::make_shared<incise::app::HelpFormatter>());
     app.set_version_flag("--version", "incise-render " INCISE_VERSION);
 
-    std::string input, out;
+    std::string input, out, film;
     std::int64_t frame = 0;
     app.add_option("DIR", input, "folder of a run, its .pvd file, or a .vtu file")->required();
     app.add_option("--out", out,
@@ -100,6 +100,10 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     app.add_flag("--all", options.is_all,
                  "every frame, with one camera and one range of colours: the frames of a film")
         ->excludes(frame_option);
+    app.add_option("--video", film,
+                   "also a film of every frame, in the time of the run; needs the program ffmpeg")
+        ->excludes(frame_option)
+        ->type_name("FILE.mp4");
     app.add_option("--color", options.color,
                    "field of points or cells; vectors by length, or displacement_z for a "
                    "component; stress by von Mises; none: tissue, with cut faces in red (default)")
@@ -117,6 +121,8 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     }
     options.input = input;
     options.out = out;
+    options.film = film;
+    options.is_all = options.is_all || !film.empty();
     if (frame_option->count() > 0) options.frame = static_cast<std::size_t>(frame);
     return options;
 }

@@ -23,6 +23,7 @@ struct Options {
     std::optional<std::pair<double, double>> range;
     std::array<int, 2> size = {1280, 960};  ///< pixels
     Vec3 view = {-0.55, -1.0, 0.55};        ///< from the body to the eye
+    std::filesystem::path film;             ///< of all frames; if empty, none
     bool has_edges = false;                 ///< if true, the lines of the mesh are drawn
 };
 

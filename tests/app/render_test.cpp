@@ -10,6 +10,7 @@
 #include <vtkPNGReader.h>
 
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "incise/io/files/atomic_file.h"
@@ -161,6 +162,25 @@ TEST(Render, DrawsTheFacesOfCutsInRed) {
                 EXPECT_LT(red_part(picture), 0.9 * picture.colored_part());
             }
         }
+}
+
+// With a program in the place of ffmpeg that tells how it was started, and with one that fails.
+TEST(Render, MakesAFilmOfAllFrames) {
+    const TemporaryFolder folder;
+    write_run(folder / "run", 3);
+    std::ofstream(folder / "ffmpeg") << "#!/bin/sh\necho \"$@\" > film.mp4\n";
+    fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+    const std::string here = "env -u DISPLAY PATH='" + folder.path().string() + "':\"$PATH\"";
+    const auto outcome = render(folder, "run --video film.mp4 --size 320x240", here);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, testing::EndsWith("bar_000002.png\nfilm.mp4\n"));
+    const auto words = read_text(folder / "film.mp4");
+    EXPECT_THAT(words, HasSubstr("-framerate 4 -i run/pictures/bar_%06d.png"));
+    std::ofstream(folder / "ffmpeg") << "#!/bin/sh\nexit 3\n";
+    const auto failed = render(folder, "run --video film.mp4 --size 320x240", here);
+    EXPECT_EQ(failed.status, 4);
+    EXPECT_THAT(failed.err, HasSubstr("film.mp4: ffmpeg could not write it"));
+    EXPECT_EQ(render(folder, "run --video a.mp4 --frame 1").status, 2);
 }
 
 TEST(Render, ColorsByEveryKindOfField) {
