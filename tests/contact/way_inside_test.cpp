@@ -69,8 +69,8 @@ TEST(WayInside, AgreesWithPointsAlongTheWay) {
             num_entering_again += !expected && ends_inside;
         }
     }
-    EXPECT_GT(num_inside, 20);
-    EXPECT_GT(num_outside, 20);
+    EXPECT_GT(num_inside, test::num_cases(40));
+    EXPECT_GT(num_outside, test::num_cases(40));
     if (!test::is_sanitized) {
         EXPECT_GT(num_entering_again, 0);
     }
