@@ -44,9 +44,14 @@ SurfaceInfo surface_info(const std::filesystem::path& path) {
     info.parts = topology::parts_of(file.surface);
     info.fault = fault_of(info.parts);
     info.warnings = std::move(file.warnings);
+    // Longer than any body in metres: in millimetres, as scanners write them.
+    constexpr double longest_body = 10.0;
+    const bool is_in_millimetres = info.parts.box.sizes().maxCoeff() > longest_body;
+    const double size = first_size(info.parts.box);
     info.command = "incise mesh " + in_shell(path.string()) + " " +
                    in_shell(path.stem().string() + ".vtu") + " --size " +
-                   io::format_number(first_size(info.parts.box));
+                   (is_in_millimetres ? io::format_number(size / 1000.0) + " --scale 0.001"
+                                      : io::format_number(size));
     return info;
 }
 

@@ -39,7 +39,8 @@ bool is_within_carrier(const physics::Model& model, FaceId face) {
     constexpr double tolerance = 0.02;  // of the carrier's longest edge: cuts move nodes by less
     const topology::Mesh& mesh = model.mesh();
     const topology::FragmentMesh& fragments = model.fragments();
-    const auto carrier = fragments.corners(fragments.fragment_of_cell(face.element));
+    // Another fragment may carry the cell, so its own carrier counts.
+    const auto carrier = fragments.origins_of(fragments.carrier_of_cell(face.element));
     const topology::CellTraits& traits = topology::traits(topology::CellKind::tetrahedron);
     if (carrier.size() != 4) return false;
     const auto corner = [&](int i) {

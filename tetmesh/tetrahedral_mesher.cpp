@@ -95,7 +95,8 @@ struct RadiusField {
 void refuse_too_many(double expected) {
     if (expected > max_nodes)
         throw InputError("--size gives more than " + io::shown(max_nodes) +
-                         " nodes; give a larger one, or a larger --size-surface");
+                         " nodes; give a larger one, or a larger --size-surface. Sizes are in the "
+                         "unit of the mesh: --scale 0.001 makes metres of millimetres");
     io::require_memory(bytes_of_node * expected, "a mesh of this --size",
                        "give a larger one, or a larger --size-surface");
 }

@@ -177,6 +177,17 @@ void finish(const InputFile& file, MeshFile& result) {
 
 }  // namespace
 
+namespace {
+
+/// True if the name ends as those of surfaces and of label images do.
+bool is_surface_or_image(const std::filesystem::path& path) {
+    constexpr std::string_view suffixes[] = {".stl", ".obj", ".ply", ".off",  ".nii",
+                                             ".gz",  ".mha", ".mhd", ".nrrd", ".nhdr"};
+    return std::ranges::find(suffixes, path.extension().string()) != std::end(suffixes);
+}
+
+}  // namespace
+
 bool begins_like_a_mesh(std::string_view text) {
     return marked_format_of(head_of(behind_blanks(text))) != nullptr;
 }
@@ -185,9 +196,11 @@ MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options
     const auto file = load_input_file(path);
     const auto* format = read_format_of(file);
     if (format == nullptr)
-        throw UnknownFormat(
-            file.name() +
-            ": begins like no mesh format known here; convert it to one of: " + known_formats());
+        throw UnknownFormat(file.name() + ": begins like no mesh format known here; " +
+                            (is_surface_or_image(path)
+                                 ? "a body is made of a surface or a label image by "
+                                   "`incise mesh`; see incise mesh --help"
+                                 : "convert it to one of: " + known_formats()));
     MeshFile result = format->read(file, options);
     for (const auto& name : options.vector_arrays)
         if (!result.cell_vectors.contains(name))

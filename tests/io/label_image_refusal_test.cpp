@@ -95,6 +95,22 @@ TEST(LabelImage, RefusesScansUnlessToldThatTheyHaveLabels) {
     }
 }
 
+// Values of a byte, as many scans have: from voxel to voxel, and in blocks as labels lie.
+TEST(LabelImage, TellsScansOfAByteFromManyLabels) {
+    std::vector<int> scan(20000), labels(20000);
+    for (std::size_t v = 0; v < scan.size(); ++v) {
+        scan[v] = static_cast<int>(v * 37 % 200);
+        labels[v] = static_cast<int>(v / 100);
+    }
+    EXPECT_EQ(image_refusal("a.mha", row_of(scan)),
+              "a.mha: looks like a scan, an image of grey values: it has 200 different values, "
+              "which change from voxel to voxel; give a segmentation of it, or, if each value is a "
+              "label, set LabelImageOptions::has_labels");
+    const support::TemporaryFolder folder;
+    write_bytes(folder / "a.mha", row_of(labels));
+    EXPECT_EQ(read_label_image(folder / "a.mha").labels, labels);
+}
+
 TEST(LabelImage, RefusesDamagedNifti) {
     const auto refused = [](auto change) {
         Nifti nifti;
