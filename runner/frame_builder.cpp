@@ -7,6 +7,7 @@
 #include <string>
 
 #include "incise/topology/carriers.h"
+#include "incise/topology/cut_faces.h"
 
 namespace incise::runner {
 
@@ -32,39 +33,6 @@ io::Field field(std::string name, int components, const std::vector<Row>& rows, 
 double von_mises(const Eigen::Matrix3d& stress) {
     const Eigen::Matrix3d deviator = stress - stress.trace() / 3.0 * Eigen::Matrix3d::Identity();
     return std::sqrt(1.5) * deviator.norm();
-}
-
-/// True if a tetrahedron's face is on no face of its carrier: it is where a cut has divided that.
-bool is_within_carrier(const physics::Model& model, FaceId face) {
-    constexpr double tolerance = 0.02;  // of the carrier's longest edge: cuts move nodes by less
-    const topology::Mesh& mesh = model.mesh();
-    const topology::FragmentMesh& fragments = model.fragments();
-    // Another fragment may carry the cell, so its own carrier counts.
-    const auto carrier = fragments.origins_of(fragments.carrier_of_cell(face.element));
-    const topology::CellTraits& traits = topology::traits(topology::CellKind::tetrahedron);
-    if (carrier.size() != 4) return false;
-    const auto corner = [&](int i) {
-        return fragments.rest_position(carrier[static_cast<std::size_t>(i)]);
-    };
-    double longest = 0.0;
-    for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < i; ++k) longest = std::max(longest, (corner(i) - corner(k)).norm());
-    for (int f = 0; f < traits.num_faces; ++f) {
-        const auto side = traits.face(f);
-        const Vec3 a = corner(side[0]);
-        const Vec3 normal = (corner(side[1]) - a).cross(corner(side[2]) - a).normalized();
-        double farthest = 0.0;
-        for (int i = 0; i < mesh.face_size(face); ++i)
-            farthest = std::max(
-                farthest, std::abs(normal.dot(mesh.rest_position(mesh.face_corner(face, i)) - a)));
-        if (farthest <= tolerance * longest) return false;
-    }
-    return true;
-}
-
-bool is_on_cut(const physics::Model& model, FaceId face) {
-    if (model.mesh().neighbor(face).is_valid()) return false;
-    return model.mesh().was_inside(face) || is_within_carrier(model, face);
 }
 
 std::string name(scenario::Field field) {
@@ -121,7 +89,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     cells.push_back(field<std::int32_t>("cut_faces", 1, elements_, [&](ElementId e) {
         std::int32_t faces = 0;
         for (int f = 0; f < mesh.num_faces(e); ++f)
-            if (is_on_cut(model, {e, f})) faces |= 1 << f;
+            if (topology::is_on_cut(mesh, model.fragments(), {e, f})) faces |= 1 << f;
         return faces;
     }));
     const topology::FragmentMesh& fragments = model.fragments();

@@ -66,7 +66,7 @@ enum class TangentKind { exact, positive };  ///< for `positive` see positive_pa
 class ElementBlock {
   public:
     static constexpr std::uint16_t unnumbered = 0xffff;
-    static constexpr std::size_t max_elements = 512;
+    static constexpr std::size_t max_elements = most_elements_of_block;
     static_assert(4 * (max_elements * topology::max_corners + 1) <= 0xffff);  // offset_of
 
     virtual ~ElementBlock() = default;

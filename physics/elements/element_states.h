@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "incise/base/sum.h"
@@ -18,6 +19,8 @@ namespace incise::physics {
 /// elements of a block in groups see set_offsets_of_lanes(). Lanes without an element have
 /// arbitrary values.
 inline constexpr std::size_t elements_together = 8;
+/// The largest number of elements in a block.
+inline constexpr std::size_t most_elements_of_block = 512;
 
 /// Energies and volume ratios of the elements of a group.
 struct ElementEnergies {
@@ -42,12 +45,15 @@ struct BlockState {
     }
 };
 
-/// Returns a buffer of `num_groups` groups that belongs to the calling thread. All blocks use the
-/// same buffer, so that memory is allocated only once.
+/// Returns a buffer of `num_groups` groups, or of as many numbers, that belongs to the calling
+/// thread. All blocks use the same buffer. It has room for any block from the start, so that memory
+/// is allocated only once, also if the first block is a small one.
 /// @lifetime Until the next call on this thread with the same type of group.
 template <class Group>
 std::span<Group> room_for(std::size_t num_groups) {
+    constexpr std::size_t in_group = std::is_arithmetic_v<Group> ? 1 : elements_together;
     thread_local std::vector<Group> groups;
+    groups.reserve(most_elements_of_block / in_group);
     groups.resize(num_groups);
     return groups;
 }

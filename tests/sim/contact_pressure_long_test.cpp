@@ -19,7 +19,8 @@ constexpr double slab_growth = 1.4;     // of shells
 constexpr double slab_extent = 60.0;    // of a slab, radii of the contact: it adds 1.5 % of force
 
 /// Holds a graded body far away, and keeps what is on its planes of symmetry there.
-void hold_graded(World& world, double extent) {
+/// @param has_x  its plane x = 0 is one of symmetry
+void hold_graded(World& world, double extent, bool has_x = true) {
     const auto fix = [&](std::string name, std::array<bool, 3> components, const Part& part) {
         physics::Constraint constraint{.name = std::move(name)};
         constraint.nodes = physics::NodeSet(nodes_where(world, part));
@@ -30,7 +31,8 @@ void hold_graded(World& world, double extent) {
         return x.cwiseAbs().maxCoeff() > extent * (1.0 - 1e-9);
     };
     fix("far", {true, true, true}, is_far);
-    fix("x", {true, false, false}, [&](const Vec3& x) { return x.x() == 0.0 && !is_far(x); });
+    if (has_x)
+        fix("x", {true, false, false}, [&](const Vec3& x) { return x.x() == 0.0 && !is_far(x); });
     fix("y", {false, true, false}, [&](const Vec3& x) { return x.y() == 0.0 && !is_far(x); });
 }
 
@@ -86,17 +88,7 @@ class DrawnBall {
         set_graded_materials(def, solid, radii);
         def.damping = slab_damping;
         World world(std::move(def));
-        const auto fix = [&](std::string name, std::array<bool, 3> components, const Part& part) {
-            physics::Constraint constraint{.name = std::move(name)};
-            constraint.nodes = physics::NodeSet(nodes_where(world, part));
-            constraint.components = components;
-            world.add_constraint(std::move(constraint));
-        };
-        const auto is_far = [=](const Vec3& x) {
-            return x.cwiseAbs().maxCoeff() > radii.back() * (1.0 - 1e-9);
-        };
-        fix("far", {true, true, true}, is_far);
-        fix("y", {false, true, false}, [&](const Vec3& x) { return x.y() == 0.0 && !is_far(x); });
+        hold_graded(world, radii.back(), false);
         return world;
     }
     void move(const Vec3& by) {
