@@ -114,6 +114,7 @@ class Model {
     /// Sets the number of threads, at least 1. It does not change any result. A new model has one.
     void set_num_threads(int n) { workers_ = Workers(n); }
     int num_threads() const { return workers_.num_threads(); }
+    const Workers& workers() const { return workers_; }
 
     const State& state() const { return state_; }
     std::span<const Vec3> positions() const { return state_.positions(); }    ///< m

@@ -12,6 +12,7 @@
 #include "incise/base/function_ref.h"
 #include "incise/physics/elements/local_nodes.h"
 #include "incise/physics/elements/processor.h"
+#include "incise/physics/elements/simd_heml_elements.h"
 #include "incise/physics/elements/viscous_history.h"
 #include "incise/physics/laws/law.h"
 

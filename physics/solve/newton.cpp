@@ -134,11 +134,11 @@ void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
 void NewtonSolver::factorise(const Model& model, const StepProblem& problem,
                              const std::vector<Vec3>& x, std::span<const Vec3> increments) {
     assemble(model, problem, x, TangentKind::exact, increments);
-    if (tangent_.factorise()) return;
+    if (tangent_.factorise(model.workers())) return;
     assemble(model, problem, x, TangentKind::positive, increments);
     // Flat elements and slack springs may leave motions without stiffness.
     double shift = 1e-10 * tangent_.largest_diagonal();
-    while (!tangent_.factorise()) {
+    while (!tangent_.factorise(model.workers())) {
         tangent_.shift(shift);
         shift *= 10.0;
         if (!std::isfinite(shift)) break;  // a state that is not finite

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <array>
 #include <cstdint>
@@ -10,25 +9,26 @@
 #include <vector>
 
 #include "incise/physics/elements/element_block.h"
+#include "incise/physics/solve/sparse_factor.h"
 #include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
 /// The tangent as a symmetric sparse matrix over the free components of positions. Sums are in the
-/// order of elements, so the same body gives the same bits. Rows are in the order of elimination,
-/// so the matrix is factorised without a copy.
+/// order of elements, so the same body gives the same bits. Rows are in the order of elimination.
 ///
-/// Memory: about 1 kB a node of tetrahedra, and several times that for the factor.
+/// Memory: about 1 kB a node of tetrahedra, and ten to twenty times that for the factor and its
+/// making.
 class TangentMatrix final : public TangentSink {
   public:
     /// Sets the pattern: entries are between free components of nodes of one element. Then finds
-    /// the order of elimination, which is that of nodes by approximate minimum degree. The
-    /// components of a node are next to each other, since they have the same neighbours.
+    /// the order of elimination of the nodes, by dissect(). The components of a node are next to
+    /// each other, since they have the same neighbours.
     /// `is_free` is by node id, and is read for living nodes.
     void set_pattern(const topology::FragmentMesh& fragments,
                      std::span<const std::array<bool, 3>> is_free);
 
-    std::size_t num_unknowns() const { return static_cast<std::size_t>(upper_.rows()); }
+    std::size_t num_unknowns() const { return static_cast<std::size_t>(lower_.rows()); }
     /// Returns the row of a component, or -1 if it is not free.
     std::int32_t row_of(std::size_t node, int component) const {
         return rows_[node][static_cast<std::size_t>(component)];
@@ -46,24 +46,18 @@ class TangentMatrix final : public TangentSink {
     const Eigen::VectorXd& load() const { return load_; }
 
     /// Factorises the matrix. Returns false, without a factor, if it is not positive definite.
-    /// Temporary memory: 12 bytes an unknown, and up to 16 more in bodies of more than some 16,000
-    /// unknowns.
-    bool factorise();
+    bool factorise(const Workers& workers) { return factor_.factorise(lower_, workers); }
     /// Replaces the right side by the solution.
     /// @pre factorise() returned true
-    void solve(Eigen::VectorXd& side) const {
-        if (num_unknowns() > 0) side = factor_.solve(side);
-    }
-    double largest_diagonal() const { return upper_.diagonal().maxCoeff(); }
+    void solve(Eigen::VectorXd& side) const { factor_.solve(side); }
+    double largest_diagonal() const { return lower_.diagonal().maxCoeff(); }
     /// Adds `value` to the whole diagonal, N/m.
     void shift(double value);
 
   private:
-    using Sparse = Eigen::SparseMatrix<double>;
-
     std::vector<std::array<std::int32_t, 3>> rows_;  // by node id
-    Sparse upper_;
-    Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<std::int32_t>> factor_;
+    SparseFactor::Matrix lower_;
+    SparseFactor factor_;
     std::span<const Vec3> increments_;
     Eigen::VectorXd load_;
 };
