@@ -199,6 +199,7 @@ SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& fram
     }
     settings.field = *field;
     if (!settings.bounds.IsValid()) settings.bounds.SetBounds(0, 1, 0, 1, 0, 1);
+    if (options.section) settings.section = place(*options.section, settings.bounds, settings.view);
     settings.limits = options.range.value_or(settings.range.limits());
     settings.note = note_of(settings);
     return settings;

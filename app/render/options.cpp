@@ -109,6 +109,18 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
                    "component; stress by von Mises; none: tissue, with cut faces in red (default)")
         ->type_name("FIELD");
     add_list_options(app, options);
+    app.add_option_function<std::string>(
+           "--section",
+           [&options](const std::string& text) {
+               options.section = parse_section(text);
+               if (!options.section)
+                   refuse("--section", text,
+                          "is not x, y or z, nor of the form x=0.02 or PX,PY,PZ,NX,NY,NZ");
+           },
+           "cut the body open in the picture: across an axis in the middle (x) or at a "
+           "coordinate in m (x=0.02), or through a point across a direction "
+           "(PX,PY,PZ,NX,NY,NZ); what is in front of the plane is left out")
+        ->type_name("PLANE");
     app.add_flag("--edges", options.has_edges, "draw the lines of the mesh");
 
     try {

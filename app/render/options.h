@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "incise/app/render/section.h"
 #include "incise/base/types.h"
 
 namespace incise::render {
@@ -23,8 +24,9 @@ struct Options {
     std::optional<std::pair<double, double>> range;
     std::array<int, 2> size = {1280, 960};  ///< pixels
     Vec3 view = {-0.55, -1.0, 0.55};        ///< from the body to the eye
-    std::filesystem::path film;             ///< of all frames; if empty, none
-    bool has_edges = false;                 ///< if true, the lines of the mesh are drawn
+    std::optional<Section> section;
+    std::filesystem::path film;  ///< of all frames; if empty, none
+    bool has_edges = false;      ///< if true, the lines of the mesh are drawn
 };
 
 /// Returns the options. Returns an exit status after --help and --version, and after an error,

@@ -128,6 +128,7 @@ vtkSmartPointer<vtkImageData> reduce(vtkImageData& image, int factor) {
 struct Scene::Parts {
     int oversampling = 1;
     bool has_field = false;
+    std::optional<SectionPlane> section;
     vtkNew<vtkDataSetSurfaceFilter> surface;
     vtkNew<vtkPolyData> body;  // the surface, with what the pictures add
     vtkNew<vtkPolyDataNormals> normals;
@@ -314,6 +315,7 @@ Scene::Scene(const SceneSettings& settings) : parts_(std::make_unique<Parts>()) 
     const auto [width, height] = settings.size;
     parts.oversampling = oversampling(settings.size);
     parts.has_field = settings.field.place != ColorField::Place::none;
+    parts.section = settings.section;
     parts.surface->PassThroughCellIdsOn();
     parts.surface->PassThroughPointIdsOn();
     parts.make_body(settings);
@@ -346,6 +348,7 @@ std::string Scene::png(vtkUnstructuredGrid& grid, const std::string& caption) {
     parts.surface->Update();
     parts.body->ShallowCopy(parts.surface->GetOutput());
     if (!parts.has_field) add_tissue_look(grid, *parts.body);
+    if (parts.section) cut_open(grid, *parts.section, *parts.body);
     parts.caption->SetInput(caption.c_str());
     parts.renderer->ResetCameraClippingRange();
     parts.window->Render();

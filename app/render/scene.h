@@ -8,9 +8,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "incise/app/render/coloring.h"
+#include "incise/app/render/section.h"
 #include "incise/base/types.h"
 
 namespace incise::render {
@@ -20,7 +22,8 @@ struct SceneSettings {
     std::array<int, 2> size{};  ///< pixels
     Vec3 view;                  ///< from the body to the eye, of any length above zero
     bool has_edges = false;     ///< if true, the lines of the mesh are drawn
-    vtkBoundingBox bounds;      ///< of all frames
+    std::optional<SectionPlane> section;
+    vtkBoundingBox bounds;  ///< of all frames
     ColorField field;
     ColorRange range;
     std::pair<double, double> limits{0, 1};

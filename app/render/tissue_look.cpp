@@ -7,6 +7,7 @@
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -68,7 +69,48 @@ bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
     return false;
 }
 
+/// The tones of the regions of a frame.
+class Tones {
+  public:
+    explicit Tones(vtkUnstructuredGrid& grid) {
+        auto* regions = grid.GetCellData()->GetArray("region");
+        if (!regions) return;
+        for (vtkIdType i = 0; i < regions->GetNumberOfTuples(); ++i)
+            numbers_.emplace(regions->GetComponent(i, 0), 0);
+        std::size_t count = 0;
+        for (auto& [region, number] : numbers_) number = count++;
+    }
+    /// `regions` may be null: the body then has one tone.
+    const Tone& of(vtkDataArray* regions, vtkIdType cell) const {
+        const std::size_t number = regions ? numbers_.at(regions->GetComponent(cell, 0)) : 0;
+        return tissues[number % tissues.size()];
+    }
+
+  private:
+    std::map<double, std::size_t> numbers_;
+};
+
+vtkSmartPointer<vtkUnsignedCharArray> colors_for(vtkPolyData& surface) {
+    auto colors = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    colors->SetName(look_array);
+    colors->SetNumberOfComponents(3);
+    colors->SetNumberOfTuples(surface.GetNumberOfCells());
+    return colors;
+}
+
 }  // namespace
+
+void add_section_look(vtkUnstructuredGrid& grid, vtkPolyData& section) {
+    const Tones tones(grid);
+    auto* regions = section.GetCellData()->GetArray("region");
+    const auto colors = colors_for(section);
+    for (vtkIdType i = 0; i < section.GetNumberOfCells(); ++i) {
+        Tone pale = tones.of(regions, i);
+        for (unsigned char& part : pale) part = static_cast<unsigned char>((part + 255) / 2);
+        colors->SetTypedTuple(i, pale.data());
+    }
+    section.GetCellData()->AddArray(colors);
+}
 
 void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface) {
     auto* cells =
@@ -78,17 +120,8 @@ void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface) {
     if (!cells || !points) return;
     auto* regions = grid.GetCellData()->GetArray("region");
     auto* cut_faces = grid.GetCellData()->GetArray("cut_faces");
-    std::map<double, std::size_t> number_of_region;
-    if (regions)
-        for (vtkIdType i = 0; i < regions->GetNumberOfTuples(); ++i)
-            number_of_region.emplace(regions->GetComponent(i, 0), 0);
-    std::size_t count = 0;
-    for (auto& [region, number] : number_of_region) number = count++;
-
-    vtkNew<vtkUnsignedCharArray> colors;
-    colors->SetName(look_array);
-    colors->SetNumberOfComponents(3);
-    colors->SetNumberOfTuples(surface.GetNumberOfCells());
+    const Tones tones(grid);
+    const auto colors = colors_for(surface);
     vtkNew<vtkIdList> ids;
     std::vector<vtkIdType> polygon;
     for (vtkIdType i = 0; i < surface.GetNumberOfCells(); ++i) {
@@ -98,12 +131,9 @@ void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface) {
         for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
             polygon.push_back(points->GetValue(ids->GetId(k)));
         std::sort(polygon.begin(), polygon.end());
-        const std::size_t number =
-            regions ? number_of_region.at(regions->GetComponent(cell, 0)) : 0;
         const int faces = cut_faces ? static_cast<int>(cut_faces->GetComponent(cell, 0)) : 0;
-        colors->SetTypedTuple(i, is_cut(grid, cell, faces, polygon)
-                                     ? of_cut.data()
-                                     : tissues[number % tissues.size()].data());
+        colors->SetTypedTuple(
+            i, is_cut(grid, cell, faces, polygon) ? of_cut.data() : tones.of(regions, cell).data());
     }
     surface.GetCellData()->AddArray(colors);
 }

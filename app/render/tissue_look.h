@@ -14,5 +14,8 @@ inline constexpr const char* look_array = "incise look";
 /// one colour; without "cut_faces" no face is on a cut.
 /// @pre  the surface has the original ids of its points and cells
 void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface);
+/// Adds a paler colour to each polygon of a section through a frame.
+/// @pre  the section has the arrays of cells of the frame
+void add_section_look(vtkUnstructuredGrid& grid, vtkPolyData& section);
 
 }  // namespace incise::render

@@ -164,6 +164,43 @@ TEST(Render, DrawsTheFacesOfCutsInRed) {
         }
 }
 
+// What is in front of the plane is left out; the section shows the inside and its fields.
+TEST(Render, CutsTheBodyOpenAtAPlane) {
+    const TemporaryFolder folder;
+    io::Frame frame;
+    frame.mesh =
+        topology::box_mesh(topology::CellKind::tetrahedron, {0, 0, 0}, {4, 1, 1}, {8, 2, 2});
+    std::vector<double> heights;
+    for (const Vec3& point : frame.mesh.points) heights.push_back(point.x());
+    frame.point_fields = {{"height", 1, heights}};
+    io::write_vtu(folder / "bar.vtu", frame);
+    const auto picture_of = [&](const std::string& arguments) {
+        const auto outcome = render(folder, "bar.vtu --out p.png --size 320x240 " + arguments);
+        EXPECT_EQ(outcome.status, 0) << arguments << outcome.err;
+        return read_picture(folder / "p.png");
+    };
+    for (const std::string look : {"", "--color height --range 0,100 "}) {
+        SCOPED_TRACE(look);
+        const std::string field = "--view 0.05,-1,0 " + look;
+        const double whole = picture_of(field).colored_part();
+        EXPECT_NEAR(picture_of(field + "--section x=5").colored_part(), whole, 0.01 * whole);
+        EXPECT_NEAR(picture_of(field + "--section x=1").colored_part(), 0.25 * whole, 0.1 * whole);
+        EXPECT_NEAR(picture_of(field + "--section x").colored_part(), 0.5 * whole, 0.1 * whole);
+        EXPECT_NEAR(picture_of(field + "--section 3,0,0,-1,0,0").colored_part(), 0.75 * whole,
+                    0.1 * whole);
+        EXPECT_NEAR(picture_of(field + "--section y").colored_part(), whole, 0.2 * whole);
+    }
+    // The eye sees the section alone, and in it the value there.
+    const auto front = picture_of("--view 1,0,0 --color height --range 0,4").pixels;
+    const auto section = picture_of("--view 1,0,0 --color height --range 0,4 --section x=2");
+    const auto values = picture_of("--view 1,0,0 --color height --range 2,6 --section x=4.5");
+    EXPECT_TRUE(section.pixels != front);
+    const auto middle = section.pixels[120 * 320 + 135];
+    const auto other = front[120 * 320 + 135];
+    EXPECT_NE(middle, other);
+    EXPECT_EQ(values.pixels[120 * 320 + 135], middle);  // 4 of 2 to 6 is as 2 of 0 to 4
+}
+
 // With a program in the place of ffmpeg that tells how it was started, and with one that fails.
 TEST(Render, MakesAFilmOfAllFrames) {
     const TemporaryFolder folder;
@@ -240,6 +277,12 @@ TEST(Render, SaysWhatIsWrongWithTheInput) {
         {"run --size 320", "--size 320: is not of the form WxH"},
         {"run --view 0,0,0", "--view 0,0,0: is no direction"},
         {"run --range 1,1", "LOW must be below HIGH"},
+        {"run --section q", "--section q: is not x, y or z"},
+        {"run --section x=", "--section x=: is not x, y or z"},
+        {"run --section x=nan", "--section x=nan: is not x, y or z"},
+        {"run --section 0,0,0,0,0,0", "is not x, y or z"},
+        {"run --section 0,0,0,1,0", "is not x, y or z"},
+        {"run --section 0,0,0,1,0,0,", "is not x, y or z"},
         {"run --all --out film.png", "name a folder"},
         {"run --all --frame 1", "--frame"},
         {"", "DIR"},
