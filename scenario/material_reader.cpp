@@ -253,6 +253,7 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     spec.density =
         material.number("density", preset != nullptr ? preset->density : 1.0, limits::positive);
     const bool values_are_sound = read_parameters(material, spec.parameters);
+    spec.has_published_moduli = preset != nullptr && list_of(spec.parameters).empty();
     spec.inversion_threshold =
         material.number("inversion_threshold", spec.inversion_threshold, {.low = 0.0, .high = 1.0});
     spec.prony = read_prony(material);

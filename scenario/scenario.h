@@ -58,6 +58,7 @@ struct MaterialSpec {
     std::string_view law = "neo-hookean";   ///< HEML: the key of the law in laws()
     double density = 0.0;                   ///< kg/m3
     ElasticParameters parameters;           ///< as given; resolve() turns them into moduli
+    bool has_published_moduli = false;      ///< all of `parameters` are those of a tissue
     double inversion_threshold = 0.4;       ///< HEML: J0, in (0, 1)
     std::vector<physics::PronyTerm> prony;  ///< HEML: empty for an elastic material
     physics::PronyRule prony_rule = physics::PronyRule::stress;

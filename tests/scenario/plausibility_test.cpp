@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "incise/scenario/tissue_catalog.h"
 #include "scenario_file.h"
 
 namespace incise::scenario {
@@ -51,6 +52,16 @@ TEST(Plausibility, NamesTheUnitThatMayBeMeant) {
                 ElementsAre(HasSubstr("material 1 has a density of 1.06 kg/m3")));
     EXPECT_THAT(warnings_of(rest_block, {"material[0].young=5", "dynamics.gravity=[0, 0, 0]"}),
                 ElementsAre(HasSubstr("a Young's modulus of 5 Pa at rest")));
+}
+
+TEST(Plausibility, OfTissuesIsNotDoubted) {
+    for (const Tissue& tissue : tissues()) {
+        SCOPED_TRACE(tissue.key);
+        std::string text = rest_block;
+        text.replace(text.find("density"), text.find("[[constraint]]") - text.find("density"),
+                     "preset = '" + std::string(tissue.key) + "'\n");
+        EXPECT_THAT(warnings_of(text, {"dynamics.gravity=[0, 0, 0]"}), IsEmpty());
+    }
 }
 
 TEST(Plausibility, AsksWhatHoldsTheBodyAndWhetherItBearsItself) {
