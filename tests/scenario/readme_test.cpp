@@ -1,4 +1,4 @@
-// What the README shows is what ships, and runs with the other scenarios.
+// What the README and the gallery show is what ships, and runs with the other scenarios.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -38,6 +38,32 @@ TEST(Readme, ShowsTheBeamThatShips) {
     EXPECT_EQ(report.errors, std::vector<std::string>{});
     EXPECT_EQ(report.warnings, std::vector<std::string>{});
     EXPECT_FALSE(report.scenario.expect.empty());  // that it is parted
+}
+
+TEST(Gallery, NamesEveryScenarioThatShips) {
+    const std::string gallery = support::read_text(data_folder.parent_path() / "docs/gallery.md");
+    for (const auto& entry : std::filesystem::directory_iterator(data_folder / "scenarios")) {
+        const std::string name = entry.path().filename().string();
+        SCOPED_TRACE(name);
+        EXPECT_NE(gallery.find("`" + name + "`"), std::string::npos);
+        const ScenarioReport report = read_scenario(entry.path());
+        EXPECT_EQ(report.errors, std::vector<std::string>{});
+        EXPECT_FALSE(report.scenario.expect.empty());  // it is a test as well
+    }
+}
+
+TEST(Gallery, HasThePicturesThatItShows) {
+    const auto docs = data_folder.parent_path() / "docs";
+    std::istringstream words(support::read_text(docs / "gallery.md"));
+    int pictures = 0;
+    for (std::string word; words >> word;) {
+        const std::size_t start = word.rfind('('), end = word.find(".png)");
+        if (start == std::string::npos || end == std::string::npos) continue;
+        const std::string picture = word.substr(start + 1, end + 3 - start);
+        EXPECT_TRUE(std::filesystem::exists(docs / picture)) << picture;
+        ++pictures;
+    }
+    EXPECT_GE(pictures, 9);
 }
 
 }  // namespace
