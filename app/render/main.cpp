@@ -76,12 +76,12 @@ std::vector<std::size_t> choose_frames(const FrameList& list, const Options& opt
         for (std::size_t i = 0; i < count; ++i) all[i] = i;
         return all;
     }
-    const auto frame = options.frame.value_or(count - 1);
-    if (frame >= count)
-        throw InputError(options.input.string() + ": has no frame " + std::to_string(frame) +
-                         "; there are " + std::to_string(count) + ", numbered 0 to " +
-                         std::to_string(count - 1));
-    return {frame};
+    for (const auto frame : options.frames)
+        if (frame >= count)
+            throw InputError(options.input.string() + ": has no frame " + std::to_string(frame) +
+                             "; there are " + std::to_string(count) + ", numbered 0 to " +
+                             std::to_string(count - 1));
+    return options.frames.empty() ? std::vector{count - 1} : options.frames;
 }
 
 std::string six_digits(std::size_t number) {
@@ -102,9 +102,11 @@ struct Destination {
 
 Destination choose_destination(const FrameList& list, const Options& options) {
     const bool names_file = options.out.extension() == ".png";
-    if (names_file && options.is_all)
-        throw InputError("--out " + options.out.string() +
-                         ": --all makes many pictures; name a folder");
+    if (names_file && (options.is_all || options.frames.size() > 1))
+        throw InputError(
+            "--out " + options.out.string() + ": " +
+            (options.is_all ? "--all makes many pictures" : "there are several frames") +
+            "; name a folder");
     if (names_file) return {options.out, {}, {}};
     if (!options.out.empty()) return {{}, options.out, list.name};
     if (!list.is_run) return {list.folder / (list.name + ".png"), {}, {}};

@@ -90,13 +90,19 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     app.set_version_flag("--version", "incise-render " INCISE_VERSION);
 
     std::string input, out, film;
-    std::int64_t frame = 0;
+    std::vector<std::int64_t> frames;
+    constexpr std::int64_t most_frames = 1'000'000'000;
     app.add_option("DIR", input, "folder of a run, its .pvd file, or a .vtu file")->required();
     app.add_option("--out", out,
                    "FILE.png, or a folder (default: DIR/pictures, or beside the .vtu file)");
-    auto* frame_option = app.add_option("--frame", frame, "number of the frame, from 0")
-                             ->check(CLI::NonNegativeNumber)
-                             ->type_name("K");
+    auto* frame_option =
+        app.add_option("--frame", frames,
+                       "number of the frame, from 0; or of several, such as 0,10,20: pictures with "
+                       "one camera and one range of colours")
+            ->delimiter(',')
+            ->allow_extra_args(false)  // a word after them is the folder
+            ->check(CLI::Range(std::int64_t{0}, most_frames).description(""))
+            ->type_name("K[,K...]");
     app.add_flag("--all", options.is_all,
                  "every frame, with one camera and one range of colours: the frames of a film")
         ->excludes(frame_option);
@@ -135,7 +141,8 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     options.out = out;
     options.film = film;
     options.is_all = options.is_all || !film.empty();
-    if (frame_option->count() > 0) options.frame = static_cast<std::size_t>(frame);
+    for (const std::int64_t frame : frames)
+        options.frames.push_back(static_cast<std::size_t>(frame));
     return options;
 }
 

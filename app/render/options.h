@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "incise/app/render/section.h"
 #include "incise/base/types.h"
@@ -17,8 +18,8 @@ namespace incise::render {
 /// The options of incise-render.
 struct Options {
     std::filesystem::path input;
-    std::filesystem::path out;         ///< if empty, DIR/pictures, or beside a .vtu file
-    std::optional<std::size_t> frame;  ///< if not set, the last frame
+    std::filesystem::path out;        ///< if empty, DIR/pictures, or beside a .vtu file
+    std::vector<std::size_t> frames;  ///< if empty, the last frame
     bool is_all = false;
     std::optional<std::string> color;
     std::optional<std::pair<double, double>> range;

@@ -131,6 +131,18 @@ TEST(Render, DrawsAllFramesWithOneCameraAndRange) {
     EXPECT_EQ(read_text(folder / "film/bar_000001.png"), picture);
 }
 
+TEST(Render, DrawsSomeFramesAsAFilmHasThem) {
+    const TemporaryFolder folder;
+    write_run(folder / "run", 4);
+    const auto some = render(folder, "run --frame 0,3 --out some --size 320x240");
+    EXPECT_EQ(some.status, 0) << some.err;
+    EXPECT_EQ(some.out, "some/bar_000000.png\nsome/bar_000003.png\n");
+    // The camera is that of all frames that are drawn: the last one is the largest.
+    EXPECT_EQ(render(folder, "run --all --out all --size 320x240").status, 0);
+    EXPECT_EQ(read_text(folder / "some/bar_000000.png"), read_text(folder / "all/bar_000000.png"));
+    EXPECT_EQ(read_text(folder / "some/bar_000003.png"), read_text(folder / "all/bar_000003.png"));
+}
+
 /// The part of the pixels that are dark red, as the faces of cuts are.
 double red_part(const Picture& picture) {
     const auto count = std::count_if(
@@ -269,7 +281,10 @@ TEST(Render, SaysWhatIsWrongWithTheInput) {
         {"cut.vtu", "cut.vtu: is cut short"},
         {"forged.vtu", "is more than the file can hold"},
         {"run --frame 2", "has no frame 2; there are 2, numbered 0 to 1"},
+        {"run --frame 1,2", "has no frame 2; there are 2, numbered 0 to 1"},
         {"run --frame -1", "--frame"},
+        {"run --frame 1,x", "--frame"},
+        {"run --frame 0,1 --out two.png", "there are several frames; name a folder"},
         {"run --color colour",
          "no field is called 'colour'; there are: displacement, region, stress, none"},
         {"run --color region_x", "no field is called"},
