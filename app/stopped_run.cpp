@@ -1,40 +1,27 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/app/stopped_run.h"
 
-#include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "incise/app/messages.h"
+#include "incise/app/shell_word.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 
 namespace incise::app {
 
-namespace {
-
-/// Returns the word with quotes where a shell needs them.
-std::string quoted(const std::string& word) {
-    const auto is_plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-+./,:=%@", c);
-    };
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
+std::string run_command(const RunOptions& options) {
+    std::string text = "incise run " + shell_word(options.scenario.string());
+    if (options.out) text += " --out " + shell_word(options.out->string());
+    if (options.end_time) text += " --end-time " + io::format_number(*options.end_time);
+    for (const std::string& value : options.overrides) text += " --set " + shell_word(value);
+    if (options.num_threads > 0) text += " --threads " + std::to_string(options.num_threads);
+    return text;
 }
 
-}  // namespace
-
 std::string resuming_command(const RunOptions& options) {
-    std::string text = "incise run " + quoted(options.scenario.string());
-    if (options.out) text += " --out " + quoted(options.out->string());
-    if (options.end_time) text += " --end-time " + io::format_number(*options.end_time);
-    for (const std::string& value : options.overrides) text += " --set " + quoted(value);
-    if (options.num_threads > 0) text += " --threads " + std::to_string(options.num_threads);
-    return text + " --resume";
+    return run_command(options) + " --resume";
 }
 
 StoppedRun stopped_run(const std::filesystem::path& folder, const scenario::Scenario& scenario) {

@@ -12,6 +12,8 @@
 
 namespace incise::app {
 
+/// Returns the shell command that makes the run.
+std::string run_command(const RunOptions& options);
 /// Returns the shell command that resumes the run.
 std::string resuming_command(const RunOptions& options);
 

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
+#include "incise/app/dates.h"
 #include "incise/app/messages.h"
 #include "incise/app/progress.h"
 #include "incise/app/stop_signals.h"
@@ -155,17 +160,20 @@ bool is_to_be_resumed(const std::filesystem::path& folder, const scenario::Scena
            runner::holds_another_run(folder, scenario);
 }
 
-/// Warns of tools that were present during the run and should have cut but did not, because this is
-/// rarely intended.
-void warn_of_idle_tools(const runner::Simulation& simulation) {
+/// Returns warnings of tools that were present during the run and should have cut but did not,
+/// because this is rarely intended.
+std::vector<std::string> warnings_of_idle_tools(const runner::Simulation& simulation) {
+    std::vector<std::string> warnings;
     for (const scenario::ToolSpec& tool : simulation.scenario().tools) {
         const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
         if (!has_cut && scenario::cuts(tool) && tool.path.front().time < simulation.time())
-            print_warning("tool '" + tool.name + "' has cut nothing; look at a picture of where " +
-                          "the tissue is when it passes");
+            warnings.push_back("tool '" + tool.name +
+                               "' has cut nothing; look at a picture of where the tissue is when "
+                               "it passes");
     }
+    return warnings;
 }
 
 std::string describe(const runner::Simulation& simulation) {
@@ -180,6 +188,12 @@ std::string describe(const runner::Simulation& simulation) {
          << simulation.scenario().dynamics.end_time << " s";
     if (!is_static) text << " (stable up to " << body.stable_step << " s)";
     return text.str();
+}
+
+runner::Invocation invocation_of(const RunOptions& options) {
+    std::error_code none;  // a folder that was removed has no name
+    return {run_command(options), std::filesystem::current_path(none).string(),
+            utc_text(std::time(nullptr))};
 }
 
 int print_expectations(const scenario::Scenario& scenario, const runner::Quantities& quantities) {
@@ -199,9 +213,11 @@ int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& wri
     WarningObserver warnings(simulation);
     simulation.add_observer(warnings);
 
+    const runner::Invocation invocation = invocation_of(options);
     const Stopwatch watch;
     const auto finish = [&](runner::Outcome outcome) {
         outcome.wall_time = watch.seconds();
+        outcome.invocation = invocation;
         progress.finish();
         writer.finish(simulation, outcome);
     };
@@ -233,9 +249,12 @@ int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& wri
                     "; to go on: " + resuming_command(options));
         return 128 + signals.noted();
     }
-    finish({});
+    const auto idle_tools = warnings_of_idle_tools(simulation);
+    runner::Outcome outcome;
+    outcome.warnings = idle_tools;
+    finish(outcome);
     warnings.print_new(simulation);
-    warn_of_idle_tools(simulation);
+    for (const std::string& warning : idle_tools) print_warning(warning);
 
     if (!options.quiet)
         std::cerr << scenario.name << ": " << simulation.num_steps() << " steps in "

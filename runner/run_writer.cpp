@@ -267,6 +267,10 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     summary["scenario"] = scenario.name;
     summary["scenario_hash"] = scenario.hash;
     summary["version"] = INCISE_VERSION;
+    const auto& [command, directory, started] = outcome.invocation;
+    if (!command.empty()) summary["command"] = command;
+    if (!directory.empty()) summary["directory"] = directory;
+    if (!started.empty()) summary["started"] = started;
     summary["threads"] = simulation.model().num_threads();
     const auto quantities = has_failed ? last_row_ : summary_quantities(simulation);
     summary["edits"] = simulation.edits().size();
@@ -283,6 +287,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
         summary["real_time_factor"] = (simulation.time() - first_time_) / outcome.wall_time;
     }
     summary["warnings"] = simulation.warnings();
+    for (const std::string& warning : outcome.warnings) summary["warnings"].push_back(warning);
     io::write_file(folder() / "summary.json", text_of(summary, 2) + "\n");
     // Last, so that a process that is killed before can be resumed.
     if (outcome.status != "interrupted") remove_checkpoints_of_stops(folder());

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "incise/io/files/line_file.h"
 #include "incise/io/files/output_folder.h"
@@ -19,11 +20,20 @@
 
 namespace incise::runner {
 
+/// How a run was started, as its summary tells it. Empty texts are left out.
+struct Invocation {
+    std::string command;    ///< words for a shell that make the same run
+    std::string directory;  ///< in which the command was given
+    std::string started;    ///< date and time, UTC, in the form of ISO 8601
+};
+
 /// The end of a run.
 struct Outcome {
-    std::string status = "finished";  ///< or "failed", "interrupted"
-    std::string message;              ///< the error, if any
-    double wall_time = 0.0;           ///< s
+    std::string status = "finished";         ///< or "failed", "interrupted"
+    std::string message;                     ///< the error, if any
+    double wall_time = 0.0;                  ///< s
+    std::vector<std::string> warnings = {};  ///< besides those of the simulation
+    Invocation invocation = {};
 };
 
 /// An observer that writes the files of a run.

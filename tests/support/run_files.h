@@ -14,7 +14,7 @@
 namespace incise::support {
 
 /// All files of a run that has ended, by their names; the summary without figures of the wall
-/// clock.
+/// clock, and without how the run was started.
 inline std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -23,7 +23,9 @@ inline std::map<std::string, std::string> files_of(const std::filesystem::path& 
     }
     auto& summary = files["summary.json"];
     auto json = nlohmann::ordered_json::parse(summary);
-    for (const char* name : {"wall_time", "steps_per_second", "real_time_factor"}) json.erase(name);
+    for (const char* name :
+         {"wall_time", "steps_per_second", "real_time_factor", "started", "command", "directory"})
+        json.erase(name);
     summary = json.dump();
     return files;
 }
