@@ -22,8 +22,8 @@ namespace {
 
 using Action = std::function<int()>;
 
-constexpr std::string_view verbs[] = {"run",  "check",     "info",   "cut",  "convert",
-                                      "mesh", "materials", "render", "bench"};
+constexpr std::string_view verbs[] = {"run",  "check",     "info",   "cut",    "convert",
+                                      "mesh", "materials", "render", "report", "bench"};
 
 constexpr const char* description =
     "Incise deforms and cuts soft tissue. Units are SI throughout: metres, kilograms, seconds,\n"
@@ -41,6 +41,7 @@ constexpr const char* footer =
     "  incise mesh liver.stl liver.vtu --size 0.008      from a surface or a label image to "
     "tetrahedra\n"
     "  incise render liver.out --out liver.png           a picture of the last frame\n"
+    "  incise report liver.out                           a page with pictures, plots and tables\n"
     "\n"
     "Exit status: 0 done; 1 done, but an [expect] failed; 2 the input or the usage is at fault;\n"
     "3 the physics went wrong; 4 output failed; 5 out of memory; 70 a fault of the program;\n"
@@ -297,6 +298,37 @@ void declare_materials(CLI::App& app, Action& action) {
     verb->callback([options, &action] { action = [options] { return materials(*options); }; });
 }
 
+void declare_report(CLI::App& app, Action& action) {
+    auto options = std::make_shared<ReportOptions>();
+    auto* verb =
+        app.add_subcommand("report", "Make a page of a run: pictures, plots, tables, warnings");
+    verb->add_option("DIR", options->folder, "Folder that incise run made")
+        ->required()
+        ->type_name("PATH");
+    verb->add_option("--out", options->out,
+                     "File to write; replaced if it is there (default: DIR/report.html)")
+        ->type_name("FILE.html");
+    constexpr int most_pictures = 60;
+    verb->add_option("--pictures", options->num_pictures,
+                     "How many pictures: the first and the last frame, and others between them")
+        ->type_name("N")
+        ->check(CLI::Range(0, most_pictures).description(""))
+        ->capture_default_str();
+    verb->add_option("--color", options->color,
+                     "Field that colours the pictures; see incise render --help")
+        ->type_name("FIELD");
+    verb->add_option("--view", options->view, "From where one looks; see incise render --help")
+        ->type_name("X,Y,Z");
+    verb->footer(
+        "The page is one file. It opens in any browser, without a network. The path of the page\n"
+        "goes to stdout. A run that was stopped or that failed has a report too.\n"
+        "\n"
+        "Examples:\n"
+        "  incise report liver.out\n"
+        "  incise report liver.out --out liver.html --color von_mises --view=0.3,-1,0.2");
+    verb->callback([options, &action] { action = [options] { return report(*options); }; });
+}
+
 /// Declares the verb without options. All arguments, also --help, go to incise-render.
 void declare_render(CLI::App& app, Action& action) {
     auto* verb = app.add_subcommand("render", "Draw pictures of a finished run, off screen");
@@ -346,6 +378,7 @@ int dispatch(int argc, const char* const* argv) {
     declare_mesh(app, action);
     declare_materials(app, action);
     declare_render(app, action);
+    declare_report(app, action);
     declare_bench(app, action);
     refuse_empty_words(app);
     app.footer(footer);  // after the verbs, which would inherit it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/app/companion.h"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,8 +17,33 @@
 
 namespace incise::app {
 
+namespace {
+
+/// What the system does to the files of a program before it starts it.
+class FileActions {
+  public:
+    FileActions() { ::posix_spawn_file_actions_init(&actions_); }
+    ~FileActions() { ::posix_spawn_file_actions_destroy(&actions_); }
+    FileActions(const FileActions&) = delete;
+    FileActions& operator=(const FileActions&) = delete;
+
+    /// Lets the descriptor write to the file, if the path is not empty.
+    void redirect(int descriptor, const std::filesystem::path& path) {
+        constexpr mode_t mode = 0600;
+        if (!path.empty())
+            ::posix_spawn_file_actions_addopen(&actions_, descriptor, path.c_str(),
+                                               O_WRONLY | O_CREAT | O_TRUNC, mode);
+    }
+    const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+  private:
+    posix_spawn_file_actions_t actions_;
+};
+
+}  // namespace
+
 int run_companion(const std::string& name, const std::vector<std::string>& arguments,
-                  const std::string& remedy) {
+                  const std::string& remedy, const CompanionOutput& output) {
     const auto beside = std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
     const bool is_beside = ::access(beside.c_str(), X_OK) == 0;
     std::vector<std::string> words = {is_beside ? beside.string() : name};
@@ -28,10 +54,13 @@ int run_companion(const std::string& name, const std::vector<std::string>& argum
     pointers.push_back(nullptr);
 
     std::cout.flush();
+    FileActions files;
+    files.redirect(STDOUT_FILENO, output.out);
+    files.redirect(STDERR_FILENO, output.err);
     pid_t child = 0;
     // Without a slash in the name this looks in PATH.
     const int error =
-        ::posix_spawnp(&child, pointers[0], nullptr, nullptr, pointers.data(), environ);
+        ::posix_spawnp(&child, pointers[0], files.get(), nullptr, pointers.data(), environ);
     if (error != 0)
         throw InputError(name + ": cannot be started, neither from " +
                          beside.parent_path().string() + " nor from PATH (" + std::strerror(error) +

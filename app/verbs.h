@@ -96,6 +96,15 @@ struct MaterialsOptions {
 };
 int materials(const MaterialsOptions& options);
 
+struct ReportOptions {
+    std::filesystem::path folder;              ///< of a run
+    std::optional<std::filesystem::path> out;  ///< if not set, report.html in the folder
+    int num_pictures = 6;
+    std::string color;  ///< --color of incise-render; if empty, its default
+    std::string view;   ///< --view of incise-render; if empty, its default
+};
+int report(const ReportOptions& options);
+
 struct RenderOptions {
     std::vector<std::string> arguments;  ///< passed to incise-render without change
 };

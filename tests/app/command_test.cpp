@@ -44,10 +44,10 @@ TEST_F(Command, PrintsItsVersionAndHelp) {
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
     for (const auto* word : {"run", "check", "info", "cut", "convert", "mesh", "materials",
-                             "render", "Examples:", "Exit status: 0 done"})
+                             "render", "report", "Examples:", "Exit status: 0 done"})
         EXPECT_NE(help.out.find(word), std::string::npos) << word;
     for (const auto* verb :
-         {"run", "check", "info", "cut", "convert", "mesh", "materials", "bench"}) {
+         {"run", "check", "info", "cut", "convert", "mesh", "materials", "report", "bench"}) {
         const auto of_verb = run(std::string(verb) + " --help");
         EXPECT_EQ(of_verb.status, 0) << verb;
         EXPECT_NE(of_verb.out.find(std::string("Usage: incise ") + verb), std::string::npos);

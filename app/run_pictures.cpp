@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/app/run_pictures.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <vector>
+
+#include "incise/app/companion.h"
+#include "incise/app/verbs.h"
+#include "incise/base/error.h"
+
+namespace incise::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder for the pictures until they are in the page.
+class PictureFolder {
+  public:
+    PictureFolder() {
+        auto pattern = (fs::temp_directory_path() / "incise-report-XXXXXX").string();
+        if (!::mkdtemp(pattern.data()))
+            throw OutputError(pattern + ": cannot be made (" + std::strerror(errno) +
+                              "); let TMPDIR name a folder that can be written");
+        path_ = pattern;
+    }
+    ~PictureFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    PictureFolder(const PictureFolder&) = delete;
+    PictureFolder& operator=(const PictureFolder&) = delete;
+
+    fs::path operator/(const char* name) const { return path_ / name; }
+
+  private:
+    fs::path path_;
+};
+
+std::string text_of_file(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Returns the text without the name of the program and without line feeds at its end.
+std::string message_of(std::string text) {
+    while (text.ends_with('\n')) text.pop_back();
+    const std::string name = "incise-render: ";
+    return text.starts_with(name) ? text.substr(name.size()) : text;
+}
+
+std::vector<std::size_t> evenly_spread(std::size_t num_frames, std::size_t count) {
+    if (count >= num_frames) count = num_frames;
+    std::vector<std::size_t> frames;
+    for (std::size_t i = 0; i < count; ++i)
+        frames.push_back(count == 1 ? num_frames - 1
+                                    : (i * (num_frames - 1) + (count - 1) / 2) / (count - 1));
+    return frames;
+}
+
+std::vector<std::string> words_for(const report::RunRecord& run, const PictureOptions& options,
+                                   const std::vector<std::size_t>& frames, const fs::path& out) {
+    std::string numbers;
+    for (const std::size_t frame : frames)
+        numbers += (numbers.empty() ? "" : ",") + std::to_string(frame);
+    std::vector<std::string> words = {(run.folder / (run.name + ".pvd")).string(),
+                                      "--frame=" + numbers, "--out=" + out.string(),
+                                      "--size=960x720"};
+    if (!options.color.empty()) words.push_back("--color=" + options.color);
+    if (!options.view.empty()) words.push_back("--view=" + options.view);
+    return words;
+}
+
+}  // namespace
+
+report::Pictures draw_run(const report::RunRecord& run, const PictureOptions& options) {
+    report::Pictures pictures;
+    if (run.frame_times.empty()) {
+        pictures.note = "The run has written no frames.";
+        return pictures;
+    }
+    const auto frames =
+        evenly_spread(run.frame_times.size(), static_cast<std::size_t>(options.count));
+    if (frames.empty()) return pictures;
+    const PictureFolder folder;
+    // With one frame --out would be a folder too, so that the names are the same.
+    const fs::path out = folder / "pictures", complaint = folder / "stderr";
+    std::string reason;
+    try {
+        const int status =
+            run_companion("incise-render", words_for(run, options, frames, out),
+                          "it is built and installed together with incise: build again",
+                          {folder / "stdout", complaint});
+        if (status == done) {
+            for (const std::size_t frame : frames) {
+                auto digits = std::to_string(frame);
+                digits.insert(0, digits.size() < 6 ? 6 - digits.size() : 0, '0');
+                pictures.items.push_back(
+                    {frame, text_of_file(out / (run.name + "_" + digits + ".png"))});
+            }
+            return pictures;
+        }
+        reason = message_of(text_of_file(complaint));
+        // The user has a word to correct.
+        if (status == input_at_fault && (!options.color.empty() || !options.view.empty()))
+            throw InputError(reason);
+        if (reason.empty()) reason = "incise-render ended with status " + std::to_string(status);
+    } catch (const MemoryError&) {
+        reason = "incise-render was killed, perhaps for lack of memory";
+    } catch (const InputError& error) {
+        if (!reason.empty()) throw;
+        reason = error.what();
+    }
+    pictures.note = "There are no pictures: " + reason + ".";
+    return pictures;
+}
+
+}  // namespace incise::app
