@@ -84,11 +84,14 @@ Findings check_scenario(const std::filesystem::path& path) {
     findings.errors = std::move(errors);
     const auto effort = add_body_findings(scenario, findings.errors, findings.warnings);
     findings.num_printed = num_printed;
+    const auto num_obstacles = static_cast<std::size_t>(
+        std::ranges::count_if(scenario.tools, [](const auto& tool) { return tool.is_obstacle; }));
     findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +
                        count_of(scenario.materials.size(), "material") + ", " +
                        count_of(scenario.constraints.size(), "constraint") + ", " +
                        count_of(scenario.loads.size(), "load") + ", " +
-                       count_of(scenario.tools.size(), "tool");
+                       count_of(scenario.tools.size() - num_obstacles, "tool");
+    if (num_obstacles > 0) findings.summary += ", " + count_of(num_obstacles, "obstacle");
     if (effort && effort->seconds_of_forces >= 1.0)  // a shorter run needs no plan
         findings.effort = "some " + io::format_number(std::ceil(effort->num_steps)) +
                           " steps; their forces take " + duration_text(effort->seconds_of_forces) +

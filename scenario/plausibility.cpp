@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "incise/scenario/body_problems.h"
+#include "incise/scenario/tool_path.h"
 
 namespace incise::scenario {
 
@@ -94,6 +95,44 @@ void look_at_weight(const Scenario& scenario, const Box& body,
                      "Give more support, less gravity, or a material that stiffens");
 }
 
+/// Returns the area that the edge of a blade sweeps over the one that it would sweep if it moved
+/// across itself; nothing if it does not move.
+std::optional<double> sharpness_of_motion(const BladeSpec& blade, const ToolPath& path) {
+    constexpr int parts = 8;  // of the way from key to key: a blade may turn on it
+    double swept = 0.0, most = 0.0;
+    const auto& keys = path.keys();
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k)
+        for (int part = 0; part < parts; ++part) {
+            const double first = keys[k].time, length = (keys[k + 1].time - first) / parts;
+            const Pose from = path.pose(first + part * length),
+                       to = path.pose(first + (part + 1) * length);
+            for (std::size_t i = 0; i + 1 < blade.edge.size(); ++i) {
+                const Vec3 a = from.to_world(blade.edge[i]), b = from.to_world(blade.edge[i + 1]);
+                const Vec3 c = to.to_world(blade.edge[i]), d = to.to_world(blade.edge[i + 1]);
+                swept += 0.5 * ((b - a).cross(c - a).norm() + (c - b).cross(d - b).norm());
+                most += 0.5 * (b - a).norm() * ((c - a).norm() + (d - b).norm());
+            }
+        }
+    if (most == 0.0) return std::nullopt;
+    return swept / most;
+}
+
+void look_at_blades(const Scenario& scenario, Findings& findings) {
+    constexpr double along_itself = 0.01;
+    for (const ToolSpec& tool : scenario.tools) {
+        const auto* blade = std::get_if<BladeSpec>(&tool.kind);
+        if (!blade || tool.path.size() < 2) continue;
+        const auto sharpness = sharpness_of_motion(*blade, ToolPath(tool.path));
+        if (!sharpness)
+            findings.add(tool.location, "tool '", tool.name,
+                         "' does not move, so it cuts nothing: give its path another 'at'");
+        else if (*sharpness < along_itself)
+            findings.add(tool.location, "tool '", tool.name,
+                         "' moves along its own edge, so it sweeps no area and cuts nothing: "
+                         "move it across the edge, or turn the edge");
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> implausible(const Scenario& scenario, const topology::Mesh& mesh,
@@ -105,6 +144,7 @@ std::vector<std::string> implausible(const Scenario& scenario, const topology::M
     look_at_size(scenario, body, findings);
     look_at_materials(scenario, materials, findings);
     look_at_weight(scenario, body, materials, findings);
+    look_at_blades(scenario, findings);
     return findings.take();
 }
 

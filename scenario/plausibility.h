@@ -1,4 +1,4 @@
-// What a scenario may say, but hardly means: units that were mistaken, a body that falls.
+// What a scenario may say, but hardly means: mistaken units, a body that falls, an idle blade.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -13,8 +13,8 @@
 namespace incise::scenario {
 
 /// Returns warnings of a size, a density or a stiffness that no tissue has, of a body that nothing
-/// holds against gravity, and of one that its own weight would crush. Each begins with its
-/// location. Cost: O(n) in the nodes.
+/// holds against gravity, of one that its own weight would crush, and of blades that move along
+/// their own edge. Each begins with its location. Cost: O(n) in the nodes.
 std::vector<std::string> implausible(const Scenario& scenario, const topology::Mesh& mesh,
                                      const physics::MaterialTable& materials);
 

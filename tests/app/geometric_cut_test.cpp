@@ -111,6 +111,26 @@ TEST(GeometricCut, ReportsWhatHasChanged) {
         }
 }
 
+// Whatever the tolerance: a plane opens no face of a part that it does not cut off.
+TEST(GeometricCut, PartsTheBodyByEveryPlaneThatOpensFaces) {
+    std::size_t num_parted = 0;
+    for (const auto* family : test::tetrahedral_families())
+        for (int seed = 0; seed < num_seeds; ++seed)
+            for (const double snap : {0.0, cutting::default_snap, 0.5}) {
+                SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
+                Mesh mesh = Mesh::build(family->data).mesh;
+                test::Random random(900 + static_cast<std::uint64_t>(seed));
+                const CutTool tool = random_plane(box_of(mesh), random);
+                const int pieces = topology::components(mesh).count;
+                const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, snap});
+                const bool has_parted = topology::components(mesh).count > pieces;
+                EXPECT_EQ(report.total.faces_opened > 0, has_parted);
+                EXPECT_EQ(report.warnings.empty(), has_parted);
+                num_parted += has_parted;
+            }
+    EXPECT_GT(num_parted, 10u);
+}
+
 TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
     for (const auto& family : test::mesh_families())
         for (int seed = 0; seed < num_seeds; ++seed) {

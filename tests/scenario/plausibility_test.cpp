@@ -76,6 +76,27 @@ TEST(Plausibility, AsksWhatHoldsTheBodyAndWhetherItBearsItself) {
         IsEmpty());
 }
 
+TEST(Plausibility, AsksForBladesThatMoveAcrossTheirEdge) {
+    const auto with_blade = [](const std::string& path) {
+        return warnings_of(rest_block +
+                           "[[tool]]\nkind = 'blade'\nname = 'knife'\n"
+                           "edge = [[0, 0, 0], [0, 0.05, 0], [0, 0.1, 0]]\npath = [" +
+                           path + "]\n");
+    };
+    EXPECT_THAT(with_blade("{ time = 0, at = [0, 0, 0.05] }, { time = 1, at = [0.1, 0, 0.05] }"),
+                IsEmpty());
+    EXPECT_THAT(
+        with_blade("{ time = 0, at = [0.03, -1, 0.05] }, { time = 1, at = [0.03, 1, 0.05] }"),
+        ElementsAre(HasSubstr("tool 'knife' moves along its own edge")));
+    EXPECT_THAT(
+        with_blade("{ time = 0, at = [0.03, 0, 0.05] }, { time = 1, at = [0.03, 0, 0.05] }"),
+        ElementsAre(HasSubstr("tool 'knife' does not move")));
+    // It ends where it began, turned to the other side: on the way it sweeps half a disk.
+    EXPECT_THAT(with_blade("{ time = 0, at = [0.03, 0, 0.05] }, "
+                           "{ time = 1, at = [0.03, 0, 0.05], rotate = { axis = [0, 0, 1], angle = 3.1 } }"),
+                IsEmpty());
+}
+
 // A body of two tetrahedra that share a face, one of which is flat.
 TEST(Plausibility, NamesElementsThatCostTheStep) {
     for (const double height : {0.1, 0.002}) {
