@@ -285,7 +285,8 @@ int run(const RunOptions& options) {
         runner::holds_another_run(folder, scenario))
         throw InputError(folder.string() +
                          ": holds the results of another run; give this one another folder with "
-                         "--out, or replace the results with --force");
+                         "--out, or replace the results with --force; if only end_time is later, "
+                         "go on with --resume");
     if (options.resume && is_to_be_resumed(folder, scenario)) {
         if (const auto quantities = runner::finished_quantities(folder, scenario)) {
             if (!options.dry_run)  // one is left if the run was killed at the very end

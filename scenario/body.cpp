@@ -395,7 +395,11 @@ Parts build_parts(const Scenario& scenario) {
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }
     parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
-    if (parts.source && parts.materials) check_toughness(scenario, parts);
+    if (parts.source && parts.materials) {
+        check_toughness(scenario, parts);
+        for (std::string& warning : implausible(scenario, parts.source->mesh, *parts.materials))
+            parts.warnings.push_back(std::move(warning));
+    }
     return parts;
 }
 
@@ -415,8 +419,6 @@ double seconds_of_forces(physics::Model& model) {
 /// depends on constraints and loads.
 void check_model(const Scenario& scenario, Parts& parts) {
     if (!parts.source || !parts.materials) return;
-    for (std::string& warning : implausible(scenario, parts.source->mesh, *parts.materials))
-        parts.warnings.push_back(std::move(warning));
     parts.problems.try_to("", [&] {
         auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
         const double step = step_limit(scenario, model, model.rest_stable_step());

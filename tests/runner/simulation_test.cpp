@@ -284,7 +284,11 @@ path = [{ time = 0, at = [-0.1, 0, 0] }, { time = 0.005, at = [0.2, 0, 0] }]
 )",
                                                  "change tool.edge or tool.path")}) {
         SCOPED_TRACE(tool);
-        const auto warnings = warnings_of_lost_mass(tool);
+        auto warnings = warnings_of_lost_mass(tool);
+        // The densities are so far apart that both are doubted.
+        std::erase_if(warnings, [](const std::string& warning) {
+            return warning.find("has a density of") != std::string::npos;
+        });
         ASSERT_EQ(warnings.size(), 1u);
         EXPECT_TRUE(warnings[0].starts_with("tool 'saw', at t = ")) << warnings[0];
         EXPECT_NE(warnings[0].find("has left stiff elements with so little mass that the stable "
