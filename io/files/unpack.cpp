@@ -75,14 +75,22 @@ std::size_t max_unpacked(std::size_t num_packed) {
     return num_packed * max_expansion(Compressor::zlib);
 }
 
-std::optional<std::string> unpacked(std::string_view packed, std::size_t size) {
-    std::string bytes(size, '\0');
+std::optional<Unpacked> unpacked(std::string_view packed, std::size_t begin, std::size_t size) {
     Inflater inflater(packed);
-    if (inflater.take(bytes) != size) return std::nullopt;
-    std::array<char, 65536> ignored;  // zlib verifies the checksum at the end of the stream
-    while (!inflater.is_finished() && !inflater.has_failed()) inflater.take(ignored);
+    std::array<char, 65536> ignored;
+    while (begin > 0) {
+        const auto num_taken =
+            inflater.take(std::span(ignored).first(std::min(begin, ignored.size())));
+        if (num_taken == 0) return std::nullopt;
+        begin -= num_taken;
+    }
+    Unpacked part{std::string(size, '\0')};
+    if (inflater.take(part.bytes) != size) return std::nullopt;
+    // To the end, where zlib verifies the checksum.
+    while (!inflater.is_finished() && !inflater.has_failed())
+        part.num_behind += inflater.take(ignored);
     if (inflater.has_failed()) return std::nullopt;
-    return bytes;
+    return part;
 }
 
 }  // namespace incise::io

@@ -89,21 +89,29 @@ class LabelDecoder {
         const auto size = num_voxels_ * size_of(header_.type);
         if (header_.encoding == raw) return from_bytes(values_in(stored, size));
         if (header_.encoding == hex) return from_bytes(values_in(from_hex(stored), size));
-        const auto skip = header_.is_at_end ? 0 : header_.skip_bytes;
-        const auto packed_and_unpacked = stored.size() + skip + size;
-        std::optional<std::string> bytes;
-        if (skip + size <= max_unpacked(stored.size())) {
-            require_image_memory(static_cast<double>(packed_and_unpacked));
-            bytes = unpacked(stored, skip + size);
-        }
-        if (!bytes)
-            throw InputError(file_.name() + ": the packed data are damaged, or end before " +
-                             std::to_string(skip + size) +
-                             " bytes are unpacked, as the header has it; get it anew");
-        return from_bytes(std::string_view(*bytes).substr(skip));
+        return from_bytes(values_unpacked_from(stored, size));
     }
 
   private:
+    std::string values_unpacked_from(std::string_view packed, std::size_t size) {
+        auto skip = header_.skip_bytes;
+        std::optional<Unpacked> part;
+        if (size <= max_unpacked(packed.size())) {
+            require_image_memory(static_cast<double>(packed.size() + size));
+            if (header_.is_at_end) {
+                const auto whole = unpacked(packed, 0, 0);  // counts its bytes
+                skip = whole ? whole->num_behind - std::min(size, whole->num_behind) : 0;
+            }
+            part = unpacked(packed, skip, size);
+        }
+        if (!part)
+            throw InputError(file_.name() + ": the packed data are damaged, or end before " +
+                             std::to_string(skip + size) +
+                             " bytes are unpacked, as the header has it; get it anew");
+        warn_of_surplus(part->num_behind);
+        return std::move(part->bytes);
+    }
+
     std::string_view values_in(std::string_view bytes, std::size_t size) {
         auto skip = header_.skip_bytes;
         if (header_.is_at_end && bytes.size() >= size) skip = bytes.size() - size;
@@ -112,12 +120,16 @@ class LabelDecoder {
                              std::to_string(size) + " bytes of values, and there are " +
                              std::to_string(bytes.size() - std::min(skip, bytes.size())) +
                              "; get it anew");
-        if (const auto surplus = bytes.size() - skip - size; surplus > 0)
-            header_.warnings.push_back(file_.name() + " has " + std::to_string(surplus) +
-                                       (surplus == 1 ? " byte" : " bytes") +
-                                       " behind the values that its header announces, which "
-                                       "are not read; check the dimensions and the type");
+        warn_of_surplus(bytes.size() - skip - size);
         return bytes.substr(skip, size);
+    }
+
+    void warn_of_surplus(std::size_t num_bytes) {
+        if (num_bytes == 0) return;
+        header_.warnings.push_back(file_.name() + " has " + std::to_string(num_bytes) +
+                                   (num_bytes == 1 ? " byte" : " bytes") +
+                                   " behind the values that its header announces, which "
+                                   "are not read; check the dimensions and the type");
     }
 
     std::string from_hex(std::string_view text) const {

@@ -229,7 +229,9 @@ TEST(LabelImage, WarnsOfBytesBehindTheValues) {
     write_bytes(folder / "a.raw", bytes_of<std::uint8_t>(sample_labels()) + "xyz");
     write_bytes(folder / "a.mhd", meta_image_header("a.raw"));
     write_bytes(folder / "a.nhdr", nrrd_header() + "data file: a.raw\n");
-    for (const auto* name : {"a.mhd", "a.nhdr"}) {
+    write_bytes(folder / "a.gz", gzipped(bytes_of<std::uint8_t>(sample_labels()) + "xyz"));
+    write_bytes(folder / "b.nhdr", replaced(nrrd_header(), "raw", "gzip") + "data file: a.gz\n");
+    for (const auto* name : {"a.mhd", "a.nhdr", "b.nhdr"}) {
         const auto image = read_label_image(folder / name);
         EXPECT_EQ(image.labels, sample_labels());
         EXPECT_THAT(image.warnings, ElementsAre(HasSubstr("has 3 bytes behind the values")));
@@ -273,6 +275,20 @@ TEST(LabelImage, ReadsNrrdDataFromAnotherFile) {
     write_bytes(folder / "a.nhdr",
                 replaced(nrrd_header(), "raw", "gzip") + "data file: a.raw\nbyte skip: 3\n");
     expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+    write_bytes(folder / "a.nhdr",
+                replaced(nrrd_header(), "raw", "gzip") + "data file: a.raw\nbyte skip: -1\n");
+    expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+}
+
+TEST(LabelImage, ReadsPackedValuesAtTheEndOfManyBytes) {
+    const support::TemporaryFolder folder;
+    const std::string before(200000, 'x');
+    write_bytes(folder / "a.gz", gzipped(before + bytes_of<std::uint8_t>(sample_labels())));
+    for (const auto* skip : {"-1", "200000"}) {
+        write_bytes(folder / "a.nhdr", replaced(nrrd_header(), "raw", "gzip") +
+                                           "data file: a.gz\nbyte skip: " + skip + "\n");
+        expect_image(read_label_image(folder / "a.nhdr"), quarter_turn, {-10, 5, 7});
+    }
 }
 
 TEST(LabelImage, ReadsNrrdOfSpacingsAlone) {
