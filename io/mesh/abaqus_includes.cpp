@@ -2,6 +2,7 @@
 #include "incise/io/mesh/abaqus_includes.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "incise/base/error.h"
 #include "incise/io/files/memory.h"
@@ -17,19 +18,15 @@ constexpr std::size_t most_included = 1000;
 
 bool is_comment(std::string_view line) { return line.empty() || line.starts_with("**"); }
 
-bool is_include(std::string_view line) {
-    return line.starts_with('*') && abaqus_word(line.substr(0, line.find(','))) == "*INCLUDE";
+/// Returns the keyword of a line, if it is one of those that may name a file, or an empty text.
+std::string keyword_with_file(std::string_view line) {
+    if (!line.starts_with('*') || is_comment(line)) return {};
+    auto word = abaqus_word(line.substr(0, line.find(',')));
+    return word == "*INCLUDE" || word == "*NODE" || word == "*ELEMENT" ? word : std::string();
 }
 
-bool has_include(const InputFile& file) {
-    Scanner scanner(file);
-    while (scanner.remaining() > 0)
-        if (is_include(trimmed(scanner.rest_of_line()))) return true;
-    return false;
-}
-
-/// Returns the value of the parameter INPUT of a keyword, as it is written, or an empty text.
-std::string_view input_of(std::string_view keyword) {
+/// Returns the value of the parameter INPUT of a keyword, as it is written, if there is one.
+std::optional<std::string_view> input_of(std::string_view keyword) {
     while (!keyword.empty()) {
         const auto parameter = trimmed(keyword.substr(0, keyword.find(',')));
         keyword.remove_prefix(std::min(keyword.find(','), keyword.size() - 1) + 1);
@@ -40,13 +37,49 @@ std::string_view input_of(std::string_view keyword) {
             name = name.substr(1, name.size() - 2);
         return name;
     }
-    return {};
+    return std::nullopt;
+}
+
+/// A keyword that may name a file, with the lines that continue it.
+struct KeywordText {
+    std::string word;   ///< empty: the line is no such keyword
+    std::string lines;  ///< as they are in the file
+    std::string text;   ///< the same as one line, without comments
+    std::size_t num_lines = 0;
+
+    bool is_include() const { return word == "*INCLUDE"; }
+    bool names_file() const { return is_include() || (!word.empty() && input_of(text)); }
+};
+
+/// Reads the next line, and those that continue it if it is a keyword that may name a file.
+KeywordText next_keyword(Scanner& scanner) {
+    KeywordText keyword;
+    const auto take_line = [&] {
+        const auto line = scanner.rest_of_line();
+        keyword.lines.append(line).append("\n");
+        ++keyword.num_lines;
+        return trimmed(line);
+    };
+    const auto first = take_line();
+    keyword.word = keyword_with_file(first);
+    if (keyword.word.empty()) return keyword;
+    keyword.text = first;
+    while (keyword.text.ends_with(',') && scanner.remaining() > 0)
+        if (const auto line = take_line(); !is_comment(line)) keyword.text += line;
+    return keyword;
+}
+
+bool names_files(const InputFile& deck) {
+    Scanner scanner(deck);
+    while (scanner.remaining() > 0)
+        if (next_keyword(scanner).names_file()) return true;
+    return false;
 }
 
 }  // namespace
 
 AbaqusText::AbaqusText(const InputFile& deck) : deck_(deck) {
-    if (!has_include(deck)) return;
+    if (!names_files(deck)) return;
     whole_.path = deck.path;
     std::vector<std::filesystem::path> open_files;
     append(deck, open_files);
@@ -59,32 +92,22 @@ void AbaqusText::append(const InputFile& file, std::vector<std::filesystem::path
     open_files.push_back(std::filesystem::weakly_canonical(file.path, error));
     segments_.push_back({whole_.bytes.size(), file.name(), 1});
     Scanner scanner(file);
-    std::size_t line_number = 0;
-    const auto next_line = [&] {
-        ++line_number;
-        return scanner.rest_of_line();
-    };
+    std::size_t line_number = 1;
     while (scanner.remaining() > 0) {
-        auto line = next_line();
-        if (!is_include(trimmed(line))) {
-            whole_.bytes.append(line).append("\n");
-            continue;
-        }
-        const auto location = file.name() + ":" + std::to_string(line_number);
-        std::string keyword(trimmed(line));
-        while (keyword.ends_with(',') && scanner.remaining() > 0)
-            if (line = trimmed(next_line()); !is_comment(line)) keyword += line;
-        include(input_of(keyword), location, open_files);
-        segments_.push_back({whole_.bytes.size(), file.name(), line_number + 1});
+        const auto keyword = next_keyword(scanner);
+        if (!keyword.is_include()) whole_.bytes += keyword.lines;
+        const auto location = file.name() + ":" + std::to_string(line_number) + ": ";
+        line_number += keyword.num_lines;
+        if (!keyword.names_file()) continue;
+        include(input_of(keyword.text).value_or(""), location + keyword.word, open_files);
+        segments_.push_back({whole_.bytes.size(), file.name(), line_number});
     }
     open_files.pop_back();
 }
 
-void AbaqusText::include(std::string_view name, const std::string& location,
+void AbaqusText::include(std::string_view name, const std::string& place,
                          std::vector<std::filesystem::path>& open_files) {
-    const auto refuse = [&](const std::string& message) {
-        throw InputError(location + ": *INCLUDE" + message);
-    };
+    const auto refuse = [&](const std::string& message) { throw InputError(place + message); };
     if (name.empty()) refuse(" has no INPUT=...; name the file to include");
     if (++num_included_ > most_included)
         refuse(": more than " + std::to_string(most_included) +

@@ -13,12 +13,13 @@
 
 namespace incise::io {
 
-/// A deck in which the text of a file stands in place of each line *INCLUDE, INPUT=file. Names are
-/// relative to the folder of the deck, also in files that are included themselves.
+/// A deck in which the text of a file stands in place of each line *INCLUDE, INPUT=file, and behind
+/// each line *NODE, INPUT=file or *ELEMENT, INPUT=file, as its rows. Names are relative to the
+/// folder of the deck, also in files that are included themselves.
 class AbaqusText {
   public:
-    /// Reads the files. Throws InputError that names the file and the line for an *INCLUDE without
-    /// INPUT, a file that cannot be read, and files that include each other in a circle.
+    /// Reads the files. Throws InputError that names the file and the line for an INPUT without a
+    /// name, a file that cannot be read, and files that include each other in a circle.
     /// @lifetime  the deck must outlive this object
     explicit AbaqusText(const InputFile& deck);
     AbaqusText(const AbaqusText&) = delete;
@@ -38,7 +39,8 @@ class AbaqusText {
     };
 
     void append(const InputFile& file, std::vector<std::filesystem::path>& open_files);
-    void include(std::string_view name, const std::string& location,
+    /// Appends a file; `place` is the location and the keyword that names it, for messages.
+    void include(std::string_view name, const std::string& place,
                  std::vector<std::filesystem::path>& open_files);
 
     const InputFile& deck_;

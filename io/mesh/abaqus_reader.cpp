@@ -115,18 +115,10 @@ class AbaqusReader {
         return true;
     }
 
-    void refuse_other_file() const {
-        if (keyword_.parameter("INPUT"))
-            lines_.fail(
-                "INPUT: is not read here; put the lines of that file on the next lines, or "
-                "'*INCLUDE, INPUT=...'");
-    }
-
     // --- *NODE: number, x, y, z
 
     void begin_nodes() {
         if (!is_of_mesh()) return;
-        refuse_other_file();
         const auto system = keyword_.parameter("SYSTEM").value_or("R");
         if (system != "R")
             lines_.fail("SYSTEM=" + in_quotes(system) +
@@ -154,7 +146,6 @@ class AbaqusReader {
 
     void begin_elements() {
         if (!is_of_mesh()) return;
-        refuse_other_file();
         type_ = keyword_.parameter("TYPE").value_or("");
         if (type_.empty()) lines_.fail("*ELEMENT has no TYPE");
         form_ = abaqus_form(type_);

@@ -130,10 +130,27 @@ TEST_F(AbaqusInclude, BoundsTheNumberOfFiles) {
     EXPECT_THAT(refused(files), HasSubstr("more than 1000 files are included"));
 }
 
-TEST_F(AbaqusInclude, IsTheRemedyForDataInOtherFiles) {
-    EXPECT_EQ(refused({{"a.inp", "*NODE, INPUT=nodes.txt\n"}}),
-              "a.inp:1: INPUT: is not read here; put the lines of that file on the next lines, or "
-              "'*INCLUDE, INPUT=...'");
+TEST_F(AbaqusInclude, ReadsRowsOfNodesAndElementsInOtherFiles) {
+    const auto file =
+        read({{"a.inp",
+               "*Node,\n** in parts\n nset=all, input=nodes.csv\n5, 1, 1, 1\n*ELEMENT, "
+               "INPUT=parts/all.csv, TYPE=C3D4, ELSET=A\n2, 2, 3, 4, 5\n"},
+              {"nodes.csv", "1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"},
+              {"parts/all.csv", "1, 1, 2, 3,\n4"}});
+    EXPECT_EQ(file.mesh.points.size(), 5u);
+    EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+    EXPECT_THAT(file.mesh.regions, ElementsAre(1, 1));
+}
+
+TEST_F(AbaqusInclude, NamesTheKeywordThatNamesAFile) {
+    EXPECT_EQ(refused({{"a.inp", "** deck\n*NODE,\nINPUT=b.csv\n"}}),
+              "a.inp:2: *NODE: b.csv: no such file; check the path");
+    EXPECT_EQ(refused({{"a.inp", "*Element, TYPE=C3D4, INPUT=\n"}}),
+              "a.inp:1: *ELEMENT has no INPUT=...; name the file to include");
+    EXPECT_EQ(refused({{"a.inp", "*NODE,\nINPUT=c.csv\n1, x\n"}, {"c.csv", "2, 0, 0, 0\n"}}),
+              "a.inp:3: expected coordinate x, found 'x'");
+    EXPECT_EQ(refused({{"a.inp", "*NODE,\nINPUT=c.csv\n"}, {"c.csv", "\n2, x, 0, 0\n"}}),
+              "c.csv:2: expected coordinate x, found 'x'");
 }
 
 }  // namespace

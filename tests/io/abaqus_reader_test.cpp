@@ -288,11 +288,9 @@ TEST(AbaqusReader, RefusesSetsThatAreNone) {
 
 TEST(AbaqusReader, RefusesWhatItDoesNotFollow) {
     for (const auto* keyword :
-         {"*NGEN", "*nfill", "*NCOPY", "*NMAP", "*SYSTEM", "*El Gen", "*ELCOPY",
-          "*NODE, INPUT=nodes.txt", "*ELEMENT, TYPE=C3D4, INPUT=elements.txt", "*NODE, SYSTEM=C"})
+         {"*NGEN", "*nfill", "*NCOPY", "*NMAP", "*SYSTEM", "*El Gen", "*ELCOPY", "*NODE, SYSTEM=C"})
         EXPECT_THAT(abaqus_refusal_behind(std::string(keyword) + "\n1, 2\n"),
-                    AllOf(StartsWith("liver.inp:13: "),
-                          testing::AnyOf(HasSubstr("export"), HasSubstr("put the lines"))))
+                    AllOf(StartsWith("liver.inp:13: "), HasSubstr("export")))
             << keyword;
 }
 
