@@ -47,6 +47,9 @@ constexpr OtherFamily other_families[] = {
     {"MASS", {0, "mass point", 0, ignore}}, {"ROTARYI", {0, "rotary inertia", 0, ignore}},
 };
 
+/// A pipe or another passage for fluids, of CalculiX.
+constexpr CellForm network_element{0, "network element", 0, ignore};
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Returns the number after the name of a family, of at most `most_digits` digits. Returns 0 if the
@@ -69,6 +72,7 @@ const CellForm* abaqus_form(std::string_view type) {
     // One digit: no surface has ten nodes or more. STRI65 has six, with five degrees of freedom.
     for (const auto family : surface_families)
         if (const int nodes = number_behind(family, type, 1)) return find_form(surfaces, nodes);
+    if (type == "D") return &network_element;
     const auto* other = std::ranges::find_if(
         other_families, [&](const auto& family) { return type.starts_with(family.name); });
     return other == std::end(other_families) ? nullptr : &other->form;

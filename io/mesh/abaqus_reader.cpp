@@ -48,9 +48,12 @@ class AbaqusReader {
                 begin_section();
             else if (read_row_ != nullptr)
                 (this->*read_row_)();
+            else if (keyword_.name.empty())
+                leave_out_line();
         }
         finish_element();
         add_elements();
+        warn_of_short_nodes();
         collector_.finish(result_.mesh, result_.warnings);
         return std::move(result_);
     }
@@ -63,6 +66,13 @@ class AbaqusReader {
         std::size_t first_node;  ///< in nodes_
     };
     enum class Scope : std::uint8_t { model, part, assembly, instance };
+
+    /// Some decks begin with a text that is no comment.
+    void leave_out_line() {
+        if (!std::exchange(has_text_before_, true))
+            result_.warnings.push_back(
+                "left out what comes before the first keyword, and is no comment with **");
+    }
 
     void begin_section() {
         finish_element();
@@ -115,7 +125,7 @@ class AbaqusReader {
         return true;
     }
 
-    // --- *NODE: number, x, y, z
+    // --- *NODE: number, x, y, z; coordinates that are left out are 0
 
     void begin_nodes() {
         if (!is_of_mesh()) return;
@@ -129,17 +139,27 @@ class AbaqusReader {
     void read_node() {
         const auto fields = lines_.fields();
         constexpr std::array names = {"coordinate x", "coordinate y", "coordinate z"};
-        if (fields.size() < 1 + names.size())
-            lines_.fail("a node has " + std::to_string(fields.size()) +
-                        " fields; it must have a number and three coordinates");
         node_tags_.add(lines_.number(fields[0], "the number of a node"));
         Vec3 point;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto field = fields[1 + i];
+            const auto field = 1 + i < fields.size() ? fields[1 + i] : std::string_view();
             const double value = field.empty() ? 0.0 : lines_.real(field, names[i]);
             point[static_cast<Eigen::Index>(i)] = value;
         }
+        // An empty field is meant to be 0; a row that ends early may be damaged.
+        if (fields.size() < 1 + names.size() && num_short_nodes_++ == 0)
+            first_short_node_ = fields[0];
         result_.mesh.points.push_back(point);
+    }
+
+    void warn_of_short_nodes() {
+        if (num_short_nodes_ == 0) return;
+        const auto first = "node " + first_short_node_;
+        result_.warnings.push_back(
+            (num_short_nodes_ == 1
+                 ? first + " has"
+                 : std::to_string(num_short_nodes_) + " nodes, the first " + first + ", have") +
+            " less than three coordinates; those that are left out are taken as 0");
     }
 
     // --- *ELEMENT: number, nodes; a row may continue on the next lines
@@ -251,7 +271,11 @@ class AbaqusReader {
     // --- at the end: elements in order, with their nodes and regions
 
     void add_elements() {
-        if (const auto twice = node_tags_.sort())
+        const auto& points = result_.mesh.points;
+        const auto are_same = [&](std::int64_t a, std::int64_t b) {
+            return points[static_cast<std::size_t>(a)] == points[static_cast<std::size_t>(b)];
+        };
+        if (const auto twice = node_tags_.sort(are_same))
             throw InputError(file_.name() + ": number " + *twice);
         result_.mesh.source_points = node_tags_.in_order();
         std::ranges::stable_sort(elements_, {}, &Element::number);
@@ -296,9 +320,12 @@ class AbaqusReader {
     int num_scopes_ = 0;             ///< parts and instances so far
     std::optional<int> mesh_scope_;  ///< number of the one with the mesh; 0: the model itself
     bool has_instance_ = false;
+    bool has_text_before_ = false;  ///< before the first keyword
 
     NodeTags node_tags_;
-    std::string type_;  ///< of the current elements, as are the next two
+    std::size_t num_short_nodes_ = 0;  ///< with less than three coordinates
+    std::string first_short_node_;     ///< number of the first one
+    std::string type_;                 ///< of the current elements, as are the next two
     const CellForm* form_ = nullptr;
     std::optional<std::size_t> element_set_;
     std::vector<std::int64_t> row_;  ///< number and nodes of the current element, so far

@@ -127,6 +127,13 @@ bool begins_like_freefem(std::string_view text) {
     return num_counts == 3;
 }
 
+/// True if one of the first lines is a keyword of Abaqus. Some decks begin with other text.
+bool has_abaqus_keyword(std::string_view text) {
+    constexpr std::size_t longest_beginning = 4000;
+    text = text.substr(0, longest_beginning);
+    return text.find("\n*") != text.npos && text.find('\0') == text.npos;
+}
+
 /// Returns the format of the file, or null if it is not known. Throws InputError for an index of
 /// other files or a mesh of another program.
 const ReadFormat* read_format_of(const InputFile& file) {
@@ -154,7 +161,9 @@ const ReadFormat* read_format_of(const InputFile& file) {
                          "FreeFEM and not of Gmsh; FreeFEM writes MEDIT, which can be read, where "
                          "the name ends so: savemesh(Th, \"NAME.mesh\")");
     for (const auto& format : read_formats)
-        if (format.magic.empty() && suffix == format.suffix) return &format;
+        if (suffix == format.suffix &&
+            (format.magic.empty() || (format.read == read_abaqus && has_abaqus_keyword(text))))
+            return &format;
     return nullptr;
 }
 

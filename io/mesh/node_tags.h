@@ -21,10 +21,18 @@ class NodeTags {
     /// Sorts the tags, after all have been added. If two nodes have the same tag, returns the text
     /// of an error message about the lowest such tag.
     std::optional<std::string> sort() {
+        return sort([](std::int64_t, std::int64_t) { return false; });
+    }
+
+    /// The same for a format in which a node may be given several times. `are_same` tells if two
+    /// nodes, by their numbers, are one; find() then returns one of them, always the same.
+    template <class AreSame>
+    std::optional<std::string> sort(AreSame are_same) {
         std::sort(sorted_.begin(), sorted_.end());
         const auto twin =
-            std::adjacent_find(sorted_.begin(), sorted_.end(),
-                               [](const auto& a, const auto& b) { return a.first == b.first; });
+            std::adjacent_find(sorted_.begin(), sorted_.end(), [&](const auto& a, const auto& b) {
+                return a.first == b.first && !are_same(a.second, b.second);
+            });
         if (twin == sorted_.end()) return std::nullopt;
         const auto number = [](const auto& entry) { return std::to_string(entry.second + 1); };
         return std::to_string(twin->first) + " is given to two nodes, the nodes number " +
@@ -33,7 +41,7 @@ class NodeTags {
     }
 
     /// Returns the number of the node with this tag, if there is one. Cost: constant if the tags
-    /// have no gaps, else the logarithm of their number.
+    /// have no gaps and each is given once, else the logarithm of their number.
     /// @pre  sort() has been called
     std::optional<std::int64_t> find(std::int64_t tag) const {
         if (sorted_.empty() || tag < sorted_.front().first || tag > sorted_.back().first)

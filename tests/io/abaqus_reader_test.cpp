@@ -13,6 +13,7 @@ namespace incise::io {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -67,6 +68,34 @@ TEST(AbaqusReader, ReadsRowsAndKeywordsAsTheManualAllows) {
     EXPECT_THAT(file.mesh.corners, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
     EXPECT_THAT(file.mesh.regions, ElementsAre(2));
     EXPECT_THAT(file.warnings, ElementsAre());
+}
+
+TEST(AbaqusReader, TakesCoordinatesThatAreLeftOutAsZero) {
+    const auto one =
+        read_bytes("a.inp", replaced(abaqus_tetrahedra, "20, 0., 1., 0.", "20, 0., 1."));
+    EXPECT_EQ(one.mesh.points[2], Vec3(0, 1, 0));
+    EXPECT_THAT(one.warnings, Contains("node 20 has less than three coordinates; those that are "
+                                       "left out are taken as 0"));
+    const auto two = read_bytes("a.inp", replaced(replaced(abaqus_tetrahedra, "0., 0., 0.", ""),
+                                                  "20, 0., 1., 0.", "20, , 1."));
+    EXPECT_EQ(two.mesh.points[0], Vec3(0, 0, 0));
+    EXPECT_EQ(two.mesh.points[2], Vec3(0, 1, 0));
+    EXPECT_THAT(two.warnings, Contains(StartsWith("2 nodes, the first node 30, have less than")));
+}
+
+TEST(AbaqusReader, TakesANodeGivenTwiceAtTheSamePlaceAsOne) {
+    const auto file =
+        read_bytes("a.inp", abaqus_tetrahedra + "*NODE, NSET=Reference\n10, 1, 0, 0\n");
+    EXPECT_THAT(file.mesh.corners, ElementsAre(1, 2, 3, 4, 0, 1, 2, 3));
+}
+
+TEST(AbaqusReader, LeavesOutTextBeforeTheFirstKeyword) {
+    const auto file = read_bytes("a.inp", ">**\n** a beam\nCALC PROBLEM\n" + abaqus_tetrahedra);
+    EXPECT_EQ(file.mesh.num_cells(), 2u);
+    EXPECT_THAT(file.warnings,
+                Contains(StartsWith("left out what comes before the first keyword")));
+    EXPECT_THAT(refusal("a.txt", ">**\n" + abaqus_tetrahedra), HasSubstr("no mesh format known"));
+    EXPECT_THAT(refusal("a.inp", "5 2 0 0 0\n1 0 0 0\n"), HasSubstr("no mesh format known"));
 }
 
 TEST(AbaqusReader, TurnsWedgesToFaceAway) {
@@ -209,12 +238,13 @@ TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
         read_bytes("a.inp", abaqus_tetrahedra +
                                 "*ELEMENT, TYPE=S3R, ELSET=Skin\n11, 30, 10, 20\n"
                                 "*ELEMENT, TYPE=STRI65\n12, 30, 10, 20,\n 50, 40, 30\n"
-                                "*ELEMENT, TYPE=SPRINGA\n13, 30, 10\n14, 10, 20\n");
+                                "*ELEMENT, TYPE=SPRINGA\n13, 30, 10\n14, 10, 20\n"
+                                "*ELEMENT, TYPE=D\n15, 0, 10, 20\n");
     EXPECT_EQ(file.mesh.num_cells(), 2u);
     EXPECT_THAT(file.warnings,
                 ElementsAre(HasSubstr("region 1 is 'EALL'"),
-                            HasSubstr("ignored 1 triangle, 1 second-order triangle and 2 "
-                                      "springs:")));
+                            HasSubstr("ignored 1 triangle, 1 second-order triangle, 2 springs "
+                                      "and 1 network element:")));
 }
 
 TEST(AbaqusReader, RefusesHigherOrderAndUnknownSolids) {
@@ -249,8 +279,6 @@ TEST(AbaqusReader, RefusesRowsOfTheWrongLength) {
               "short or damaged");
     EXPECT_EQ(abaqus_refusal_with("20, 50\n", "20\n"),
               "liver.inp:12: element 7: has 8 nodes; a tetrahedron has 4");
-    EXPECT_EQ(abaqus_refusal_with("1., 1., 1.", "1., 1."),
-              "liver.inp:9: a node has 3 fields; it must have a number and three coordinates");
 }
 
 TEST(AbaqusReader, RefusesWhatIsNoNumber) {
