@@ -71,6 +71,8 @@ constexpr ForeignFormat foreign_formats[] = {
     {"a mesh of SU2", "ndime="},
     {"an HDF5 file, as of Fluent (.msh.h5), CGNS and MED", "\x89hdf"},
     {"a NetCDF file, as of Exodus", "cdf"},
+    {"a legacy VTK file without the blank behind '#' in its first line", "#vtk datafile",
+     "write '# vtk DataFile' there, or convert it to one of: "},
     {"a binary file of USD (.usdc or .usd)", "pxr-usdc", usd_remedy},
     {"a packed archive, as of USD (.usdz)", "pk\x03\x04", usd_remedy},
 };
@@ -105,7 +107,9 @@ const ReadFormat* format_of_xml(std::string_view text) {
 /// Returns the format with whose mark the text begins, or null.
 const ReadFormat* marked_format_of(const std::string& head) {
     for (const auto& format : read_formats)
-        if (!format.magic.empty() && head.starts_with(format.magic)) return &format;
+        if (!format.magic.empty() && head.starts_with(format.magic) &&
+            !head.substr(format.magic.size()).starts_with('\0'))  // no text has zero bytes
+            return &format;
     return nullptr;
 }
 

@@ -206,6 +206,11 @@ TEST(MeshReader, RefusesWhatIsNoMeshFile) {
                 AllOf(HasSubstr("no mesh format known"), HasSubstr("VTU (.vtu)")));
     EXPECT_THAT(refusal("liver.vtu", "  \n\n"), HasSubstr("no mesh format known"));
     EXPECT_THAT(refusal("liver.vtu", ""), HasSubstr("the file is empty"));
+    // A binary file whose first byte is the mark of Gmsh.
+    EXPECT_THAT(refusal("cube.msh", std::string("$\0\0\0$\0\0\0", 8)),
+                HasSubstr("no mesh format known"));
+    EXPECT_THAT(refusal("liver.vtk", "#vtk DataFile Version 2.0\nliver\nASCII\n"),
+                HasSubstr("write '# vtk DataFile' there"));
 }
 
 TEST(MeshReader, NamesMeshesOfOtherPrograms) {
