@@ -46,7 +46,8 @@ const Format& format_of(const InputFile& file) {
         known += std::string(known.empty() ? "" : ", ") + format.name + " (" + format.suffixes[0] +
                  ", " + format.suffixes[1] + ")";
     throw InputError(file.name() +
-                     ": begins like no image format known here; convert it to one of: " + known);
+                     ": begins like no image format known here; convert an image to one of: " +
+                     known + ", and a surface to STL, PLY, OFF or OBJ");
 }
 
 /// Checks spacing, origin and directions, and normalizes the columns of the directions. If a column

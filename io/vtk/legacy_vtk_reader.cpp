@@ -133,9 +133,8 @@ class LegacyVtkReader {
         if (!scanner_.accept("DATASET"))
             scanner_.fail_expected("DATASET", scanner_.token("DATASET"));
         const auto kind = scanner_.token("the kind of dataset");
-        if (lower_case(kind) != "unstructured_grid")
-            scanner_.fail("holds a dataset of kind " + in_quotes(kind) +
-                          "; only UNSTRUCTURED_GRID holds volume cells");
+        if (const auto word = lower_case(kind); word != "unstructured_grid")
+            scanner_.fail("holds a dataset of kind " + in_quotes(kind) + remedy_for_dataset(word));
     }
 
     void read_section() {

@@ -106,6 +106,16 @@ void refuse_missing_regions(const std::string& location, const std::string& name
                         : "; its cell arrays of whole numbers: " + quoted_list(others)));
 }
 
+std::string remedy_for_dataset(std::string_view kind) {
+    if (kind == "polydata")
+        return ", a surface; save it as STL, PLY, OFF or OBJ, and make tetrahedra of it by "
+               "`incise mesh`";
+    if (kind == "structured_points" || kind == "imagedata")
+        return ", an image; save a segmentation as NIfTI, MetaImage or NRRD, and make a mesh of it "
+               "by `incise mesh`";
+    return "; only UNSTRUCTURED_GRID, in XML UnstructuredGrid, holds volume cells";
+}
+
 CellCollector make_vtk_collector(const std::string& file, const ReadOptions& options) {
     return {file, "VTK cell type", options};
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "incise/io/mesh/cell_form.h"
@@ -54,6 +55,10 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
 /// are the cell arrays of vectors in the file.
 [[noreturn]] void refuse_missing_vectors(const std::string& location, const std::string& name,
                                          const std::vector<std::string>& others);
+
+/// Returns the end of a message about a dataset of VTK that holds no volume cells: what it is and
+/// what to do. `kind` is its kind in lower case, as in legacy files or in XML.
+std::string remedy_for_dataset(std::string_view kind);
 
 /// Makes a collector whose messages have the words of VTK.
 CellCollector make_vtk_collector(const std::string& file, const ReadOptions& options);

@@ -13,6 +13,7 @@
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
+#include "incise/io/files/scanner.h"
 #include "incise/io/vtk/frame_index.h"
 #include "incise/io/vtk/vtk_cells.h"
 #include "incise/io/vtk/vtk_xml_array.h"
@@ -71,7 +72,7 @@ class VtuReader {
             if (!files.empty()) refuse_index(file_, files, type == "PUnstructuredGrid");
             if (type == "Collection" || type == "PUnstructuredGrid") refuse_empty_index(file_);
             throw InputError(file_.name() + ": holds a VTK dataset of type " + in_quotes(type) +
-                             "; only UnstructuredGrid holds volume cells");
+                             remedy_for_dataset(lower_case(type)));
         }
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
         const auto corners =

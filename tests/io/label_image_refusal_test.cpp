@@ -293,9 +293,11 @@ TEST(LabelImage, NamesTheFirstVoxelThatIsNoLabel) {
 }
 
 TEST(LabelImage, RefusesWhatIsNoImage) {
-    EXPECT_EQ(image_refusal("a.png", "\x89PNG and more"),
-              "a.png: begins like no image format known here; convert it to one of: NIfTI (.nii, "
-              ".nii.gz), MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr)");
+    EXPECT_EQ(
+        image_refusal("a.png", "\x89PNG and more"),
+        "a.png: begins like no image format known here; convert an image to one of: NIfTI (.nii, "
+        ".nii.gz), MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr), and a surface to STL, PLY, OFF "
+        "or OBJ");
     EXPECT_THAT(image_refusal("a.nrrd", "nonsense"), HasSubstr("does not begin as a NRRD image"));
     EXPECT_THAT(image_refusal("a.mha", "nonsense"), HasSubstr("expected KEY = VALUE"));
     EXPECT_THAT(image_refusal("a.nii.gz", gzipped("nonsense")),

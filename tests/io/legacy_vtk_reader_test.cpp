@@ -168,7 +168,11 @@ TEST(LegacyVtkReader, RefusesCellListsThatDoNotAddUp) {
 
 TEST(LegacyVtkReader, RefusesWhatItCannotRead) {
     EXPECT_THAT(old_refusal_with("UNSTRUCTURED_GRID", "POLYDATA"),
-                StartsWith("liver.vtk:4: holds a dataset of kind 'POLYDATA'"));
+                StartsWith("liver.vtk:4: holds a dataset of kind 'POLYDATA', a surface; save it"));
+    EXPECT_THAT(old_refusal_with("UNSTRUCTURED_GRID", "STRUCTURED_POINTS"),
+                HasSubstr("'STRUCTURED_POINTS', an image; save a segmentation as NIfTI"));
+    EXPECT_THAT(old_refusal_with("UNSTRUCTURED_GRID", "RECTILINEAR_GRID"),
+                HasSubstr("'RECTILINEAR_GRID'; only UNSTRUCTURED_GRID"));
     EXPECT_THAT(old_refusal_with("Version 3.0", "Version 9.0"), HasSubstr("from 1.0 to 5.x"));
     EXPECT_THAT(old_refusal_with("ASCII", "ASKII"),
                 StartsWith("liver.vtk:3: expected ASCII or BINARY, found 'ASKII'"));

@@ -276,8 +276,11 @@ TEST(VtuReader, RefusesTextThatIsNoNumber) {
 }
 
 TEST(VtuReader, RefusesOtherFilesOfVtkAndUnknownEncodings) {
-    EXPECT_THAT(refusal_with("\"UnstructuredGrid\"", "\"PolyData\""),
-                StartsWith("liver.vtu: holds a VTK dataset of type 'PolyData'"));
+    EXPECT_THAT(
+        refusal_with("\"UnstructuredGrid\"", "\"PolyData\""),
+        StartsWith("liver.vtu: holds a VTK dataset of type 'PolyData', a surface; save it"));
+    EXPECT_THAT(refusal_with("\"UnstructuredGrid\"", "\"ImageData\""),
+                HasSubstr("'ImageData', an image; save a segmentation"));
     EXPECT_THAT(refusal("liver.vtu", "<html></html>"), HasSubstr("no VTKFile element"));
     EXPECT_THAT(refusal_with("LittleEndian", "MiddleEndian"), HasSubstr("'MiddleEndian'"));
     EXPECT_THAT(refusal_with("header_type=\"UInt64\"", "header_type=\"UInt16\""),
