@@ -18,6 +18,7 @@
 #include "incise/io/files/scanner.h"
 #include "incise/io/mesh/cell_form.h"
 #include "incise/io/mesh/element_sets.h"
+#include "incise/io/mesh/febio_files.h"
 #include "incise/io/mesh/node_tags.h"
 
 namespace incise::io {
@@ -75,28 +76,15 @@ std::string_view behind_prolog(std::string_view text) {
 
 class FebioReader {
   public:
-    FebioReader(const InputFile& file, const ReadOptions& options)
+    FebioReader(const FebioFile& file, const ReadOptions& options)
         : file_(file), collector_(file.name(), "type", options) {}
 
     MeshFile read() {
-        const auto parsed = document_.load_buffer(file_.bytes.data(), file_.bytes.size(),
-                                                  pugi::parse_default, pugi::encoding_utf8);
-        if (!parsed)
-            throw InputError(
-                file_.name() + ":" +
-                std::to_string(file_.line_of(static_cast<std::size_t>(parsed.offset))) +
-                ": not well-formed XML (" + parsed.description() +
-                "); the file is cut short or damaged");
-        const auto root = document_.child("febio_spec");
-        const std::string_view version = root.attribute("version").value();
-        is_version_2_ = version.starts_with("2.");
-        if (!is_version_2_ && !version.starts_with("3.") && !version.starts_with("4."))
-            fail(root, "version " + in_quotes(version) +
-                           " cannot be read; save the model as version 2.5, 3.0 or 4.0");
-        const auto* name = is_version_2_ ? "Geometry" : "Mesh";
-        const auto mesh = root.child(name);
-        if (!mesh) fail(root, std::string("has no section ") + name);
-        refuse_other_files(root, mesh);
+        const auto mesh = file_.mesh();
+        for (const auto* name : {"Part", "Instance"})
+            if (const auto part = mesh.child(name))
+                fail(part, std::string(name) +
+                               " is not read; save the mesh as one, with Nodes and Elements alone");
         for (const auto nodes : mesh.children("Nodes")) read_nodes(nodes);
         if (const auto twice = node_tags_.sort())
             throw InputError(file_.name() + ": node " + *twice);
@@ -117,25 +105,7 @@ class FebioReader {
     };
 
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
-        throw InputError(location_of(node) + ": " + message);
-    }
-    std::string location_of(pugi::xml_node node) const {
-        const auto byte = std::max(node.offset_debug(), std::ptrdiff_t{0});
-        return file_.name() + ":" + std::to_string(file_.line_of(static_cast<std::size_t>(byte)));
-    }
-
-    void refuse_other_files(pugi::xml_node root, pugi::xml_node mesh) const {
-        constexpr const char* remedy = "; put the nodes and elements of that file into this one";
-        if (mesh.attribute("from"))
-            fail(mesh, std::string(mesh.name()) + " names the file " +
-                           in_quotes(mesh.attribute("from").value()) + ", which is not read" +
-                           remedy);
-        if (const auto include = root.child("Include"); include && !mesh.child("Elements"))
-            fail(include, std::string("Include is not read") + remedy);
-        for (const auto* name : {"Part", "Instance"})
-            if (const auto part = mesh.child(name))
-                fail(part, std::string(name) +
-                               " is not read; save the mesh as one, with Nodes and Elements alone");
+        file_.fail(node, message);
     }
 
     /// Returns the number in an attribute, 1 or more.
@@ -210,8 +180,8 @@ class FebioReader {
             const auto id = id_of(element);
             const auto here = "element " + std::to_string(id) + ": ";
             if (collector_.refuses(form))
-                collector_.refuse(form, location_of(element) + ": element " + std::to_string(id),
-                                  type);
+                collector_.refuse(
+                    form, file_.location_of(element) + ": element " + std::to_string(id), type);
             auto nodes = numbers_in<std::int64_t>(element, "a node of an element");
             if (nodes.size() != static_cast<std::size_t>(form.num_nodes))
                 fail(element, here + "has " + std::to_string(nodes.size()) + " nodes; a " +
@@ -232,7 +202,7 @@ class FebioReader {
 
     /// Returns the set of a block of elements: its material or its name, if it has one.
     std::optional<std::size_t> region_of(pugi::xml_node elements) {
-        if (const auto material = elements.attribute("mat"); material && is_version_2_) {
+        if (const auto material = elements.attribute("mat"); material && file_.is_version_2()) {
             const std::string_view text = material.value();
             const auto number = parse_number<int>(text);
             if (!number)
@@ -274,14 +244,12 @@ class FebioReader {
         result_.warnings.insert(result_.warnings.end(), warnings.begin(), warnings.end());
     }
 
-    const InputFile& file_;
-    pugi::xml_document document_;
+    const FebioFile& file_;
     CellCollector collector_;
     NodeTags node_tags_;
     std::vector<Element> elements_;
     ElementSets sets_;
     MeshFile result_;
-    bool is_version_2_ = false;
 };
 
 }  // namespace
@@ -291,7 +259,7 @@ bool begins_as_febio(std::string_view text) {
 }
 
 MeshFile read_febio(const InputFile& file, const ReadOptions& options) {
-    return FebioReader(file, options).read();
+    return FebioReader(*febio_file_with_mesh(file), options).read();
 }
 
 }  // namespace incise::io

@@ -125,15 +125,15 @@ TEST(FebioReader, RefusesWrongNumbers) {
 TEST(FebioReader, RefusesWhatItCannotRead) {
     EXPECT_THAT(febio_refusal("version=\"4.0\"", "version=\"1.2\""),
                 StartsWith("a.feb:2: version '1.2' cannot be read; save the model as"));
-    EXPECT_EQ(febio_refusal("version=\"4.0\"", "version=\"2.5\""),
-              "a.feb:2: has no section Geometry");
+    EXPECT_EQ(
+        febio_refusal("version=\"4.0\"", "version=\"2.5\""),
+        "a.feb:2: has no section Geometry, and so no mesh; give the file of the model that has "
+        "one");
     EXPECT_THAT(febio_refusal("type=\"tet4\"", "type=\"blob7\""),
                 StartsWith("a.feb:12: type 'blob7' of Elements is not known; export tet4"));
     EXPECT_THAT(febio_refusal("type=\"tet4\"", "type=\"tet10\""),
                 AllOf(StartsWith("a.feb:13: element 7: a second-order tetrahedron (type tet10)"),
                       HasSubstr("export linear elements")));
-    EXPECT_THAT(febio_refusal("<Mesh>", "<Mesh from=\"liver.feb\">"),
-                StartsWith("a.feb:4: Mesh names the file 'liver.feb', which is not read; put"));
     EXPECT_THAT(refusal("a.feb", replaced(febio_2, "<Geometry>", "<Geometry><Part name=\"a\"/>")),
                 StartsWith("a.feb:4: Part is not read; save the mesh as one"));
     EXPECT_THAT(febio_refusal("</Nodes>", "</nodes>"),
