@@ -13,12 +13,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
 #include "incise/base/error.h"
 #include "incise/io/files/memory.h"
 #include "incise/io/files/number_text.h"
+#include "tetmesh/seed_points.h"
 #include "tetmesh/size_field.h"
 
 namespace incise::tetmesh {
@@ -117,12 +119,37 @@ Domain domain_of(const BodyShape& body, const ElementSizes& sizes, CGAL::Random&
     return domain;
 }
 
+/// The first points of a body, and small triangles at each of them and beside it. The mesher goes
+/// on from the triangles between its points whose duals cross the surface. Of points far apart
+/// there may be none: the centre of a ring is outside.
+std::vector<PartPoints> with_seeds(const BodyShape& body, const SizeField& sizes) {
+    std::vector<PartPoints> all;
+    for (const PartPoints& part : body.first_points) {
+        auto& points = all.emplace_back(PartPoints{part.region, {}}).points;
+        const auto seeds = [&](const Vec3& x, double length) {
+            return seed_points(x, length, part.region, body.region_at);
+        };
+        const auto add_triangle = [&](const Vec3& x) {
+            const auto others = seeds(x, sizes.at(x));
+            points.push_back(x);
+            points.insert(points.end(), others.begin(), others.end());
+        };
+        for (const Vec3& x : part.points) {
+            add_triangle(x);
+            // The first points are often tips of the body. Beside them it is smoother.
+            if (const auto beside = seeds(x, 2.0 * sizes.at(x)); !beside.empty())
+                add_triangle(beside.front());
+        }
+    }
+    return all;
+}
+
 /// Inserts the first points, but those that are near to one before: the edge between them would
 /// stay as short as it is.
-void insert_first_points(const BodyShape& body, const SizeField& sizes, const Domain& domain,
-                         Complex& complex) {
+void insert_first_points(const std::vector<PartPoints>& parts, const SizeField& sizes,
+                         const Domain& domain, Complex& complex) {
     constexpr double near_of_edge = 0.7, near_of_part = 0.5;
-    for (const PartPoints& part : body.first_points) {
+    for (const PartPoints& part : parts) {
         Box box;
         for (const Vec3& x : part.points) box.extend(x);
         for (const Vec3& x : part.points) {
@@ -161,6 +188,62 @@ topology::MeshData mesh_of(const Complex& complex) {
     return mesh;
 }
 
+/// The refinement of a mesh, from the first points on.
+struct Refinement {
+    const BodyShape& body;
+    const ElementSizes& sizes;
+    const SizeField& field;
+    double expected;  ///< nodes
+    const Domain& domain;
+    const Observer& observer;
+
+    /// Throws InputError if it does not end.
+    Complex from(const std::vector<PartPoints>& first_points) const {
+        Complex complex;
+        NodeCount count{complex, observer, expected};
+        const RadiusField radius{&field, &count, radius_of_edge};
+        const Criteria criteria(
+            parameters::edge_size = RadiusField{&field, &count, 1.0},
+            parameters::facet_angle = least_facet_angle, parameters::facet_size = radius,
+            parameters::facet_distance = std::max(distance_of_edge * sizes.surface, body.roughness),
+            parameters::cell_radius_edge_ratio = largest_radius_ratio,
+            parameters::cell_size = radius);
+
+        auto error = CGAL::CGAL_MESH_3_NO_ERROR;
+        parameters::internal::Mesh_3_options options;
+        options.maximal_number_of_vertices =
+            static_cast<std::size_t>(excess * expected + excess_nodes);
+        options.pointer_to_error_code = &error;
+        if (!body.sharp_edges.empty())
+            CGAL::Mesh_3::internal::init_c3t3_with_features(
+                complex, domain, criteria, false, options.maximal_number_of_vertices, &error);
+        insert_first_points(first_points, field, domain, complex);
+        if (complex.triangulation().dimension() == 3 && error == CGAL::CGAL_MESH_3_NO_ERROR) {
+            const auto topology =
+                body.is_manifold ? parameters::manifold() : parameters::non_manifold();
+            CGAL::refine_mesh_3(complex, domain, criteria, parameters::no_perturb(),
+                                parameters::no_exude(), parameters::no_reset_c3t3(), options,
+                                topology);
+        }
+        if (error != CGAL::CGAL_MESH_3_NO_ERROR)
+            throw InputError("the mesh does not end: it has " +
+                             std::to_string(complex.triangulation().number_of_vertices()) +
+                             " nodes, more than ten times as many as --size asks for; give a "
+                             "larger --size-surface, or leave out --features");
+        return complex;
+    }
+};
+
+/// True if a region has no tetrahedron, although it is larger than some.
+bool lacks_region(const Complex& complex, const BodyShape& body, const ElementSizes& sizes) {
+    std::set<int> regions;
+    for (auto c = complex.cells_in_complex_begin(); c != complex.cells_in_complex_end(); ++c)
+        regions.insert(complex.subdomain_index(c));
+    return std::ranges::any_of(body.volumes, [&](const auto& entry) {
+        return entry.second > std::pow(sizes.inside, 3) && !regions.contains(entry.first);
+    });
+}
+
 }  // namespace
 
 topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& sizes,
@@ -173,35 +256,10 @@ topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& size
     const double expected = field.expected_nodes(body);
     refuse_too_many(expected);
 
-    Complex complex;
-    NodeCount count{complex, observer, expected};
     const Domain domain = domain_of(body, sizes, random);
-    const RadiusField radius{&field, &count, radius_of_edge};
-    const Criteria criteria(
-        parameters::edge_size = RadiusField{&field, &count, 1.0},
-        parameters::facet_angle = least_facet_angle, parameters::facet_size = radius,
-        parameters::facet_distance = std::max(distance_of_edge * sizes.surface, body.roughness),
-        parameters::cell_radius_edge_ratio = largest_radius_ratio, parameters::cell_size = radius);
-
-    auto error = CGAL::CGAL_MESH_3_NO_ERROR;
-    parameters::internal::Mesh_3_options options;
-    options.maximal_number_of_vertices = static_cast<std::size_t>(excess * expected + excess_nodes);
-    options.pointer_to_error_code = &error;
-    if (!body.sharp_edges.empty())
-        CGAL::Mesh_3::internal::init_c3t3_with_features(complex, domain, criteria, false,
-                                                        options.maximal_number_of_vertices, &error);
-    insert_first_points(body, field, domain, complex);
-    if (complex.triangulation().dimension() == 3 && error == CGAL::CGAL_MESH_3_NO_ERROR) {
-        const auto topology =
-            body.is_manifold ? parameters::manifold() : parameters::non_manifold();
-        CGAL::refine_mesh_3(complex, domain, criteria, parameters::no_perturb(),
-                            parameters::no_exude(), parameters::no_reset_c3t3(), options, topology);
-    }
-    if (error != CGAL::CGAL_MESH_3_NO_ERROR)
-        throw InputError("the mesh does not end: it has " +
-                         std::to_string(complex.triangulation().number_of_vertices()) +
-                         " nodes, more than ten times as many as --size asks for; give a larger "
-                         "--size-surface, or leave out --features");
+    const Refinement refinement{body, sizes, field, expected, domain, observer};
+    auto complex = refinement.from(body.first_points);
+    if (lacks_region(complex, body, sizes)) complex = refinement.from(with_seeds(body, field));
     if (complex.number_of_cells_in_complex() == 0)
         throw InputError("no tetrahedron comes out of --size " + io::shown(sizes.inside) +
                          ": the longest side of the body is " +

@@ -1,5 +1,7 @@
 // Tetrahedra of closed surfaces: volumes, regions, edges that are kept, sizes, the report.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+#include <cstdint>
 #include <sstream>
 
 #include "made_mesh.h"
@@ -12,6 +14,27 @@ using test::icosphere;
 using test::joined;
 
 constexpr double ball = 4.0 / 3.0 * std::numbers::pi;
+
+/// A ring round the z axis, of radii 1 and 0.2.
+topology::SurfaceData ring() {
+    constexpr int around = 40, across = 16;
+    topology::SurfaceData surface;
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < across; ++j) {
+            const double u = 2.0 * std::numbers::pi * i / around;
+            const double v = 2.0 * std::numbers::pi * j / across;
+            const double radius = 1.0 + 0.2 * std::cos(v);
+            surface.points.emplace_back(radius * std::cos(u), radius * std::sin(u),
+                                        0.2 * std::sin(v));
+        }
+    const auto point = [](int i, int j) { return std::int64_t{i % around} * across + j % across; };
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < across; ++j) {
+            surface.triangles.push_back({point(i, j), point(i + 1, j), point(i + 1, j + 1)});
+            surface.triangles.push_back({point(i, j), point(i + 1, j + 1), point(i, j + 1)});
+        }
+    return surface;
+}
 
 class SurfaceMesh : public test::MakesTetrahedra {
   protected:
@@ -59,6 +82,25 @@ TEST_F(SurfaceMesh, FindsSmallPartsFarAway) {
     const auto made = make("two.stl out.vtu --size 0.0004 --size-surface 0.0001 --scale 0.001");
     EXPECT_EQ(made.num_components, 2);
     EXPECT_NEAR(made.volume(2) / (ball * 0.008e-9), 1.0, 0.1);
+}
+
+TEST_F(SurfaceMesh, FillsARingWhoseCentreIsOutside) {
+    write_surface("ring.stl", ring());
+    const auto made = make("ring.stl out.vtu --size 0.1");
+    const double volume = 2.0 * std::numbers::pi * std::numbers::pi * 0.04;
+    // The triangles of the surface cut off 3 % of the ring, and the tetrahedra as much again.
+    EXPECT_NEAR(made.volume(1), volume, 0.08 * volume);
+    EXPECT_EQ(made.num_components, 1);
+    EXPECT_EQ(made.err, "");
+}
+
+TEST_F(SurfaceMesh, FillsATetrahedronAtAnySize) {
+    write_surface("a.stl", {{{1, 0, -1}, {-1, 0, -1}, {0, 1, 1}, {0, -1, 1}},
+                            {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}});
+    for (const auto* size : {"0.5", "0.3", "0.2", "0.1"}) {
+        const auto made = make(std::string("a.stl out.vtu --size ") + size);
+        EXPECT_NEAR(made.volume(1), 4.0 / 3.0, 0.3) << size;
+    }
 }
 
 TEST_F(SurfaceMesh, SharesFacesOfSurfacesThatTouch) {
