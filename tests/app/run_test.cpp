@@ -103,7 +103,8 @@ TEST_F(Run, LeavesTheResultsOfAnotherRun) {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err,
               "incise: scene.out: holds the results of another run; give this one another folder "
-              "with --out, or replace the results with --force\n");
+              "with --out, or replace the results with --force; if only end_time is later, go on "
+              "with --resume\n");
     EXPECT_EQ(summary().at("scenario_hash"), hash);
     EXPECT_EQ(run({"scene.toml", "--quiet"}).status, 0);  // the same again
     auto forced = other;
