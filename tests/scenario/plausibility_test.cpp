@@ -92,9 +92,11 @@ TEST(Plausibility, AsksForBladesThatMoveAcrossTheirEdge) {
         with_blade("{ time = 0, at = [0.03, 0, 0.05] }, { time = 1, at = [0.03, 0, 0.05] }"),
         ElementsAre(HasSubstr("tool 'knife' does not move")));
     // It ends where it began, turned to the other side: on the way it sweeps half a disk.
-    EXPECT_THAT(with_blade("{ time = 0, at = [0.03, 0, 0.05] }, "
-                           "{ time = 1, at = [0.03, 0, 0.05], rotate = { axis = [0, 0, 1], angle = 3.1 } }"),
-                IsEmpty());
+    EXPECT_THAT(
+        with_blade(
+            "{ time = 0, at = [0.03, 0, 0.05] }, "
+            "{ time = 1, at = [0.03, 0, 0.05], rotate = { axis = [0, 0, 1], angle = 3.1 } }"),
+        IsEmpty());
 }
 
 // A body of two tetrahedra that share a face, one of which is flat.
