@@ -33,7 +33,7 @@ inline const std::string scene = R"([mesh]
 box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
 [[material]]
 density = 1000
-young = 1000
+young = 5000
 poisson = 0.4
 [[constraint]]
 name = "floor"
