@@ -26,7 +26,10 @@ namespace fs = std::filesystem;
 class PictureFolder {
   public:
     PictureFolder() {
-        auto pattern = (fs::temp_directory_path() / "incise-report-XXXXXX").string();
+        std::error_code none;  // a TMPDIR that is no folder is reported below
+        fs::path parent = fs::temp_directory_path(none);
+        if (none) parent = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
+        auto pattern = (parent / "incise-report-XXXXXX").string();
         if (!::mkdtemp(pattern.data()))
             throw OutputError(pattern + ": cannot be made (" + std::strerror(errno) +
                               "); let TMPDIR name a folder that can be written");

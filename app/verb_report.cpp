@@ -40,6 +40,9 @@ std::string rerun_command(const report::RunRecord& run) {
 int report(const ReportOptions& options) {
     const report::RunRecord run = report::read_run(options.folder);
     const auto out = options.out.value_or(run.folder / "report.html");
+    // Another ending is more likely a slip: the file may be one of the run's own.
+    if (out.extension() != ".html" && out.extension() != ".htm")
+        throw InputError("--out " + out.string() + ": the name of a page ends in .html");
     io::require_writable(out);  // pictures take a while
     const report::Pictures pictures =
         draw_run(run, {options.num_pictures, options.color, options.view});

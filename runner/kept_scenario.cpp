@@ -5,6 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "incise/io/files/atomic_file.h"
 
@@ -13,6 +14,9 @@ namespace incise::runner {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::string_view first_line =
+    "# What `incise run` has run: its scenario, with --set and --end-time.\n";
 
 fs::path path_in(const fs::path& folder, const scenario::Scenario& scenario) {
     return folder / (scenario.name + ".toml");
@@ -36,9 +40,10 @@ void keep_scenario(const fs::path& folder, const scenario::Scenario& scenario) {
     const fs::path path = path_in(folder, scenario);
     std::error_code none;
     if (fs::equivalent(path, scenario.folder / (scenario.name + ".toml"), none)) return;
-    io::write_file(path, "# What `incise run` has run: its scenario, with --set and --end-time.\n" +
-                             scenario.text);
+    io::write_file(path, std::string(first_line) + scenario.text);
 }
+
+bool is_kept_scenario(std::string_view text) { return text.starts_with(first_line); }
 
 bool holds_another_run(const fs::path& folder, const scenario::Scenario& scenario) {
     std::error_code none;

@@ -128,8 +128,8 @@ void look_at_blades(const Scenario& scenario, Findings& findings) {
                          "' does not move, so it cuts nothing: give its path another 'at'");
         else if (*sharpness < along_itself)
             findings.add(tool.location, "tool '", tool.name,
-                         "' moves along its own edge, so it sweeps no area and cuts nothing: "
-                         "move it across the edge, or turn the edge");
+                         "' moves along its own edge, so it cuts only where tissue moves across "
+                         "it: move it across the edge, or turn the edge");
     }
 }
 

@@ -13,6 +13,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -182,6 +183,25 @@ std::string title_of(const FrameList& list) {
     return has_title ? summary["title"].get<std::string>() : list.name;
 }
 
+/// Returns the plane. Throws InputError if all of the body is in front of it, so that the pictures
+/// would be empty: most often the numbers are in millimetres.
+SectionPlane plane_through(const Section& section, const SceneSettings& settings) {
+    const SectionPlane plane = place(section, settings.bounds, settings.view);
+    Vec3 low, high;
+    settings.bounds.GetMinPoint(low.data());
+    settings.bounds.GetMaxPoint(high.data());
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner((i & 1 ? high : low).x(), (i & 2 ? high : low).y(),
+                          (i & 4 ? high : low).z());
+        if ((corner - plane.point).dot(plane.normal) < 0.0) return plane;
+    }
+    std::ostringstream text;
+    text.precision(4);
+    text << "--section: the whole body is in front of the plane; it reaches from "
+         << low.transpose() << " to " << high.transpose() << " m";
+    throw InputError(text.str());
+}
+
 /// Reads all frames to be drawn and returns the settings that their pictures share.
 SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& frames,
                      const Options& options) {
@@ -201,7 +221,7 @@ SceneSettings survey(const FrameList& list, const std::vector<std::size_t>& fram
     }
     settings.field = *field;
     if (!settings.bounds.IsValid()) settings.bounds.SetBounds(0, 1, 0, 1, 0, 1);
-    if (options.section) settings.section = place(*options.section, settings.bounds, settings.view);
+    if (options.section) settings.section = plane_through(*options.section, settings);
     settings.limits = options.range.value_or(settings.range.limits());
     settings.note = note_of(settings);
     return settings;

@@ -56,8 +56,9 @@ Account energy_account(const RunRecord& run, const EnergyBalance& balance) {
          {"− elastic energy at the end", {elastic.last}, false, ""},
          {"lacking", {lacking}, true, ""},
          {"lacking, of the sum of the lines above",
-          {balance.turnover.back() > 0.0 ? 100.0 * std::abs(lacking) / balance.turnover.back()
-                                         : 0.0},
+          {std::max(balance.turnover.back(), balance.floor) > 0.0
+               ? 100.0 * std::abs(lacking) / std::max(balance.turnover.back(), balance.floor)
+               : 0.0},
           true,
           "%"}}};
     return account;

@@ -10,6 +10,7 @@ double EnergyBalance::largest_error() const {
     double error = 0.0, scale = 0.0;
     for (const double x : lacking) error = std::max(error, std::abs(x));
     for (const double x : turnover) scale = std::max(scale, x);
+    scale = std::max(scale, floor);
     return scale > 0.0 ? error / scale : unknown;
 }
 
@@ -35,6 +36,12 @@ EnergyBalance energy_balance(const RunRecord& run) {
         balance.lacking.push_back(at_start + (*work)[i] - (*dissipated)[i] - removed - now);
         balance.turnover.push_back(std::abs(at_start) + std::abs(now) + std::abs((*work)[i]) +
                                    std::abs((*dissipated)[i]) + std::abs(removed));
+    }
+    // Near rest, the error of the run is over the floor of sim::Ledger::energy_error().
+    const double error = run.number("energy_error");
+    if (!balance.lacking.empty() && error > 0.0) {
+        const double scale = std::abs(balance.lacking.back()) / error;
+        if (scale > 2.0 * balance.turnover.back()) balance.floor = scale;
     }
     return balance;
 }

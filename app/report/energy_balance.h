@@ -16,6 +16,8 @@ struct EnergyBalance {
     std::vector<double> lacking;  ///< J
     /// The sum of the absolute values of the five terms at the row, J.
     std::vector<double> turnover;
+    /// The energy of a small strain, J, below which energies are rounding; 0 if it is not known.
+    double floor = 0.0;
 
     /// Returns the largest absolute value of `lacking` over the largest turnover. Compared with the
     /// turnover of its own row, the rounding of a body at rest would be an error of 100 %.

@@ -2,6 +2,7 @@
 #include "incise/app/report/expectations.h"
 
 #include "incise/base/error.h"
+#include "incise/runner/kept_scenario.h"
 #include "incise/scenario/scenario_reader.h"
 
 namespace incise::report {
@@ -18,7 +19,11 @@ std::vector<ExpectationResult> expectations_of(const RunRecord& run) {
             return std::nullopt;  // the page shows its text all the same
         }
     }();
-    if (!scenario || scenario->hash != run.text("scenario_hash")) return results;
+    if (!scenario) return results;
+    // One that the run did not write itself may have been edited since.
+    if (!runner::is_kept_scenario(*run.scenario_text) &&
+        scenario->hash != run.text("scenario_hash"))
+        return results;
     for (const scenario::Expectation& expected : scenario->expect) {
         const double value = run.number(expected.quantity.c_str());
         // A value that is not a number meets nothing.

@@ -40,9 +40,14 @@ function showExpectations(expectations) {
     element("td", {}, numberText(line.value, 6)),
     element("td", { class: line.met ? "met" : "missed" }, line.met ? "met" : "missed")));
   const missed = expectations.filter((line) => !line.met).length;
+  const missedText = `${missed} of ${counted(expectations.length, "expectation")} missed`;
+  if (missed > 0) {
+    byId("ending").classList.replace("finished", "failed");
+    byId("ending").append(element("strong", {}, missedText + "."));
+  }
   byId("expectations").append(
     element("h3", {}, missed === 0 ? "All expectations of the scenario are met"
-      : `${missed} of ${counted(expectations.length, "expectation")} missed`),
+      : missedText),
     element("div", { class: "scroll" }, element("table", {},
       tableHead(["quantity", "at least", "at most", "is", ""].map((label) => headCell(label, ""))),
       element("tbody", {}, ...rows))));

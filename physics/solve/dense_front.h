@@ -10,10 +10,9 @@
 
 namespace incise::physics {
 
-/// A symmetric matrix whose first rows and columns are to be eliminated. Only its lower half
-/// counts. It is stored column by column. Each column is followed by `front_padding` zeros, and the
-/// last column by `front_padding` further columns of zeros, so that kernels need not end where rows
-/// do.
+/// A symmetric matrix whose first rows and columns are to be eliminated. It is stored column by
+/// column. Only its lower half counts; what is above the diagonal has any values. Each column is
+/// followed by `padding` zeros, so that kernels need not end where rows do.
 struct DenseFront {
     double* values;
     std::size_t size;  ///< number of rows and columns
@@ -21,7 +20,7 @@ struct DenseFront {
     static constexpr std::size_t padding = 24;  ///< at least the rows of a tile on any processor
     std::size_t stride() const { return size + padding; }
     double* column(std::size_t j) const { return values + j * stride(); }
-    static std::size_t num_values(std::size_t size) { return (size + padding) * (size + padding); }
+    static std::size_t num_values(std::size_t size) { return size * (size + padding); }
 };
 
 /// The smallest and the largest pivot, squares of entries of the diagonal of the factor.

@@ -116,7 +116,7 @@ bool SparseFactor::eliminate(const Matrix& lower, std::size_t f, const Workers* 
                              const FrontKernels& kernels, PivotRange& pivots) {
     const Front& info = fronts_[f];
     const std::size_t num_own = info.num_own(), size = info.size();
-    if (size == 0) return true;
+    if (size == 0) return true;  // it passes nothing on
     NumberBuffer front_values = buffers_.take(DenseFront::num_values(size)),
                  packed_values = buffers_.take(PackedColumns::num_values(size, columns_together));
     const DenseFront front{front_values.data(), size};

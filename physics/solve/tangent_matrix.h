@@ -17,7 +17,7 @@ namespace incise::physics {
 /// The tangent as a symmetric sparse matrix over the free components of positions. Sums are in the
 /// order of elements, so the same body gives the same bits. Rows are in the order of elimination.
 ///
-/// Memory: about 1 kB a node of tetrahedra, and ten to twenty times that for the factor and its
+/// Memory: about 1 kB a node of tetrahedra, and ten to thirty times that for the factor and its
 /// making.
 class TangentMatrix final : public TangentSink {
   public:

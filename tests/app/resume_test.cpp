@@ -98,7 +98,7 @@ TEST_F(ResumedProcess, EndsAsIfNoSignalHadStoppedIt) {
         outcome = run({"scene.toml", "--quiet", "--resume"});
         EXPECT_EQ(outcome.status, 2);
         EXPECT_NE(outcome.err.find("dynamics.end_time was 0.15 and is 0.05, material[0].young was "
-                                   "1500 and is 1000; resume with"),
+                                   "1500 and is 5000; resume with"),
                   std::string::npos)
             << outcome.err;
 
