@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/physics/solve/dense_front.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -45,7 +45,7 @@ void NumberBuffers::give(NumberBuffer buffer) {
     if (buffer.capacity() == 0) return;
     const std::lock_guard lock(*mutex_);
     const int place = std::countr_zero(buffer.capacity());
-    in_store_[static_cast<std::size_t>(place)].push_back(std::move(buffer));
+    in_store_.at(static_cast<std::size_t>(place)).push_back(std::move(buffer));
 }
 
 }  // namespace incise::physics

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace incise::physics {
@@ -16,6 +17,13 @@ class NumberBuffer {
   public:
     NumberBuffer() = default;
     explicit NumberBuffer(std::size_t capacity);
+    NumberBuffer(NumberBuffer&& other) noexcept
+        : capacity_(std::exchange(other.capacity_, 0)), values_(std::move(other.values_)) {}
+    NumberBuffer& operator=(NumberBuffer&& other) noexcept {
+        capacity_ = std::exchange(other.capacity_, 0);
+        values_ = std::move(other.values_);
+        return *this;
+    }
 
     std::size_t capacity() const { return capacity_; }
     double* data() { return values_.get(); }

@@ -10,6 +10,31 @@
 
 namespace incise::physics {
 
+namespace {
+
+/// Eliminates the first columns of a front, with several threads if there are workers.
+/// @param packed_values  scratch of FrontKernels::eliminate()
+bool eliminate_columns(const DenseFront& front, std::size_t num_columns, const Workers* workers,
+                       const FrontKernels& kernels, double* packed_values, PivotRange& pivots) {
+    for (std::size_t first = 0; first < num_columns; first += columns_together) {
+        const std::size_t last = std::min(first + columns_together, num_columns);
+        if (!kernels.eliminate(front, first, last, packed_values, pivots)) return false;
+        if (last == front.size) break;
+        const PackedColumns packed{packed_values, last, last - first};
+        kernels.pack(front, first, packed);
+        const std::size_t num_strips =
+            (front.size - last + kernels.rows_of_strip - 1) / kernels.rows_of_strip;
+        const auto subtract = [&](std::size_t strip) { kernels.subtract(front, packed, strip); };
+        if (workers)
+            workers->for_each(num_strips, subtract);
+        else
+            for (std::size_t strip = 0; strip < num_strips; ++strip) subtract(strip);
+    }
+    return true;
+}
+
+}  // namespace
+
 void SparseFactor::analyse(const Matrix& lower, std::vector<Group> groups) {
     fronts_.clear();
     later_rows_.clear();
@@ -90,7 +115,7 @@ void SparseFactor::assemble(const Matrix& lower, std::size_t f, const DenseFront
             }
         }
     }
-    std::vector<std::size_t> places;
+    thread_local std::vector<std::size_t> places;  // so that memory is taken once
     for (const std::size_t child : children_[f]) {
         const auto rows = later_rows(fronts_[child]);
         places.clear();
@@ -117,50 +142,45 @@ bool SparseFactor::eliminate(const Matrix& lower, std::size_t f, const Workers* 
     const Front& info = fronts_[f];
     const std::size_t num_own = info.num_own(), size = info.size();
     if (size == 0) return true;  // it passes nothing on
-    NumberBuffer front_values = buffers_.take(DenseFront::num_values(size)),
-                 packed_values = buffers_.take(PackedColumns::num_values(size, columns_together));
-    const DenseFront front{front_values.data(), size};
+    NumberBuffer values = buffers_.take(DenseFront::num_values(size)),
+                 packed = buffers_.take(PackedColumns::num_values(size, columns_together));
+    const DenseFront front{values.data(), size};
     assemble(lower, f, front);
-    for (std::size_t first = 0; first < num_own; first += columns_together) {
-        const std::size_t last = std::min(first + columns_together, num_own);
-        if (!kernels.eliminate(front, first, last, packed_values.data(), pivots)) return false;
-        if (last == size) break;
-        const PackedColumns packed{packed_values.data(), last, last - first};
-        kernels.pack(front, first, packed);
-        const std::size_t num_strips =
-            (size - last + kernels.rows_of_strip - 1) / kernels.rows_of_strip;
-        const auto subtract = [&](std::size_t strip) { kernels.subtract(front, packed, strip); };
-        if (workers)
-            workers->for_each(num_strips, subtract);
-        else
-            for (std::size_t strip = 0; strip < num_strips; ++strip) subtract(strip);
+    const bool is_positive =
+        eliminate_columns(front, num_own, workers, kernels, packed.data(), pivots);
+    if (is_positive) {
+        double* to = values_.data() + info.values;
+        for (std::size_t j = 0; j < num_own; ++j, to += size)
+            std::copy_n(front.column(j), size, to);
+        if (info.num_later > 0) {
+            updates_[f] = buffers_.take(info.num_later * (info.num_later + 1) / 2);
+            to = updates_[f].data();
+            for (std::size_t j = num_own; j < size; ++j)
+                to = std::copy_n(front.column(j) + j, size - j, to);
+        }
     }
-    double* to = values_.data() + info.values;
-    for (std::size_t j = 0; j < num_own; ++j, to += size) std::copy_n(front.column(j), size, to);
-    updates_[f] = buffers_.take(info.num_later * (info.num_later + 1) / 2);
-    to = updates_[f].data();
-    for (std::size_t j = num_own; j < size; ++j)
-        to = std::copy_n(front.column(j) + j, size - j, to);
-    buffers_.give(std::move(front_values));
-    buffers_.give(std::move(packed_values));
-    return true;
+    buffers_.give(std::move(values));
+    buffers_.give(std::move(packed));
+    return is_positive;
 }
 
 bool SparseFactor::factorise(const Matrix& lower, const Workers& workers, Processor processor) {
     const FrontKernels& kernels = front_kernels_for(processor);
-    std::vector<PivotRange> pivots(subtrees_.size() + 1);
+    // Left by a factorisation that was given up.
+    for (NumberBuffer& update : updates_) buffers_.give(std::move(update));
+    pivots_.assign(subtrees_.size() + 1, {});
     std::atomic<bool> is_positive = true;
     workers.for_each(subtrees_.size(), [&](std::size_t s) {
         for (std::size_t f = subtrees_[s].first; f < subtrees_[s].second; ++f)
-            if (!is_positive || !eliminate(lower, f, nullptr, kernels, pivots[s])) {
+            if (!is_positive || !eliminate(lower, f, nullptr, kernels, pivots_[s])) {
                 is_positive = false;
                 return;
             }
     });
     for (const std::size_t f : rest_)
-        if (!is_positive || !eliminate(lower, f, &workers, kernels, pivots.back())) return false;
+        if (!is_positive || !eliminate(lower, f, &workers, kernels, pivots_.back())) return false;
     PivotRange all;
-    for (const PivotRange& range : pivots) {
+    for (const PivotRange& range : pivots_) {
         all.smallest = std::min(all.smallest, range.smallest);
         all.largest = std::max(all.largest, range.largest);
     }
@@ -170,7 +190,7 @@ bool SparseFactor::factorise(const Matrix& lower, const Workers& workers, Proces
 }
 
 void SparseFactor::solve(Eigen::VectorXd& side) const {
-    std::vector<double> part;
+    thread_local std::vector<double> part;
     const auto gather = [&](const Front& front) {
         part.assign(side.data() + front.begin, side.data() + front.end);
         for (const std::int32_t row : later_rows(front)) part.push_back(side[row]);

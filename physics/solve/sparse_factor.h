@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "incise/physics/elements/workers.h"
@@ -15,7 +16,7 @@ namespace incise::physics {
 
 /// The factor L of A = L L^T, by the multifrontal method: the rows of a group are eliminated in a
 /// small dense matrix, its front, and what that does to later rows is passed on to the front of the
-/// next group. Nearly all work is in FrontKernels.
+/// next group. The products are in FrontKernels.
 /// Source: I. Duff, J. Reid, The multifrontal solution of indefinite sparse symmetric linear
 /// equations, ACM Trans. Math. Softw. 9 (1983).
 ///
@@ -71,6 +72,7 @@ class SparseFactor {
     std::size_t num_values_ = 0;
     std::vector<NumberBuffer> updates_;  // by front: what it passes on, lower half
     NumberBuffers buffers_;
+    std::vector<PivotRange> pivots_;  // by subtree, then that of the rest
     // Fronts of which each has a subtree to itself, which one thread eliminates; then the rest.
     std::vector<std::pair<std::size_t, std::size_t>> subtrees_;
     std::vector<std::size_t> rest_;

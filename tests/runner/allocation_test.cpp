@@ -169,11 +169,7 @@ TEST(SteadyState, AllocatesABufferOnceWhateverBlockComesFirst) {
     EXPECT_EQ(later, 0u);
 }
 
-/// Eigen takes memory twice for each factor of a body of this size, and gives it back when it is
-/// done. Newton's method comes to an end after five of them mostly, thirteen at most here.
-constexpr std::size_t most_per_step = 2 * 16;
-
-TEST(SteadyState, OfSolvedStepsAllocatesForFactorsOnly) {
+TEST(SteadyState, OfSolvedStepsAllocatesNothing) {
     const std::string modes[] = {
         dynamics(100, "integrator = \"implicit-euler\"\ntime_step = 0.01\ndamping = 2\n"),
         dynamics(100, "mode = \"static\"\nsteps = 1000\n")};
@@ -184,8 +180,8 @@ TEST(SteadyState, OfSolvedStepsAllocatesForFactorsOnly) {
             if (body.starts_with(hexahedra)) body.replace(0, hexahedra.size(), cube(4, "hex"));
             if (body.starts_with(tetrahedra)) body.replace(0, tetrahedra.size(), cube(6, "tet"));
             SCOPED_TRACE(testing::Message() << name << " in " << mode);
-            EXPECT_LE(allocations_of_steps(body + boundary_conditions + mode, 1, num_steps),
-                      num_steps * most_per_step);
+            // A list of free buffers grows where a tangent is refused for the first time.
+            EXPECT_LE(allocations_of_steps(body + boundary_conditions + mode, 1, num_steps), 1u);
         }
 }
 
