@@ -9,14 +9,10 @@
 #include "incise/base/error.h"
 #include "incise/physics/body/motion_failure.h"
 #include "incise/topology/fragment_archive.h"
-#include "incise/topology/geometry.h"
 
 namespace incise::physics {
 
-using topology::ChangeSet;
-using topology::FragmentChanges;
 using topology::FragmentMesh;
-using topology::NodeRecord;
 
 namespace {
 
@@ -52,58 +48,6 @@ std::vector<NodeId> held_by(const topology::Mesh& mesh, std::span<const Constrai
             nodes.push_back(member.node);
     }
     return nodes;
-}
-
-void make_sorted_set(std::vector<NodeId>& nodes) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-}
-
-/// Returns the nodes at elements that an edit has changed, in ascending order. `mesh` is a Mesh or
-/// a FragmentMesh after the edit.
-template <class Mesh>
-std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
-    std::vector<NodeId> touched;
-    const auto touch = [&](std::span<const NodeId> nodes) {
-        touched.insert(touched.end(), nodes.begin(), nodes.end());
-    };
-    const auto touch_all_of = [&](const topology::ElementRecord& record) {
-        touch(record.corners);
-        // A division, or the undo of one, also changes the shape and mass of the parent.
-        const ElementId parent = record.parent;
-        if (parent.is_valid() && parent.index() < changes.element_capacity_after)
-            touch(mesh.corners(parent));
-    };
-    for (const auto& record : changes.elements_removed) touch_all_of(record);
-    for (const auto& record : changes.elements_added) touch_all_of(record);
-    for (const auto& rewiring : changes.rewired) {
-        touched.push_back(rewiring.from);
-        touched.push_back(rewiring.to);
-    }
-    for (const NodeRecord& record : changes.nodes_removed) {
-        touched.push_back(record.id);
-        // State::apply has added the mass of a merged node to that of its survivor. The mass of the
-        // survivor must be summed again, even if its elements have been separated from it since.
-        if (record.num_sources == 1) touched.push_back(record.sources[0].node);
-    }
-    make_sorted_set(touched);
-    touched.erase(
-        std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
-        touched.end());
-    return touched;
-}
-
-/// Returns the nodes of the fragments whose mass or stiffness an edit may have changed, in
-/// ascending order.
-std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes,
-                                  const ChangeSet& of_fragments) {
-    std::vector<NodeId> touched = touched_nodes(fragments, of_fragments);
-    for (const topology::ShareChange& change : changes.shares) {
-        const auto corners = fragments.corners(change.fragment);
-        touched.insert(touched.end(), corners.begin(), corners.end());
-    }
-    make_sorted_set(touched);
-    return touched;
 }
 
 }  // namespace
@@ -215,133 +159,6 @@ void Model::visit_outer_tangents(std::span<const Vec3> positions, double time,
                                  TangentSink& sink) const {
     loads_.visit_tangents(positions, time, sink);
     for (const auto& term : added_terms_) term->visit_tangents(positions, time, sink);
-}
-
-void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) {
-    const ChangeSet& of_fragments = edit.of_fragments;
-    elements_.apply(fragments_, of_fragments);
-    for (const auto& record : of_fragments.elements_removed)
-        elements_.erase(record.id, record.region);
-    for (const auto& record : of_fragments.elements_added) elements_.insert(fragments_, record.id);
-    std::vector<ElementId> changed;
-    for (const topology::Rewiring& rewiring : of_fragments.rewired)
-        changed.push_back(rewiring.element);
-    for (const topology::ShareChange& change : changes.shares) changed.push_back(change.fragment);
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    for (const ElementId e : changed) elements_.replace(fragments_, e);
-}
-
-ModelChanges Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
-    if (changes.is_empty()) return {};
-    if (changes.epoch_after < changes.epoch_before)
-        throw InputError("model: this edit takes back another one; call undo() for it");
-    topology::FollowedEpoch(fragments_.epoch()).advance(mesh, changes, "model");
-    const Momenta removed = momenta_of_removed(changes);
-    ModelChanges done{fragments_.apply(mesh, changes), {}, {}};
-    const auto touched_of_mesh = touched_nodes(mesh, changes);
-    done.touched = touched_nodes(fragments_, done.fragments, done.fragments.mesh);
-    const auto& touched = done.touched;
-    const bool keeps_momenta = done.fragments.has_joins();
-    const Momenta before = keeps_momenta ? momenta_of(touched) - removed : Momenta();
-    follow({changes, done.fragments.mesh, touched_of_mesh, touched}, done.fragments);
-    if (keeps_momenta) done.velocities = change_momenta(touched, before - momenta_of(touched));
-    return done;
-}
-
-void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const ModelChanges& done) {
-    if (changes.is_empty()) return;
-    fragments_.undo(mesh, done.fragments);
-    const auto velocities = state_.velocities();
-    const bool has_moved = std::ranges::any_of(done.velocities, [&](const auto& change) {
-        return velocities[change.node.index()] != change.after;
-    });
-    if (!has_moved)
-        for (const ModelChanges::Velocity& change : done.velocities)
-            state_.set_velocity(change.node, change.before);
-    const ChangeSet of_mesh = inverse(changes), of_fragments = inverse(done.fragments.mesh);
-    const auto touched_of_mesh = touched_nodes(mesh, of_mesh);
-    const auto touched = touched_nodes(fragments_, done.fragments, of_fragments);
-    follow({of_mesh, of_fragments, touched_of_mesh, touched}, done.fragments);
-}
-
-void Model::follow(const BodyEdit& edit, const FragmentChanges& changes) {
-    ++structure_version_;
-    const ChangeSet& of_fragments = edit.of_fragments;
-    resize(std::max(of_fragments.node_capacity_before, of_fragments.node_capacity_after));
-    state_.apply(fragments_, of_fragments, masses_);
-    edit_elements(edit, changes);
-    resize(of_fragments.node_capacity_after);
-    elements_.number_nodes(masses_.size());
-    for (const NodeId n : edit.touched) gather(n);
-    embedded_.apply(mesh_, fragments_, edit, changes);
-    constraints_.apply(bodies(), edit.of_mesh, of_fragments, edit.touched, positions());
-    loads_.apply(view(), edit);
-    for (const auto& term : added_terms_) term->apply(view(), edit);
-}
-
-/// Returns the momenta of nodes, about the origin.
-Momenta Model::momenta_of(std::span<const NodeId> nodes) const {
-    Momenta sum;
-    for (const NodeId n : nodes)
-        if (n.index() < masses_.size() && masses_[n.index()] > 0.0)
-            sum.add(masses_[n.index()], positions()[n.index()], velocities()[n.index()]);
-    return sum;
-}
-
-/// Returns the momenta of the elements of the mesh that an edit is about to remove from the model,
-/// about the origin.
-Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
-    std::map<ElementId, double> volumes;  // removed, m3, by element before the edit
-    std::vector<Vec3> x;
-    const auto volume_of = [&](const topology::ElementRecord& record) {
-        x.clear();
-        for (const NodeId n : record.corners) x.push_back(mesh_.rest_position(n));
-        return topology::signed_volume(record.kind, x);
-    };
-    for (const auto& record : changes.elements_removed) volumes[record.id] = volume_of(record);
-    // Parts of an element that was divided before it was removed are still there.
-    if (!volumes.empty()) {
-        std::map<ElementId, ElementId> ancestors;
-        topology::for_each_part(changes, [&](ElementId parent, ElementId part) {
-            const auto known = ancestors.find(parent);
-            ancestors[part] = known == ancestors.end() ? parent : known->second;
-        });
-        for (const auto& record : changes.elements_added)
-            if (const auto ancestor = ancestors.find(record.id); ancestor != ancestors.end())
-                if (const auto it = volumes.find(ancestor->second); it != volumes.end())
-                    it->second -= volume_of(record);
-    }
-    Momenta sum;
-    for (const auto& [cell, volume] : volumes) {
-        const ElementId e = fragments_.fragment_of_cell(cell);
-        const auto corners = fragments_.corners(e);
-        const double mass =
-            density(fragments_.region(e)) * volume / static_cast<double>(corners.size());
-        for (const NodeId n : corners)
-            sum.add(mass, positions()[n.index()], velocities()[n.index()]);
-    }
-    return sum;
-}
-
-/// Changes the momenta of nodes by a rigid change of the velocities of those without constraint.
-std::vector<ModelChanges::Velocity> Model::change_momenta(std::span<const NodeId> nodes,
-                                                          const Momenta& by) {
-    std::vector<ModelChanges::Velocity> changes;
-    if (by.linear.isZero(0.0) && by.angular.isZero(0.0)) return changes;
-    std::vector<MassPoint> points;
-    for (const NodeId n : nodes) {
-        if (masses_[n.index()] == 0.0 || constraints_.of_node(n.index())) continue;
-        points.push_back({masses_[n.index()], positions()[n.index()]});
-        changes.push_back({n, velocities()[n.index()], Vec3::Zero()});
-    }
-    const RigidVelocity change = rigid_change(points, by);
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-        changes[i].after = changes[i].before + change.at(points[i].x);
-        state_.set_velocity(changes[i].node, changes[i].after);
-        node_sums_.forget(changes[i].node.index());
-    }
-    return changes;
 }
 
 void Model::add_constraint(Constraint constraint) {
