@@ -108,7 +108,7 @@ void AbaqusText::append(const InputFile& file, std::vector<std::filesystem::path
 void AbaqusText::include(std::string_view name, const std::string& place,
                          std::vector<std::filesystem::path>& open_files) {
     const auto refuse = [&](const std::string& message) { throw InputError(place + message); };
-    if (name.empty()) refuse(" has no INPUT=...; name the file to include");
+    if (name.empty()) refuse(" names no file: write INPUT= and the name of the file to include");
     if (++num_included_ > most_included)
         refuse(": more than " + std::to_string(most_included) +
                " files are included; put their lines into fewer files");

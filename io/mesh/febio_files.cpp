@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "incise/base/error.h"
+#include "incise/io/files/scanner.h"
 
 namespace incise::io {
 
@@ -16,7 +17,7 @@ namespace {
 /// A place where a model names a file that may have the mesh.
 struct NamedFile {
     pugi::xml_node node;
-    const char* name;
+    std::string_view name;
 };
 
 std::vector<NamedFile> named_files(const FebioFile& model) {
@@ -24,7 +25,7 @@ std::vector<NamedFile> named_files(const FebioFile& model) {
     if (const auto from = mesh.attribute("from")) return {{mesh, from.value()}};
     std::vector<NamedFile> files;
     for (const auto include : model.root().children("Include"))
-        files.push_back({include, include.child_value()});
+        files.push_back({include, trimmed(include.child_value())});
     return files;
 }
 
@@ -41,6 +42,7 @@ std::unique_ptr<FebioFile> with_elements(std::unique_ptr<FebioFile> model, int d
         if (depth == deepest)
             refuse("more than " + std::to_string(deepest) +
                    " files name each other; put the nodes and elements into one file");
+        if (name.empty()) refuse("names no file");
         auto file = std::make_unique<InputFile>();
         try {
             *file = load_input_file(model->path_of(name));
@@ -52,6 +54,9 @@ std::unique_ptr<FebioFile> with_elements(std::unique_ptr<FebioFile> model, int d
             refuse("a second file with elements; put all nodes and elements into one file");
         if (inner) found = std::move(inner);
     }
+    if (found && mesh.child("Nodes"))
+        model->fail(mesh, "its nodes are here and its elements in " + found->name() +
+                              "; put all nodes and elements into one file");
     return found;
 }
 
@@ -89,7 +94,7 @@ void FebioFile::fail(pugi::xml_node node, const std::string& message) const {
     throw InputError(location_of(node) + ": " + message);
 }
 
-std::filesystem::path FebioFile::path_of(const char* name) const {
+std::filesystem::path FebioFile::path_of(std::string_view name) const {
     return file_.path.parent_path() / name;
 }
 

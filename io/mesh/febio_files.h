@@ -6,6 +6,7 @@
 #include <memory>
 #include <pugixml.hpp>
 #include <string>
+#include <string_view>
 
 #include "incise/io/files/input_file.h"
 
@@ -34,7 +35,7 @@ class FebioFile {
     [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
 
     /// Returns the path of a file that this one names.
-    std::filesystem::path path_of(const char* name) const;
+    std::filesystem::path path_of(std::string_view name) const;
 
   private:
     void parse();

@@ -5,14 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <string>
 
-#include "incise/base/error.h"
-#include "tests/io/reader_samples.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/io/mesh_folder.h"
 
 namespace incise::io {
 namespace {
@@ -22,38 +17,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-using Files = std::map<std::string, std::string>;
-
 const std::string five_nodes =
     "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n5, 1, 1, 1\n";
 
-class AbaqusInclude : public testing::Test {
+class AbaqusInclude : public MeshFolder {
   protected:
-    void write(const Files& files) {
-        for (const auto& [name, text] : files) {
-            std::filesystem::create_directories((folder_ / name).parent_path());
-            std::ofstream(folder_ / name) << text;
-        }
-    }
-    MeshFile read(const Files& files) {
-        write(files);
-        return read_mesh(folder_ / "a.inp");
-    }
-    /// The message, without the folder.
-    std::string refused(const Files& files) {
-        try {
-            read(files);
-        } catch (const InputError& error) {
-            std::string text = error.what();
-            const auto prefix = (folder_ / "").string();
-            for (auto at = text.find(prefix); at != text.npos; at = text.find(prefix))
-                text.erase(at, prefix.size());
-            return text;
-        }
-        return "not refused";
-    }
-
-    support::TemporaryFolder folder_;
+    AbaqusInclude() : MeshFolder("a.inp") {}
 };
 
 TEST_F(AbaqusInclude, ReadsFilesInPlaceOfTheLine) {
@@ -105,9 +74,9 @@ TEST_F(AbaqusInclude, RefusesFilesThatCannotBeRead) {
     EXPECT_EQ(refused({{"a.inp", "*INCLUDE, INPUT=c.inp\n"}, {"c.inp", ""}}),
               "a.inp:1: *INCLUDE: c.inp: the file is empty");
     EXPECT_EQ(refused({{"a.inp", "*INCLUDE\n"}}),
-              "a.inp:1: *INCLUDE has no INPUT=...; name the file to include");
+              "a.inp:1: *INCLUDE names no file: write INPUT= and the name of the file to include");
     EXPECT_EQ(refused({{"a.inp", "*INCLUDE, INPUT=d.inp\n"}, {"d.inp", "\n*INCLUDE, INPUT=\n"}}),
-              "d.inp:2: *INCLUDE has no INPUT=...; name the file to include");
+              "d.inp:2: *INCLUDE names no file: write INPUT= and the name of the file to include");
 }
 
 TEST_F(AbaqusInclude, RefusesCircles) {
@@ -146,7 +115,7 @@ TEST_F(AbaqusInclude, NamesTheKeywordThatNamesAFile) {
     EXPECT_EQ(refused({{"a.inp", "** deck\n*NODE,\nINPUT=b.csv\n"}}),
               "a.inp:2: *NODE: b.csv: no such file; check the path");
     EXPECT_EQ(refused({{"a.inp", "*Element, TYPE=C3D4, INPUT=\n"}}),
-              "a.inp:1: *ELEMENT has no INPUT=...; name the file to include");
+              "a.inp:1: *ELEMENT names no file: write INPUT= and the name of the file to include");
     EXPECT_EQ(refused({{"a.inp", "*NODE,\nINPUT=c.csv\n1, x\n"}, {"c.csv", "2, 0, 0, 0\n"}}),
               "a.inp:3: expected coordinate x, found 'x'");
     EXPECT_EQ(refused({{"a.inp", "*NODE,\nINPUT=c.csv\n"}, {"c.csv", "\n2, x, 0, 0\n"}}),

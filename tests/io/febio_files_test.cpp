@@ -5,14 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <string>
 
-#include "incise/base/error.h"
+#include "tests/io/mesh_folder.h"
 #include "tests/io/reader_samples.h"
-#include "tests/support/temporary_folder.h"
 
 namespace incise::io {
 namespace {
@@ -29,32 +25,9 @@ const std::string geometry =
     "<node id=\"3\">0,1,0</node>\n<node id=\"4\">0,0,1</node>\n</Nodes>\n"
     "<Elements type=\"tet4\" mat=\"3\">\n<elem id=\"1\">1,2,3,4</elem>\n</Elements>\n</Geometry>";
 
-class FebioFiles : public testing::Test {
+class FebioFiles : public MeshFolder {
   protected:
-    using Files = std::map<std::string, std::string>;
-
-    MeshFile read(const Files& files) {
-        for (const auto& [name, text] : files) {
-            std::filesystem::create_directories((folder_ / name).parent_path());
-            std::ofstream(folder_ / name) << text;
-        }
-        return read_mesh(folder_ / "a.feb");
-    }
-    /// The message, without the folder.
-    std::string refused(const Files& files) {
-        try {
-            read(files);
-        } catch (const InputError& error) {
-            std::string text = error.what();
-            const auto prefix = (folder_ / "").string();
-            for (auto at = text.find(prefix); at != text.npos; at = text.find(prefix))
-                text.erase(at, prefix.size());
-            return text;
-        }
-        return "not refused";
-    }
-
-    support::TemporaryFolder folder_;
+    FebioFiles() : MeshFolder("a.feb") {}
 };
 
 TEST_F(FebioFiles, ReadsTheMeshOfAnIncludedFile) {
@@ -102,6 +75,19 @@ TEST_F(FebioFiles, RefusesSeveralMeshesAndCircles) {
     EXPECT_THAT(refused({{"a.feb", febio("<Geometry from=\"a.feb\"/>")}}),
                 AllOf(StartsWith("a.feb:2: Geometry: more than 20 files name each other"),
                       HasSubstr("into one file")));
+    EXPECT_EQ(refused({{"a.feb", febio("<Include> </Include>")}}),
+              "a.feb:2: Include: names no file");
+    // Nodes of its own would be lost.
+    const std::string nodes = geometry.substr(0, geometry.find("<Elements")) + "</Geometry>\n";
+    EXPECT_THAT(
+        refused({{"a.feb", febio(nodes + "<Include>b.feb</Include>")}, {"b.feb", febio(geometry)}}),
+        AllOf(StartsWith("a.feb:2: "), HasSubstr("its elements in "), HasSubstr("into one file")));
+}
+
+TEST_F(FebioFiles, ReadsNamesOnLinesOfTheirOwn) {
+    EXPECT_EQ(read({{"a.feb", febio("<Include>\n  b.feb\n</Include>")}, {"b.feb", febio(geometry)}})
+                  .mesh.num_cells(),
+              1u);
 }
 
 }  // namespace

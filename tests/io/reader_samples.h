@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,13 @@ struct Sample {
 /// One cell of each kind with positive volume, and regions. In the files there are a line and
 /// two triangles besides.
 topology::MeshData sample_mesh();
+inline constexpr std::array<std::array<long long, 3>, 2> sample_triangles = {
+    {{0, 1, 2}, {1, 3, 2}}};
+
+/// The number that a node has in a file: descending, with gaps.
+int tag_of(std::int64_t node);
+/// The corners of a cell in the order of Gmsh, Medit, Abaqus and FEBio.
+std::vector<std::int64_t> nodes_in_files(const topology::MeshData& mesh, std::size_t c);
 
 /// Written by VTK: ascii, inline, appended raw and in base64; all compressors; headers of 32 and
 /// 64 bits; both byte orders.
