@@ -53,11 +53,18 @@ std::string text_of_file(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Returns the text without the name of the program and without line feeds at its end.
+/// Returns the message of the program: what follows its name, after the lines of its progress.
 std::string message_of(std::string text) {
     while (text.ends_with('\n')) text.pop_back();
     const std::string name = "incise-render: ";
-    return text.starts_with(name) ? text.substr(name.size()) : text;
+    const auto at = text.rfind(name);
+    return at == text.npos ? text : text.substr(at + name.size());
+}
+
+/// True if the message is about a word that the user gave, and may correct.
+bool names_a_word_of(const PictureOptions& options, const std::string& message) {
+    return (!options.color.empty() && message.find("'" + options.color + "'") != message.npos) ||
+           (!options.view.empty() && message.find("--view") != message.npos);
 }
 
 std::vector<std::size_t> evenly_spread(std::size_t num_frames, std::size_t count) {
@@ -94,7 +101,6 @@ report::Pictures draw_run(const report::RunRecord& run, const PictureOptions& op
         evenly_spread(run.frame_times.size(), static_cast<std::size_t>(options.count));
     if (frames.empty()) return pictures;
     const PictureFolder folder;
-    // With one frame --out would be a folder too, so that the names are the same.
     const fs::path out = folder / "pictures", complaint = folder / "stderr";
     std::string reason;
     try {
@@ -112,9 +118,7 @@ report::Pictures draw_run(const report::RunRecord& run, const PictureOptions& op
             return pictures;
         }
         reason = message_of(text_of_file(complaint));
-        // The user has a word to correct.
-        if (status == input_at_fault && (!options.color.empty() || !options.view.empty()))
-            throw InputError(reason);
+        if (status == input_at_fault && names_a_word_of(options, reason)) throw InputError(reason);
         if (reason.empty()) reason = "incise-render ended with status " + std::to_string(status);
     } catch (const MemoryError&) {
         reason = "incise-render was killed, perhaps for lack of memory";

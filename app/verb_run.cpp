@@ -186,7 +186,10 @@ std::string describe(const runner::Simulation& simulation) {
          << body.totals.mass << " kg, " << body.totals.rest_volume << " m3; "
          << (is_static ? "load steps of " : "steps of ") << simulation.time_step() << " s to "
          << simulation.scenario().dynamics.end_time << " s";
-    if (!is_static) text << " (stable up to " << body.stable_step << " s)";
+    // Implicit steps are stable at any length.
+    const auto integrator = simulation.scenario().dynamics.integrator;
+    if (!is_static && integrator == scenario::TimeIntegrator::semi_implicit_euler)
+        text << " (stable up to " << body.stable_step << " s)";
     return text.str();
 }
 

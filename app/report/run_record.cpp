@@ -202,6 +202,9 @@ RunRecord read_run(const fs::path& given) {
     // Before the edits: a run that goes on writes an edit before its row.
     run.history = read_history(run.folder / "history.csv");
     run.edits = read_edits(run.folder / "edits.jsonl");
+    if (const auto* steps = run.history.find("step"); steps && !steps->empty())
+        std::erase_if(run.edits,
+                      [last = steps->back()](const Edit& edit) { return edit.step > last; });
     run.frame_times = read_frame_times(run.folder / (run.name + ".vtu.series"));
     run.scenario_text = text_of_file(run.folder / (run.name + ".toml"));
     run.written =

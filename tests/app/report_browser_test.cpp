@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -50,7 +51,8 @@ async function probe() {
       colored: paintedPart(plot.root.querySelector("canvas")),
     })),
     facts: texts(".fact"), headings: texts(".plot h3"), warnings: texts("#warning-list .box"),
-    ending: texts("#ending"), pictures: document.querySelectorAll("#picture-list img").length,
+    ending: texts("#ending"), pictures: Array.from(document.querySelectorAll("#picture-list img"),
+      (picture) => [picture.naturalWidth, picture.naturalHeight]),
     tools: rows("tool-table"), edits: rows("edit-table"), accounts: rows("account-list"),
     first_edit: texts("#edit-table tbody tr:first-child td"), more: texts("#edit-more"),
     scenario: texts("#scenario-text"), command: texts("#commands pre"),
@@ -83,8 +85,9 @@ class ReportBrowser : public InFolder {
     }
 
     /// Makes the report of fall.out, opens it, and returns what is on the page.
-    Json look(const std::string& options = "--window-size=1280,900") {
-        const auto made = run("report fall.out --pictures 0");
+    Json look(const std::string& options = "--window-size=1280,900",
+              const std::string& pictures = "--pictures 0") {
+        const auto made = run("report fall.out " + pictures);
         EXPECT_EQ(made.status, 0) << made.err;
         auto page = read_text(folder_ / "fall.out/report.html");
         page.insert(page.find("<head>") + 6, first_script);
@@ -121,6 +124,26 @@ class ReportBrowser : public InFolder {
         return html;
     }
 };
+
+TEST_F(ReportBrowser, ShowsThePicturesOfARun) {
+    write("fall.toml",
+          "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n"
+          "[[material]]\ndensity = 1000\nyoung = 5000\npoisson = 0.3\n"
+          "[dynamics]\nend_time = 0.03\n[output]\ninterval = 0.01\n");
+    ASSERT_EQ(run("run fall.toml --quiet").status, 0);
+    const auto found = look("--window-size=1280,900", "--pictures 3");
+    EXPECT_EQ(found["errors"], Json::array());
+    EXPECT_EQ(found["pictures"], Json::parse("[[960, 720], [960, 720], [960, 720]]"));
+
+    // A picture that cannot be drawn is told of in a sentence; the rest of the page is there.
+    std::filesystem::remove(folder_ / "fall.out/frames/fall_000003.vtu");
+    const auto without = run("report fall.out --color displacement");
+    EXPECT_EQ(without.status, 0) << without.err;
+    EXPECT_THAT(without.err, HasSubstr("There are no pictures: "));
+    EXPECT_THAT(without.err, HasSubstr("fall_000003.vtu"));
+    EXPECT_THAT(without.err, Not(HasSubstr("looking through")));
+    EXPECT_EQ(std::count(without.err.begin(), without.err.end(), '\n'), 1) << without.err;
+}
 
 TEST_F(ReportBrowser, DrawsPlotsAndFillsTables) {
     write_fall(folder_ / "fall.out");
