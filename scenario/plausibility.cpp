@@ -65,8 +65,10 @@ void look_at_materials(const Scenario& scenario, const physics::MaterialTable& m
     }
 }
 
-/// True if something may bear the body: a constraint, an obstacle, a probe, a grasper or a load.
+/// True if something may bear the body: a constraint, or in motion an obstacle, a probe, a grasper
+/// or a load.
 bool is_borne(const Scenario& scenario) {
+    if (scenario.dynamics.mode == Mode::statics) return !scenario.constraints.empty();
     return !scenario.constraints.empty() || !scenario.loads.empty() ||
            std::ranges::any_of(scenario.tools, [](const ToolSpec& tool) { return !cuts(tool); });
 }
@@ -77,8 +79,11 @@ void look_at_weight(const Scenario& scenario, const Box& body,
     if (gravity.isZero(0.0)) return;
     if (!is_borne(scenario))
         findings.add(scenario.mesh.location,
-                     "nothing holds the body against gravity, so it falls: add a [[constraint]], "
-                     "or an [[obstacle]] below it");
+                     scenario.dynamics.mode == Mode::statics
+                         ? "nothing holds the body against gravity, so there is no equilibrium: "
+                           "add a [[constraint]]"
+                         : "nothing holds the body against gravity, so it falls: add a "
+                           "[[constraint]], or an [[obstacle]] below it");
     const double height = body.sizes().dot(gravity.cwiseAbs()) / gravity.norm();
     double softest = std::numeric_limits<double>::infinity(), heaviest = 0.0;
     for (const physics::Material& material : materials.materials) {
@@ -124,8 +129,9 @@ void look_at_blades(const Scenario& scenario, Findings& findings) {
         if (!blade || tool.path.size() < 2) continue;
         const auto sharpness = sharpness_of_motion(*blade, ToolPath(tool.path));
         if (!sharpness)
-            findings.add(tool.location, "tool '", tool.name,
-                         "' does not move, so it cuts nothing: give its path another 'at'");
+            findings.add(
+                tool.location, "tool '", tool.name,
+                "' does not move, so it cuts nothing: give its path another 'at' or 'rotate'");
         else if (*sharpness < along_itself)
             findings.add(tool.location, "tool '", tool.name,
                          "' moves along its own edge, so it cuts only where tissue moves across "

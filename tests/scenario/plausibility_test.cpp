@@ -68,6 +68,11 @@ TEST(Plausibility, AsksWhatHoldsTheBodyAndWhetherItBearsItself) {
     EXPECT_THAT(warnings_of(rest_block.substr(0, rest_block.find("[[constraint]]")) +
                             rest_block.substr(rest_block.find("[dynamics]"))),
                 ElementsAre(HasSubstr("nothing holds the body against gravity")));
+    EXPECT_THAT(warnings_of(rest_block.substr(0, rest_block.find("[[constraint]]")) +
+                            "[[load]]\nwhere = { box = { min = [-99, -99, 0], max = [99, 99, 0] "
+                            "} }\npressure = 50\n[dynamics]\nmode = 'static'\nend_time = 1\n"
+                            "gravity = [0, 0, -9.81]\n"),
+                testing::Contains(HasSubstr("so there is no equilibrium: add a [[constraint]]")));
     EXPECT_THAT(warnings_of(rest_block, {"material[0].young=1000"}),
                 ElementsAre(HasSubstr("its own weight may crush it")));
     // Lying flat it bears itself.

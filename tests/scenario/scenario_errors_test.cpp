@@ -428,6 +428,10 @@ TEST(ScenarioErrors, OfExpectedQuantitiesNameTheNearest) {
 TEST(ScenarioErrors, ExplainFaultsOfSyntaxInWords) {
     const std::vector<std::pair<std::string, std::string>> faults = {
         {"title = A kidney\n", "1:9: that is no value: a text needs quotes"},
+        {"title = table\n", "1:10: that is no value: a text needs quotes"},
+        {"title = false_start\"\n", "that is no value: a text needs quotes"},
+        {"title = info\"\n", "that is no value: a text needs quotes"},
+        {"title = nanny\"\n", "that is no value: a text needs quotes"},
         {"title = \"kidney\n", "the text has no closing quote on its line"},
         {"title = \"C:\\users\"\n", "a backslash in a text begins a special character"},
         {"title = \"C:\\data\"\n", "a backslash in a text begins a special character"},
