@@ -284,7 +284,7 @@ TEST(EliminationTree, JoinsNoGroupsButAncestors) {
 }
 
 // Entries that are stored although they are zero are counted, too.
-TEST(EliminationTree, GivesFewerEntriesThanMinimumDegree) {
+TEST(EliminationTree, StoresAtMostAThirdMoreThanMinimumDegreeNeeds) {
     for (const Points& points : {grid(16, 16, 16), grid(60, 20, 4)}) {
         const System system = random_system(points, 1, 60.0, 1);
         SparseFactor factor;
