@@ -9,6 +9,7 @@
 #include "incise/io/files/number_format.h"
 #include "incise/io/vtk/series.h"
 #include "incise/scenario/document_text.h"
+#include "incise/scenario/held_tool.h"
 #include "incise/scenario/quantities.h"
 #include "incise/scenario/scenario_sections.h"
 
@@ -156,14 +157,10 @@ void keep_sound(const TableReader& root, DynamicsSpec& spec) {
     if (!is_sound("precision")) spec.precision = physics::Precision::double_precision;
 }
 
-/// Returns why a run has no contact; empty if it has.
-std::string why_no_contact(const TableReader& root, const Scenario& scenario) {
+/// Returns why a run has no contact; empty if it has, or if that is not known.
+std::string known_why_no_contact(const TableReader& root, const Scenario& scenario) {
     if (!root.is_sound("dynamics") || !root.is_sound("contact")) return {};
-    const DynamicsSpec& dynamics = scenario.dynamics;
-    if (dynamics.mode == Mode::statics) return "mode = \"static\" has no contact";
-    if (dynamics.integrator != TimeIntegrator::semi_implicit_euler)
-        return "integrator = \"implicit-euler\" has no contact";
-    return scenario.contact.enabled ? "" : "[contact] has enabled = false";
+    return why_no_contact(scenario.dynamics, scenario.contact);
 }
 
 Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
@@ -179,7 +176,8 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
-    scenario.tools = read_tools(root, scenario.folder, end_time, why_no_contact(root, scenario));
+    scenario.tools =
+        read_tools(root, scenario.folder, end_time, known_why_no_contact(root, scenario));
     scenario.output = read_output(root, end_time);
     std::vector<std::string> probes;
     for (const ToolSpec& tool : scenario.tools)
@@ -366,40 +364,53 @@ void check_times(const TableReader& table, std::string_view key, std::span<const
                                         format_number(end_time) + " s");
 }
 
-ScenarioReport read_scenario(const std::filesystem::path& file,
-                             std::span<const std::string> overrides) {
-    ScenarioReport report;
-    Diagnostics diagnostics(file.string(), overrides);
+namespace {
+
+void check_series_name(const std::filesystem::path& file, Diagnostics& diagnostics) {
     try {
         io::require_series_name(file.stem().string());
     } catch (const InputError& failure) {
         diagnostics.error(SourceLocation{}, failure.what());
     }
-    try {
-        Value document = read_document(file);
-        for (std::size_t i = 0; i < overrides.size(); ++i) {
-            try {
-                apply_override(document, overrides[i], static_cast<int>(i));
-            } catch (const DocumentError& failure) {
-                diagnostics.error(failure.location, failure.text);
-            }
+}
+
+}  // namespace
+
+ScenarioReport read_scenario(Value document, const std::filesystem::path& file,
+                             std::span<const std::string> overrides) {
+    ScenarioReport report;
+    Diagnostics diagnostics(file.string(), overrides);
+    check_series_name(file, diagnostics);
+    for (std::size_t i = 0; i < overrides.size(); ++i) {
+        try {
+            apply_override(document, overrides[i], static_cast<int>(i));
+        } catch (const DocumentError& failure) {
+            diagnostics.error(failure.location, failure.text);
         }
-        const TableReader root(*document.get<Table>(), SourceLocation{}, "", {root_keys},
-                               diagnostics);
-        report.scenario = read_all(root, file);
-        report.scenario.hash = content_hash(document);
-        report.scenario.contents = contents_of(document);
-        make_files_absolute(document, file.parent_path());
-        report.scenario.text = toml_text(document);
-    } catch (const DocumentError& failure) {
-        diagnostics.error(failure.location, failure.text);
-    } catch (const InputError& failure) {
-        report.errors.push_back(failure.what());
-        return report;
     }
+    const TableReader root(*document.get<Table>(), SourceLocation{}, "", {root_keys}, diagnostics);
+    report.scenario = read_all(root, file);
+    report.scenario.hash = content_hash(document);
+    report.scenario.contents = contents_of(document);
+    make_files_absolute(document, file.parent_path());
+    report.scenario.text = toml_text(document);
     report.errors = diagnostics.errors();
     report.warnings = diagnostics.warnings();
     return report;
+}
+
+ScenarioReport read_scenario(const std::filesystem::path& file,
+                             std::span<const std::string> overrides) {
+    try {
+        return read_scenario(read_document(file), file, overrides);
+    } catch (const DocumentError& failure) {
+        Diagnostics diagnostics(file.string(), overrides);
+        check_series_name(file, diagnostics);
+        diagnostics.error(failure.location, failure.text);
+        return {.scenario = {}, .errors = diagnostics.errors(), .warnings = {}};
+    } catch (const InputError& failure) {
+        return {.scenario = {}, .errors = {failure.what()}, .warnings = {}};
+    }
 }
 
 }  // namespace incise::scenario

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "incise/scenario/document.h"
 #include "incise/scenario/scenario.h"
 
 namespace incise::scenario {
@@ -29,6 +30,14 @@ struct ScenarioReport {
 /// @param overrides  values to change before the checks, in this order; see apply_override(), such
 ///                   as "dynamics.end_time=0.2" or "material[0].young=2000"
 ScenarioReport read_scenario(const std::filesystem::path& file,
+                             std::span<const std::string> overrides = {});
+/// The same for a document that is no file.
+/// @param document   the values, changed as the overrides say
+/// @param file       FOLDER/NAME: the folder to which paths are relative, and a name for messages
+///                   and results. The file need not exist
+/// @param overrides  see above
+/// @pre  the document is a table
+ScenarioReport read_scenario(Value document, const std::filesystem::path& file,
                              std::span<const std::string> overrides = {});
 
 }  // namespace incise::scenario

@@ -46,6 +46,10 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
 /// @param why_no_contact  why tools cannot touch tissue; empty if they can
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
                                  double end_time, const std::string& why_no_contact);
+/// Reads a tool that is led by hand: the keys of a [[tool]] without those that say when it is
+/// where, and without a name. The tool is named as its kind, and has no path.
+ToolSpec read_held_tool(const Table& table, const std::filesystem::path& folder,
+                        const std::string& why_no_contact, Diagnostics& diagnostics);
 OutputSpec read_output(const TableReader& root, double end_time);
 /// Reads the [expect] section.
 /// @param root         the root table

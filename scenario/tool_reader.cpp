@@ -96,15 +96,28 @@ void refuse(const TableReader& tool, std::initializer_list<std::string_view> key
         if (tool.has(key)) tool.error(key, "belongs to " + owner + ": leave it out");
 }
 
+/// What moves a tool.
+enum class Led { by_path, by_hand };
+
+/// Reports the keys that say when a tool is where, if a hand does.
+void refuse_times(const TableReader& tool) {
+    for (const std::string_view key : {"path", "time", "close", "open", "tighten"})
+        if (tool.has(key))
+            tool.error(key,
+                       "belongs to a tool of a scenario: this one is led by hand; leave it out");
+}
+
 /// Reports keys that a tool of this kind needs but does not have, and keys of other kinds.
-void check_keys(const TableReader& tool, Keys kind) {
+void check_keys(const TableReader& tool, Keys kind, Led led) {
+    const bool has_times = led == Led::by_path;
+    if (!has_times) refuse_times(tool);
     if (kind == "carver" || kind == "probe" || kind == "grasper")
         tool.require("shape", "as in shape = { sphere = { radius = 0.008 } }");
     else
         refuse(tool, {"shape"}, "a carver, a probe or a grasper");
-    if (kind == "grasper")
+    if (has_times && kind == "grasper")
         tool.require("close", "when its jaws close, seconds, as in close = 0.2");
-    else
+    else if (has_times)
         refuse(tool, {"close", "open"}, "a grasper");
     if (kind != "grasper" && kind != "suture") refuse(tool, {"max_force"}, "a grasper or a suture");
     if (kind == "suture") {
@@ -112,7 +125,8 @@ void check_keys(const TableReader& tool, Keys kind) {
                      "a line of points at rest, as in points = [[0, 0, 0], [0.01, 0, 0]]");
         tool.require("stiffness", "of the thread, N/m, as in stiffness = 200");
     } else {
-        refuse(tool, {"points", "tighten", "stiffness", "reach"}, "a suture");
+        refuse(tool, {"points", "stiffness", "reach"}, "a suture");
+        if (has_times) refuse(tool, {"tighten"}, "a suture");
     }
     if (kind != "probe") refuse(tool, {"friction"}, "a probe");
     if (kind == "blade")
@@ -122,6 +136,7 @@ void check_keys(const TableReader& tool, Keys kind) {
     if (kind != "blade" && kind != "cut") refuse(tool, {"snap"}, "a blade");
     if (kind == "cut") {
         tool.one_of({"plane", "surface"});
+        if (!has_times) return;
         refuse(tool, {"path"}, "a blade");
         tool.require("time", "when it cuts, seconds, as in time = 0.5");
         return;
@@ -132,6 +147,7 @@ void check_keys(const TableReader& tool, Keys kind) {
     else
         refuse(tool, {"surface"}, "a cut");
     refuse(tool, {"plane", "scale"}, "a cut");
+    if (!has_times) return;
     if (kind == "suture") {
         if (tool.has("path"))
             tool.error("path", "a suture has none: its points are in the tissue; leave it out");
@@ -180,7 +196,48 @@ void check_path(const TableReader& tool, const ToolSpec& spec, double end_time) 
                          format_number(end_time) + " s");
 }
 
+/// Reports a tool that touches tissue where there is no contact.
+void check_contact(const TableReader& tool, Keys kind, const std::string& why_no_contact) {
+    if (why_no_contact.empty()) return;
+    if (kind == "probe" || kind == "grasper" || kind == "suture")
+        tool.error("kind", in_quotes(kind) + " touches tissue, but " + why_no_contact);
+    if (kind == "blade" && tool.has("toughness"))
+        tool.error("toughness",
+                   "gives a force of cutting, which needs contact, but " + why_no_contact);
+}
+
+/// Reads what a tool is. An unknown kind is empty: its keys are read as far as they tell the kind.
+auto read_kind(const TableReader& tool, Keys kind, const std::filesystem::path& folder) {
+    decltype(ToolSpec::kind) spec;
+    const auto may_be = [&](Keys one) { return kind.empty() || kind == one; };
+    std::optional<double> snap;
+    if (may_be("blade") || may_be("cut")) snap = tool.number_if_given("snap", snap_limits);
+    if (may_be("carver")) spec = read_carver(tool);
+    if (kind == "probe") spec = read_probe(tool, folder);
+    if (kind == "grasper") spec = read_grasper(tool);
+    if (kind == "suture") spec = read_suture(tool);
+    if (may_be("blade")) spec = read_blade(tool, snap);
+    if (may_be("cut")) spec = read_cut(tool, snap, folder);
+    return spec;
+}
+
 }  // namespace
+
+ToolSpec read_held_tool(const Table& table, const std::filesystem::path& folder,
+                        const std::string& why_no_contact, Diagnostics& diagnostics) {
+    const TableReader tool(table, SourceLocation{}, "", {tool_keys}, diagnostics);
+    tool.require("kind", "must be one of " + list_of(kinds));
+    ToolSpec spec;
+    const auto index = tool.choice("kind", {kinds});
+    if (!index) return spec;
+    const Keys kind = kinds[*index];
+    if (tool.has("name")) tool.error("name", "is given where the tool is added: leave it out");
+    check_keys(tool, kind, Led::by_hand);
+    check_contact(tool, kind, why_no_contact);
+    spec.name = kind;
+    spec.kind = read_kind(tool, kind, folder);
+    return spec;
+}
 
 std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem::path& folder,
                                  double end_time, const std::string& why_no_contact) {
@@ -191,31 +248,15 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         tool.require("kind", "must be one of " + list_of(kinds));
         const auto index = tool.choice("kind", {kinds});
         const Keys kind = index ? kinds[*index] : Keys();  // empty if not known
-        const auto may_be = [&](Keys one) { return kind.empty() || kind == one; };
         ToolSpec spec;
         spec.location = tool.location_text();
         const std::string usual_name =
             index ? std::string(kind) + "_" + std::to_string(++counts[*index]) : "";
         if (index || tool.has("name")) spec.name = read_name(tool, usual_name, names);
-        if (index) check_keys(tool, kind);
-        const bool touches = kind == "probe" || kind == "grasper" || kind == "suture";
-        if (touches && !why_no_contact.empty())
-            tool.error("kind", in_quotes(kind) + " touches tissue, but " + why_no_contact);
-        if (kind == "blade" && tool.has("toughness") && !why_no_contact.empty())
-            tool.error("toughness",
-                       "gives a force of cutting, which needs contact, but " + why_no_contact);
-        std::optional<double> snap;
-        if (kind.empty() || kind == "blade" || kind == "cut")
-            snap = tool.number_if_given("snap", snap_limits);
-        if (may_be("carver")) spec.kind = read_carver(tool);
-        if (kind == "probe") spec.kind = read_probe(tool, folder);
-        if (kind == "grasper") spec.kind = read_grasper(tool);
-        if (kind == "suture") spec.kind = read_suture(tool);
-        if (may_be("blade")) spec.kind = read_blade(tool, snap);
-        if (may_be("cut")) {
-            spec.kind = read_cut(tool, snap, folder);
-        }
-        if (may_be("cut") || kind == "suture") {
+        if (index) check_keys(tool, kind, Led::by_path);
+        check_contact(tool, kind, why_no_contact);
+        spec.kind = read_kind(tool, kind, folder);
+        if (kind.empty() || kind == "cut" || kind == "suture") {
             const double time = tool.number("time", 0.0, limits::non_negative);
             if (tool.is_sound("time")) spec.path = {{time, {}}};
         }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/held_tool.h"
+
+#include <utility>
+
+#include "incise/base/error.h"
+#include "incise/scenario/diagnostics.h"
+#include "incise/scenario/scenario_sections.h"
+#include "incise/scenario/tool_build.h"
+
+namespace incise::scenario {
+
+HeldTool build_held_tool(const Value& definition, const std::filesystem::path& folder,
+                         const topology::Mesh& mesh, const std::string& why_no_contact) {
+    const Table* table = definition.get<Table>();
+    if (!table)
+        throw InputError("tool: is " + definition.description() +
+                         ", not a table of keys such as kind = \"blade\"");
+    Diagnostics diagnostics("tool", {});
+    ToolSpec spec = read_held_tool(*table, folder, why_no_contact, diagnostics);
+    if (diagnostics.has_errors()) {
+        std::string text;
+        for (const std::string& error : diagnostics.errors())
+            text += (text.empty() ? "" : "\n") + error;
+        throw InputError(text);
+    }
+    HeldTool tool{.kind = spec.name, .shape = {}, .warnings = diagnostics.warnings()};
+    tool.shape = build_tool(with_mode(std::move(spec), mesh), tool.warnings).shape;
+    return tool;
+}
+
+std::string why_no_contact(const DynamicsSpec& dynamics, const contact::ContactSettings& contact) {
+    if (dynamics.mode == Mode::statics) return "mode = \"static\" has no contact";
+    if (dynamics.integrator != TimeIntegrator::semi_implicit_euler)
+        return "integrator = \"implicit-euler\" has no contact";
+    return contact.enabled ? "" : "[contact] has enabled = false";
+}
+
+}  // namespace incise::scenario

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/scenario/held_tool.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "incise/base/error.h"
+#include "incise/topology/box_mesh.h"
+
+namespace incise::scenario {
+namespace {
+
+using testing::HasSubstr;
+
+Value text(std::string value) { return {.data = std::move(value), .location = {}}; }
+Value number(double value) { return {.data = value, .location = {}}; }
+Value list(std::initializer_list<Value> values) { return {.data = Array(values), .location = {}}; }
+Value point(double x, double y, double z) { return list({number(x), number(y), number(z)}); }
+Value table(std::initializer_list<std::pair<std::string, Value>> entries) {
+    Table made;
+    for (const auto& [key, value] : entries) made.push_back({key, {}, value});
+    return {.data = std::move(made), .location = {}};
+}
+
+topology::Mesh mesh_of(topology::CellKind kind) {
+    return topology::Mesh::build(topology::box_mesh(kind, Vec3::Zero(), Vec3::Ones(), {1, 1, 1}))
+        .mesh;
+}
+
+HeldTool build(const Value& definition, const std::string& why_no_contact = {}) {
+    return build_held_tool(definition, ".", mesh_of(topology::CellKind::tetrahedron),
+                           why_no_contact);
+}
+
+std::string refusal_of(const Value& definition, const std::string& why_no_contact = {}) {
+    try {
+        build(definition, why_no_contact);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+const Value edge = list({point(0, 0, 0), point(0, 0, 0.1)});
+const Value ball = table({{"sphere", table({{"radius", number(0.01)}})}});
+
+TEST(HeldTool, IsWhatTheKeysOfAScenarioSay) {
+    const HeldTool blade =
+        build(table({{"kind", text("blade")}, {"edge", edge}, {"toughness", number(160.0)}}));
+    EXPECT_EQ(blade.kind, "blade");
+    const auto& shape = std::get<cutting::Blade>(blade.shape);
+    EXPECT_EQ(shape.edge.size(), 2u);
+    EXPECT_EQ(shape.toughness, 160.0);
+    EXPECT_EQ(shape.mode, cutting::CutMode::split);
+
+    const HeldTool jaws = build(table({{"kind", text("grasper")}, {"shape", ball}}));
+    EXPECT_TRUE(std::holds_alternative<cutting::Grasper>(jaws.shape));
+    const HeldTool burr = build(table({{"kind", text("carver")}, {"shape", ball}}));
+    EXPECT_TRUE(std::holds_alternative<cutting::Carver>(burr.shape));
+    const HeldTool thread =
+        build(table({{"kind", text("suture")}, {"points", edge}, {"stiffness", number(200.0)}}));
+    EXPECT_EQ(std::get<cutting::Suture>(thread.shape).stiffness, 200.0);
+    const HeldTool plane =
+        build(table({{"kind", text("cut")},
+                     {"plane", table({{"point", point(0, 0, 0)}, {"normal", point(1, 0, 0)}})}}));
+    EXPECT_TRUE(std::holds_alternative<cutting::PlaneCut>(plane.shape));
+}
+
+TEST(HeldTool, TakesTheModeThatSuitsTheMesh) {
+    const Value blade = table({{"kind", text("blade")}, {"edge", edge}});
+    const HeldTool made = build_held_tool(blade, ".", mesh_of(topology::CellKind::hexahedron), "");
+    EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::separate);
+}
+
+TEST(HeldTool, RefusesAllThatIsWrongAtOnce) {
+    const std::string refusal = refusal_of(table({{"kind", text("blade")},
+                                                  {"edge", list({point(0, 0, 0)})},
+                                                  {"toughness", number(-1.0)},
+                                                  {"path", list({})},
+                                                  {"colour", text("red")}}));
+    EXPECT_THAT(refusal, HasSubstr("tool: key 'edge': must have at least 2 points"));
+    EXPECT_THAT(refusal, HasSubstr("key 'toughness': -1 is not allowed"));
+    EXPECT_THAT(refusal, HasSubstr("key 'path': belongs to a tool of a scenario"));
+    EXPECT_THAT(refusal, HasSubstr("colour"));
+}
+
+TEST(HeldTool, RefusesWhatIsNoToolOrCannotTouch) {
+    EXPECT_THAT(refusal_of(number(3.0)), HasSubstr("is the number 3, not a table"));
+    EXPECT_THAT(refusal_of(table({})), HasSubstr("'kind'"));
+    EXPECT_THAT(refusal_of(table({{"kind", text("scalpel")}})), HasSubstr("blade"));
+    EXPECT_THAT(refusal_of(table({{"kind", text("probe")}, {"shape", ball}}), "statics has none"),
+                HasSubstr("touches tissue, but statics has none"));
+    EXPECT_THAT(
+        refusal_of(table({{"kind", text("grasper")}, {"shape", ball}, {"close", number(1)}})),
+        HasSubstr("led by hand"));
+}
+
+}  // namespace
+}  // namespace incise::scenario
