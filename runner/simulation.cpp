@@ -76,8 +76,7 @@ void Simulation::start() {
 
 bool Simulation::is_finished() const { return time() >= scenario_.dynamics.end_time; }
 
-void Simulation::step() {
-    const Interval step = next_step();
+void Simulation::step(Interval step) {
     move_tools(step);
     try {
         world_.step_to(step.to);
@@ -217,10 +216,11 @@ void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
     std::vector<std::string> added;
     ar(edits_, last_step_, num_frames_, overlap_, lost_, warned_step_, added);
+    warnings_.resize(num_body_warnings_);
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
-    if (world_.num_tools() != scripts_.size())
+    if (world_.num_tools() < scripts_.size())
         throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
@@ -286,12 +286,12 @@ void Simulation::warn_of_lost_elements() {
 
 double Simulation::time_step() const {
     if (num_steps() > 0) return last_step_;
-    const auto [from, to] = next_step();
+    const auto [from, to] = next_step(next_stop());
     return to - from;
 }
 
 // Frames are at exact multiples of their interval, and the run ends exactly at its end time.
-Simulation::Interval Simulation::next_step() const {
+double Simulation::next_stop() const {
     // A tiny time between the last frame and the end is due to rounding, as 3 * 0.3 < 0.9.
     constexpr double rounding = 1e-9;
     const double interval = scenario_.output.interval;
@@ -301,6 +301,10 @@ Simulation::Interval Simulation::next_step() const {
             static_cast<double>(std::max<std::uint64_t>(num_frames_, 1)) * interval;
         if (frame < stop - rounding * interval) stop = frame;
     }
+    return stop;
+}
+
+Simulation::Interval Simulation::next_step(double stop) const {
     const double end =
         policy_({scenario_, model(), time(), stop, world_.stable_step(), num_steps()});
     if (!(end > time() && end <= stop))

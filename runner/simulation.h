@@ -56,10 +56,19 @@ class Simulation {
     /// Sets the number of threads; see Model::set_num_threads().
     void set_num_threads(int n) { world_.set_num_threads(n); }
 
-    /// Makes one time step, then calls the observers.
+    /// The time that a step takes, s.
+    struct Interval {
+        double from, to;
+    };
+    /// Returns the next step, if it must not go beyond `stop`, s.
+    /// @pre  `stop` is after time()
+    Interval next_step(double stop) const;
+    /// Makes a step that next_step() has returned, then calls the observers.
     /// Throws PhysicsError if the motion is lost, and InputError if a tool meets something that it
     /// cannot cut. The edits of the failed step are then passed to the observers first.
-    void step();
+    void step(Interval step);
+    /// Makes the next step, which ends at the next frame at the latest.
+    void step() { step(next_step(next_stop())); }
     bool is_finished() const;
     /// Calls the observers for the state at time 0.
     /// @pre  no step was made
@@ -72,7 +81,6 @@ class Simulation {
     /// Restores a state that a simulation of the same scenario has saved.
     /// Throws InputError if the data are damaged or not of this body. The simulation is then
     /// unusable. Cost: as World::restore().
-    /// @pre  no step was made
     void restore(ArchiveReader& ar);
     /// Returns a checksum of the body at the start: mesh, fibres, and the files of surfaces of
     /// cuts.
@@ -80,6 +88,9 @@ class Simulation {
 
     const scenario::Scenario& scenario() const { return scenario_; }
     const sim::World& world() const { return world_; }
+    /// The same, for tools, constraints and loads beside those of the scenario. Between two steps
+    /// they may be added and moved. The world must not be stepped or restored by itself.
+    sim::World& world() { return world_; }
     const topology::Mesh& mesh() const { return world_.mesh(); }
     const physics::Model& model() const { return world_.model(); }
     const sim::Ledger& ledger() const { return world_.ledger(); }
@@ -95,10 +106,7 @@ class Simulation {
   private:
     Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy);
 
-    struct Interval {
-        double from, to;  // s
-    };
-    Interval next_step() const;
+    double next_stop() const;
     void move_tools(Interval step);
     void report_edits();
     void warn_of_short_steps(const sim::EditRecord& edit);

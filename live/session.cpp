@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/live/session.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
+#include "incise/scenario/held_tool.h"
+#include "incise/topology/mesh_metrics.h"
+
+namespace incise::live {
+
+namespace {
+
+// A session has no end of its own. More steps than a run may have take longer than this, s.
+constexpr double endless = 1e5;
+
+scenario::Scenario for_ticks(scenario::Scenario scenario, double tick, std::uint64_t num_ticks) {
+    if (!(tick > 0.0 && tick < endless))
+        throw InputError("a tick of " + std::to_string(tick) +
+                         " s is not allowed: must be above 0");
+    const bool has_end = num_ticks < static_cast<std::uint64_t>(endless / tick);
+    scenario.dynamics.end_time = has_end ? static_cast<double>(num_ticks) * tick : endless;
+    return scenario;
+}
+
+/// Load steps are ticks. Other steps divide the tick evenly.
+double steps_of_tick(const runner::StepSituation& situation) {
+    if (situation.scenario.dynamics.mode == scenario::Mode::statics) return situation.stop;
+    return runner::even_steps(situation);
+}
+
+bool is_suture(const LedTool& tool) { return tool.kind == "suture"; }
+
+}  // namespace
+
+Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_ticks)
+    : tick_(tick),
+      last_tick_(num_ticks),
+      simulation_(for_ticks(std::move(scenario), tick, num_ticks), steps_of_tick),
+      why_no_contact_(scenario::why_no_contact(simulation_.scenario().dynamics,
+                                               simulation_.scenario().contact)),
+      element_size_(topology::mean_element_length(simulation_.mesh())) {}
+
+const LedTool* Session::find(const std::string& name) const {
+    const auto found = std::ranges::find(tools_, name, &LedTool::name);
+    return found == tools_.end() ? nullptr : &*found;
+}
+
+LedTool& Session::tool(const std::string& name) {
+    const auto found = std::ranges::find(tools_, name, &LedTool::name);
+    if (found == tools_.end())
+        throw InputError("there is no tool '" + name + "' that a hand leads");
+    return *found;
+}
+
+LedTool& Session::tool_in_hand(const std::string& name) {
+    LedTool& found = tool(name);
+    if (!found.is_in_hand) throw InputError("tool '" + name + "' is not in the hand any more");
+    return found;
+}
+
+/// Tools that touch pass through nothing. The steps that this takes are limited by the world.
+void Session::require_near(const cutting::ToolShape& shape, const Pose& from,
+                           const Pose& to) const {
+    if (cutting::cuts(shape)) return;
+    constexpr double farthest = 200.0;  // elements
+    if ((to.position - from.position).norm() > farthest * element_size_)
+        throw InputError(
+            "a tool that touches tissue may not go farther than 200 elements in a tick");
+}
+
+std::vector<std::string> Session::execute(const Order& order) {
+    sim::World& world = simulation_.world();
+    std::vector<std::string> warnings;
+    std::visit(
+        [&](const auto& it) {
+            using T = std::decay_t<decltype(it)>;
+            if constexpr (std::is_same_v<T, AddTool>) {
+                warnings = add(it);
+            } else if constexpr (std::is_same_v<T, MoveTool>) {
+                move(it);
+            } else if constexpr (std::is_same_v<T, WithdrawTool>) {
+                tool_in_hand(it.name).is_to_be_withdrawn = true;
+            } else if constexpr (std::is_same_v<T, CloseGrasper>) {
+                if (world.close_grasper(tool_in_hand(it.name).id) == 0)
+                    warnings.push_back("grasper '" + it.name + "' closes on nothing");
+            } else if constexpr (std::is_same_v<T, OpenGrasper>) {
+                world.open_grasper(tool_in_hand(it.name).id);
+            } else if constexpr (std::is_same_v<T, DrawSuture>) {
+                world.set_suture_length(tool(it.name).id, it.length);
+            } else {
+                world.untie_suture(tool(it.name).id);
+            }
+        },
+        order);
+    return warnings;
+}
+
+std::vector<std::string> Session::add(const AddTool& order) {
+    sim::World& world = simulation_.world();
+    if (order.name.empty()) throw InputError("a tool needs a name");
+    for (std::size_t i = 0; i < world.num_tools(); ++i)
+        if (world.tool({i}).name == order.name)
+            throw InputError("there is a tool '" + order.name + "' already");
+    require_sound(order.pose);
+    scenario::HeldTool built = scenario::build_held_tool(
+        order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
+    LedTool tool{.name = order.name,
+                 .kind = std::move(built.kind),
+                 .definition = order.definition,
+                 .id = world.add_tool({order.name, std::move(built.shape)}),
+                 .pose = order.pose};
+    if (!is_suture(tool)) {
+        world.place_tool(tool.id, tool.pose);
+    } else if (world.tie_suture(tool.id) < 2) {
+        built.warnings.push_back("suture '" + order.name +
+                                 "' meets tissue at less than two of its "
+                                 "points: it holds nothing");
+    }
+    tools_.push_back(std::move(tool));
+    return std::move(built.warnings);
+}
+
+void Session::move(const MoveTool& order) {
+    LedTool& moved = tool_in_hand(order.name);
+    require_sound(order.pose);
+    if (is_suture(moved)) throw InputError("suture '" + order.name + "' is drawn, not moved");
+    const sim::World& world = simulation_.world();
+    require_near(world.tool(moved.id).shape, world.tool_pose(moved.id), order.pose);
+    moved.pose = order.pose;
+}
+
+void Session::tick() {
+    const double begin = world().time(), end = static_cast<double>(num_ticks_ + 1) * tick_;
+    poses_before_.clear();
+    for (LedTool& tool : tools_) {
+        poses_before_.push_back(is_suture(tool) ? Pose() : world().tool_pose(tool.id));
+        tool.force = tool.torque = Vec3::Zero();
+    }
+    while (world().time() < end) {
+        const auto step = simulation_.next_step(end);
+        lead_tools(step, begin, end);
+        simulation_.step(step);
+        add_forces(world().report().tools, (step.to - step.from) / tick_);
+    }
+    ++num_ticks_;
+}
+
+void Session::lead_tools(runner::Simulation::Interval step, double begin, double end) {
+    const bool is_last = step.to >= end;
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+        LedTool& tool = tools_[i];
+        if (!tool.is_in_hand || is_suture(tool)) continue;
+        const double part = (step.to - begin) / (end - begin);
+        simulation_.world().set_tool_pose(
+            tool.id, is_last ? tool.pose : interpolate(poses_before_[i], tool.pose, part));
+        if (!is_last || !tool.is_to_be_withdrawn) continue;
+        simulation_.world().withdraw_tool(tool.id);
+        tool.is_in_hand = tool.is_to_be_withdrawn = false;
+    }
+}
+
+void Session::add_forces(std::span<const sim::ToolState> states, double weight) {
+    for (const sim::ToolState& state : states) {
+        const auto tool = std::ranges::find(tools_, state.tool.index,
+                                            [](const LedTool& t) { return t.id.index; });
+        if (tool == tools_.end()) continue;
+        tool->force += weight * state.force;
+        tool->torque += weight * state.torque;
+    }
+}
+
+Session::Moment Session::save() const {
+    ArchiveWriter state;
+    simulation_.save(state);
+    return {num_ticks_, state.bytes(), tools_};
+}
+
+void Session::restore(const Moment& moment) {
+    ArchiveReader state(moment.state);
+    simulation_.restore(state);
+    num_ticks_ = moment.num_ticks;
+    tools_ = moment.tools;
+}
+
+std::uint64_t Session::checksum() const {
+    std::uint64_t sum = num_ticks_;
+    const auto mix = [&](double value) {
+        sum = (std::rotl(sum, 29) ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15u;
+    };
+    const auto positions = world().positions(), velocities = world().velocities();
+    for (const NodeId n : world().mesh().nodes())
+        for (int i = 0; i < 3; ++i) {
+            mix(positions[n.index()][i]);
+            mix(velocities[n.index()][i]);
+        }
+    return sum;
+}
+
+}  // namespace incise::live

@@ -1,0 +1,103 @@
+// A scenario that hands take part in: it advances tick by tick, and between two ticks tools are
+// taken, led and put away.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "incise/live/order.h"
+#include "incise/runner/simulation.h"
+#include "incise/scenario/scenario.h"
+#include "incise/sim/world.h"
+
+namespace incise::live {
+
+/// The time of a tick if nothing else is said, s.
+inline constexpr double usual_tick = 1.0 / 60.0;
+
+/// A tool that a hand has taken.
+struct LedTool {
+    std::string name, kind;
+    scenario::Value definition;
+    sim::ToolId id;
+    Pose pose;               ///< where it is to be at the end of the next tick
+    bool is_in_hand = true;  ///< until it has been withdrawn
+    bool is_to_be_withdrawn = false;
+    /// What the tissue exerts on it, mean over the last tick: N, and N m about its origin.
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
+
+/// A scenario that advances tick by tick. A tick is made of the steps that the body needs. Tools
+/// of the scenario follow their paths, and those of hands go evenly to the poses that orders say.
+///
+/// The same orders between the same ticks give the same bits, on any number of threads: that is
+/// what a recording is (recording.h).
+///
+/// A session can be moved to a state that it was in: save(), restore().
+class Session {
+  public:
+    /// Builds the body. Throws as runner::Simulation.
+    /// @param scenario   its end time does not count, nor do load steps of statics
+    /// @param tick       s, above 0
+    /// @param num_ticks  after so many the session is finished
+    explicit Session(scenario::Scenario scenario, double tick = usual_tick,
+                     std::uint64_t num_ticks = std::numeric_limits<std::uint64_t>::max());
+
+    /// Executes an order at the present time. Returns warnings. Throws InputError, and changes
+    /// nothing, if it is refused: a name that is taken or not known, an invalid definition or pose.
+    std::vector<std::string> execute(const Order& order);
+    /// Advances by one tick. Throws as runner::Simulation::step(). The session must then be
+    /// restored.
+    void tick();
+
+    std::uint64_t num_ticks() const { return num_ticks_; }
+    double tick_length() const { return tick_; }  ///< s
+    bool is_finished() const { return num_ticks_ >= last_tick_; }
+    const runner::Simulation& simulation() const { return simulation_; }
+    runner::Simulation& simulation() { return simulation_; }
+    sim::World& world() { return simulation_.world(); }
+    const sim::World& world() const { return simulation_.world(); }
+    /// Returns all tools that hands have taken so far.
+    std::span<const LedTool> tools() const { return tools_; }
+    /// Returns a tool by name, or null.
+    const LedTool* find(const std::string& name) const;
+
+    /// The state between two ticks.
+    struct Moment {
+        std::uint64_t num_ticks;
+        std::string state;
+        std::vector<LedTool> tools;
+    };
+    /// Returns the present state. Cost: as World::save().
+    Moment save() const;
+    /// Goes to a state of this session. The same bits go on. Cost: as World::restore().
+    void restore(const Moment& moment);
+
+    /// Returns a number that depends on all bits of positions and velocities. Cost: O(#nodes).
+    std::uint64_t checksum() const;
+
+  private:
+    std::vector<std::string> add(const AddTool& order);
+    void move(const MoveTool& order);
+    LedTool& tool(const std::string& name);
+    LedTool& tool_in_hand(const std::string& name);
+    void require_near(const cutting::ToolShape& shape, const Pose& from, const Pose& to) const;
+    void lead_tools(runner::Simulation::Interval step, double begin, double end);
+    void add_forces(std::span<const sim::ToolState> states, double weight);
+
+    double tick_;
+    std::uint64_t last_tick_;
+    runner::Simulation simulation_;
+    std::string why_no_contact_;
+    double element_size_;  // m, at the start
+    std::vector<LedTool> tools_;
+    std::vector<Pose> poses_before_;  // of the tools, at the beginning of the tick
+    std::uint64_t num_ticks_ = 0;
+};
+
+}  // namespace incise::live
