@@ -1,0 +1,469 @@
+// Ties the parts of the page together.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+import { Aim } from './aim.js';
+import { tissueColours } from './colours.js';
+import { Connection, socketAddress } from './connection.js';
+import { Cursor } from './cursor.js';
+import { button, element, write } from './dom.js';
+import { FieldRange } from './field.js';
+import { decodeFrame } from './frame.js';
+import { Hand } from './hand.js';
+import { Keyboard } from './keyboard.js';
+import { Legend } from './legend.js';
+import { Messages } from './messages.js';
+import { Ball } from './modes/ball.js';
+import { Grasper } from './modes/grasper.js';
+import { Scalpel } from './modes/scalpel.js';
+import { Suture } from './modes/suture.js';
+import { Overlay } from './overlay.js';
+import { Pointer } from './pointer.js';
+import { showReadings } from './readings.js';
+import { Scene } from './scene.js';
+import { Section } from './section.js';
+import { SectionPanel } from './section_panel.js';
+import { suitable } from './settings.js';
+import { Tissue } from './tissue.js';
+import { ToolPanel } from './tool_panel.js';
+import { ToolsView } from './tools_view.js';
+
+/** @typedef {import('./tool_panel.js').ModeName} ModeName */
+
+/** @type {ModeName[]} */
+const modeNames = ['look', 'scalpel', 'probe', 'grasper', 'suture', 'burr'];
+/** The kind of tool that a mode takes. @type {Record<ModeName, string>} */
+const kinds = { look: '', scalpel: 'blade', probe: 'probe', grasper: 'grasper', suture: 'suture', burr: 'carver' };
+const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
+/** Milliseconds in which a reset has to be asked for again. */
+const resetWithin = 4000;
+
+export class App {
+    /** @type {import('./types.js').Hello|null} */
+    hello = null;
+    /** @type {import('./types.js').State|null} */
+    state = null;
+    /** Numbers of frames that came. */
+    frames = 0;
+    /** @type {ModeName} */
+    modeName = 'look';
+    settings = suitable(0.005, 0.1);
+    messages = new Messages(element('messages'));
+    #legend = new Legend();
+    #overlay = new Overlay();
+    #range = new FieldRange();
+    #cursor = new Cursor();
+    #lost = false;
+    #resetAsked = 0;
+    /** @type {number[][]|null} the body that the camera was placed for */
+    #framed = null;
+    /** The newest frame that is not drawn yet. @type {import('./types.js').Frame|null} */
+    #frame = null;
+    #stateIsNew = false;
+
+    /** @param {boolean} low for slow machines */
+    constructor(low) {
+        this.scene = new Scene(element('stage'), low);
+        this.tissue = new Tissue(low);
+        this.scene.three.add(this.tissue.mesh);
+        this.section = new Section(this.scene.three, this.tissue, this.scene.box, low);
+        this.toolsView = new ToolsView(low);
+        this.scene.three.add(this.toolsView.group);
+        this.aim = new Aim(this.scene, this.tissue, this.section);
+        this.hand = new Hand((order) => this.send(order));
+        const bench = {
+            aim: this.aim,
+            hand: this.hand,
+            settings: this.settings,
+            diagonal: () => this.scene.diagonal,
+            state: () => this.state,
+            send: (/** @type {Record<string, unknown>} */ order) => void this.send(order),
+            changed: () => this.#changed(),
+        };
+        this.suture = new Suture(bench);
+        /** @type {Record<ModeName, import('./modes/mode.js').Mode|null>} */
+        this.modes = {
+            look: null,
+            scalpel: new Scalpel(bench),
+            probe: new Ball(bench, 'probe', 'probe', 'press'),
+            grasper: new Grasper(bench),
+            suture: this.suture,
+            burr: new Ball(bench, 'carver', 'burr', 'bite'),
+        };
+        this.toolPanel = new ToolPanel(this.settings, this.suture);
+        this.sectionPanel = new SectionPanel(
+            this.section,
+            () => this.scene.viewDirection,
+            () => this.#changed()
+        );
+        this.pointer = new Pointer(this.scene, {
+            mode: () => this.mode,
+            allowed: () => this.isOperator,
+            inUse: () => !this.hand.isEmpty,
+        });
+        this.keyboard = new Keyboard(this.#commands(), () => this.scene.invalidate());
+        this.#bindButtons();
+        this.setMode('look');
+        this.scene.beforeEach((seconds) => this.#beforePicture(seconds));
+        this.scene.afterEach(() => this.#overlay.update(this.scene));
+        this.connection = new Connection(socketAddress(), {
+            opened: () => this.#opened(),
+            told: (message) => this.#told(message),
+            framed: (message) => this.#framedBy(message),
+            lost: () => this.#connectionLost(),
+        });
+    }
+
+    get mode() {
+        return this.modes[this.modeName];
+    }
+
+    get isOperator() {
+        return this.hello?.role === 'operator' && this.connection.isOpen;
+    }
+
+    /** @param {Record<string, unknown>} order */
+    send(order) {
+        return this.connection.send(order);
+    }
+
+    // ---- what the server says
+
+    #opened() {
+        if (this.#lost) this.messages.show('info', 'The connection is back.');
+        this.#lost = false;
+        this.#showStatus();
+    }
+
+    #connectionLost() {
+        if (!this.#lost) this.messages.show('error', 'The connection to the program is lost. This page tries again every second.');
+        this.#lost = true;
+        this.#letGo();
+        this.hello = null;
+        this.#showStatus();
+    }
+
+    /** Forgets what was in the hand, without an order. */
+    #letGo() {
+        this.hand.forget();
+        this.pointer.stop();
+        this.suture.forget();
+        this.#cursor.hide();
+    }
+
+    /** @param {any} message */
+    #told(message) {
+        if (message.type === 'progress') {
+            write('loading-text', message.text);
+            element('loading').hidden = false;
+        } else if (message.type === 'hello') this.#greeted(message);
+        else if (message.type === 'state') {
+            this.state = message;
+            this.#stateIsNew = true;
+            if (this.hand.tool && !message.tools.some((/** @type {any} */ tool) => tool.mine)) this.#missing();
+            else this.#missed = 0;
+            this.scene.invalidate();
+        } else if (message.type === 'message') this.messages.show(message.level, message.text);
+    }
+
+    #missed = 0;
+
+    /** The server may not know the tool yet, or it took the tool away: for instance in an undo. */
+    #missing() {
+        if (++this.#missed < 30) return;
+        this.#missed = 0;
+        this.#letGo();
+    }
+
+    /** @param {import('./types.js').Hello} hello */
+    #greeted(hello) {
+        this.#letGo();
+        this.hello = hello;
+        this.scene.box.min.fromArray(hello.size[0]);
+        this.scene.box.max.fromArray(hello.size[1]);
+        if (JSON.stringify(this.#framed) !== JSON.stringify(hello.size)) {
+            this.#framed = hello.size;
+            this.scene.frame(hello.size);
+            Object.assign(this.settings, suitable(hello.element_size, this.scene.diagonal));
+        }
+        this.tissue.setBody(hello);
+        this.toolsView.setSize(this.scene.diagonal);
+        this.toolPanel.setBody(hello.element_size, this.scene.diagonal);
+        write('title', hello.title || 'Incise');
+        document.title = hello.title ? `${hello.title} – Incise` : 'Incise';
+        this.#showFields();
+        const token = location.search;
+        element('get-record').hidden = !hello.recording;
+        element('get-record').setAttribute('href', `/recording.jsonl${token}`);
+        element('get-frame').setAttribute('href', `/frame.vtu${token}`);
+        for (const one of this.#modeButtons()) {
+            const kind = kinds[/** @type {ModeName} */ (one.dataset.mode)];
+            one.hidden = (kind !== '' && !hello.kinds.includes(kind)) || (kind === 'probe' && !hello.has_contact);
+        }
+        this.#changed();
+        this.#showStatus();
+    }
+
+    /** @param {ArrayBuffer} message */
+    #framedBy(message) {
+        const frame = decodeFrame(message);
+        ++this.frames;
+        // A frame that only moves the surface must not displace one that brings its triangles.
+        if (this.#frame?.topology && !frame.topology) this.tissue.setFrame(this.#frame);
+        this.#frame = frame;
+        this.scene.invalidate();
+    }
+
+    // ---- before each picture
+
+    /** @param {number} seconds @returns {boolean} wants another picture */
+    #beforePicture(seconds) {
+        let again = this.keyboard.move(seconds);
+        this.#takeFrame();
+        if (this.mode && !this.hand.isEmpty && this.mode.step(seconds)) again = true;
+        this.hand.flush();
+        if (this.#stateIsNew && this.state) {
+            showReadings(this.state, this.isOperator);
+            this.#showStatus();
+            if (this.modeName === 'suture') this.toolPanel.showThread();
+        }
+        this.#stateIsNew = false;
+        this.section.update();
+        this.#showTools();
+        return again;
+    }
+
+    #takeFrame() {
+        const frame = this.#frame;
+        this.#frame = null;
+        if (!frame || !this.tissue.setFrame(frame)) return;
+        element('loading').hidden = true;
+        const name = this.state?.field ?? 'none';
+        const coloured = frame.values !== null && name !== 'none';
+        if (frame.values && coloured) {
+            this.#range.follow(name, frame.values, performance.now());
+            this.tissue.uniforms.low.value = this.#range.low;
+            this.tissue.uniforms.high.value = this.#range.high;
+            const unit = this.hello?.fields.find((field) => field.name === name)?.unit ?? '';
+            this.#legend.show(name, unit, this.#range);
+        } else this.#legend.hide();
+        if (this.tissue.uniforms.coloured.value === Number(coloured)) return;
+        this.tissue.uniforms.coloured.value = Number(coloured);
+        this.#colourCap();
+    }
+
+    #colourCap() {
+        const first = this.hello?.regions[0]?.name ?? '';
+        const plain = this.tissue.uniforms.coloured.value > 0.5;
+        this.section.setColour(plain ? 0x6f7780 : tissueColours(first, 0).cut);
+    }
+
+    #showTools() {
+        const at = this.#cursor.at ?? this.pointer.at;
+        let wanted = null;
+        if (this.hand.tool && this.hand.pose) wanted = this.#lagging(this.hand.tool, this.hand.pose);
+        else if (this.isOperator && at && this.mode) wanted = this.mode.preview(at.x, at.y);
+        this.toolsView.update({ tools: this.state?.tools ?? [], wanted }, this.scene.camera);
+        const tied = (this.state?.tools ?? []).filter((tool) => tool.kind === 'suture' && tool.present);
+        this.toolsView.showThreads(
+            tied.map((tool) => (tool.tool?.points ?? []).map((point) => this.tissue.positionOfRest(point))),
+            this.suture.points.map((point) => this.tissue.positionOfRest(point))
+        );
+        this.#cursor.holds = !this.hand.isEmpty;
+        this.#cursor.show();
+    }
+
+    /**
+     * The tool where the hand wants it, if the simulation has not followed yet.
+     * @param {import('./types.js').ToolDefinition} tool @param {import('./types.js').Pose} pose
+     */
+    #lagging(tool, pose) {
+        const followed = this.state?.tools.find((one) => one.mine && one.present)?.pose;
+        const away = followed ? Math.hypot(...pose.at.map((value, i) => value - followed.at[i])) : Infinity;
+        return away > 0.015 * this.scene.diagonal ? { tool, pose } : null;
+    }
+
+    // ---- what the user does
+
+    /** Something that is drawn or listed has changed. */
+    #changed() {
+        this.toolPanel.show();
+        this.#colourCap();
+        this.scene.invalidate();
+    }
+
+    /** @param {ModeName} name */
+    setMode(name) {
+        this.pointer.stop();
+        if (!this.hand.isEmpty) this.mode?.end();
+        this.modeName = name;
+        this.#cursor.hide();
+        for (const one of this.#modeButtons()) one.setAttribute('aria-pressed', String(one.dataset.mode === name));
+        this.toolPanel.setMode(name);
+        this.pointer.arrange();
+        this.scene.invalidate();
+    }
+
+    #modeButtons() {
+        return /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll('[data-mode]')]);
+    }
+
+    #bindButtons() {
+        for (const one of this.#modeButtons())
+            one.onclick = (event) => {
+                this.setMode(/** @type {ModeName} */ (one.dataset.mode));
+                // After a click of the mouse the keys belong to the picture.
+                if (event.detail > 0) this.scene.canvas.focus({ preventScroll: true });
+            };
+        const commands = this.#commands();
+        button('pause').onclick = commands.pause;
+        button('step').onclick = commands.step;
+        button('undo').onclick = commands.undo;
+        button('reset').onclick = commands.reset;
+        button('slower').onclick = () => commands.speed(false);
+        button('faster').onclick = () => commands.speed(true);
+        button('help-button').onclick = commands.help;
+        button('take-over').onclick = () => this.send({ do: 'take_over' });
+        button('more').onclick = () => {
+            const open = element('settings').classList.toggle('open');
+            button('more').setAttribute('aria-expanded', String(open));
+        };
+        const field = /** @type {HTMLSelectElement} */ (element('field'));
+        field.onchange = () => this.send({ do: 'show', field: field.value });
+        addEventListener('blur', () => this.pointer.stop());
+    }
+
+    #showFields() {
+        const list = /** @type {HTMLSelectElement} */ (element('field'));
+        list.replaceChildren(
+            ...(this.hello?.fields ?? []).map(({ name }) => {
+                const option = document.createElement('option');
+                option.value = name;
+                option.textContent = name === 'none' ? 'tissue' : name.replace(/_/g, ' ');
+                return option;
+            })
+        );
+    }
+
+    /** @returns {import('./keyboard.js').Commands} */
+    #commands() {
+        const send = (/** @type {Record<string, unknown>} */ order) => void this.send(order);
+        return {
+            mode: (index) => {
+                if (this.#modeButtons()[index]?.hidden) return;
+                this.setMode(modeNames[index]);
+                this.scene.canvas.focus({ preventScroll: true });
+            },
+            pause: () => send({ do: 'pause', on: !this.state?.paused }),
+            step: () => send({ do: 'step' }),
+            undo: () => {
+                if (!this.state?.can_undo) return;
+                this.#letGo();
+                send({ do: 'undo' });
+            },
+            reset: () => this.#askReset(),
+            speed: (up) => {
+                const now = this.state?.speed ?? 1;
+                const next = up ? speeds.find((one) => one > now * 1.01) : speeds.findLast((one) => one < now * 0.99);
+                if (next) send({ do: 'speed', factor: next });
+            },
+            section: () => this.sectionPanel.toggle(),
+            field: () => {
+                const names = (this.hello?.fields ?? []).map((field) => field.name);
+                const next = names[(names.indexOf(this.state?.field ?? 'none') + 1) % names.length];
+                if (next) send({ do: 'show', field: next });
+            },
+            help: () => /** @type {HTMLDialogElement} */ (element('help')).showModal(),
+            enter: () => this.#enter(),
+            back: () => this.modeName === 'suture' && this.suture.back(),
+            escape: () => {
+                this.pointer.stop();
+                if (!this.hand.isEmpty) this.mode?.end();
+                this.suture.forget();
+                this.#cursor.hide();
+                this.#changed();
+            },
+            deepen: (notches) => void this.mode?.deepen(notches),
+            moveCursor: (x, y) => this.#moveCursor(x, y),
+        };
+    }
+
+    /** Takes the tool at the cursor, or drops it; ties a thread whose points are laid by the mouse. */
+    #enter() {
+        const { mode } = this;
+        if (!mode || !this.isOperator) return false;
+        if (mode === this.suture && (!this.#cursor.at || this.#closesThread())) return this.suture.tie();
+        if (!this.hand.isEmpty) {
+            mode.end();
+            return true;
+        }
+        const at = this.#cursor.at;
+        if (!at) {
+            this.#moveCursor(0, 0);
+            return true;
+        }
+        mode.begin(at.x, at.y);
+        return true;
+    }
+
+    /** With the keyboard, Enter twice at the same point ties the thread. */
+    #closesThread() {
+        const at = this.#cursor.at;
+        const last = this.suture.points.at(-1);
+        const hit = at && this.aim.pick(at.x, at.y);
+        const rest = hit && this.tissue.restOfHit(hit);
+        if (!rest || !last || this.suture.points.length < 2) return false;
+        return Math.hypot(...rest.map((value, i) => value - last[i])) < 0.004 * this.scene.diagonal;
+    }
+
+    /** @param {number} x @param {number} y pixels */
+    #moveCursor(x, y) {
+        if (!this.mode) return false;
+        const middle = this.scene.onScreen(this.scene.controls.target);
+        this.#cursor.move(x, y, this.pointer.at ?? middle, this.scene.canvas.getBoundingClientRect());
+        const { at } = this.#cursor;
+        if (at && !this.hand.isEmpty) this.mode.move(at.x, at.y);
+        this.scene.invalidate();
+        return true;
+    }
+
+    #askReset() {
+        if (!this.isOperator) return;
+        const now = performance.now();
+        const sure = now - this.#resetAsked < resetWithin;
+        this.#resetAsked = sure ? 0 : now;
+        if (sure) this.send({ do: 'reset' });
+        else setTimeout(() => this.#showReset(), resetWithin + 50);
+        this.#showReset();
+    }
+
+    #showReset() {
+        const asks = this.#resetAsked > 0 && performance.now() - this.#resetAsked < resetWithin;
+        element('reset-ask').hidden = !asks;
+        button('reset').classList.toggle('asks', asks);
+        button('reset').setAttribute('aria-label', asks ? 'Press again to reset' : 'Reset');
+    }
+
+    #showStatus() {
+        const watching = this.hello?.role === 'watcher';
+        const [status, text] = this.#lost
+            ? ['lost', 'Connection lost']
+            : !this.hello
+              ? ['loading', 'Loading']
+              : watching
+                ? ['watching', 'Watching']
+                : this.state?.paused
+                  ? ['paused', 'Paused']
+                  : ['running', 'Running'];
+        element('status').dataset.status = status;
+        write('status', text);
+        const notice = element('notice');
+        notice.hidden = !(this.#lost || watching);
+        notice.classList.toggle('lost', this.#lost);
+        button('take-over').hidden = this.#lost;
+        write('notice-text', this.#lost ? 'Connection lost. Trying again …' : watching ? 'Another page holds the tools' : '');
+        for (const one of this.#modeButtons()) one.disabled = !this.isOperator && one.dataset.mode !== 'look';
+        const field = /** @type {HTMLSelectElement} */ (element('field'));
+        field.disabled = !this.isOperator;
+        if (this.state && document.activeElement !== field) field.value = this.state.field;
+        if (watching && this.modeName !== 'look') this.setMode('look');
+    }
+}

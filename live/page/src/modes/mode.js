@@ -1,0 +1,53 @@
+// What the modes have in common. A mode turns a drag over the page into orders.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+
+/**
+ * What a mode works with.
+ * @typedef {Object} Bench
+ * @property {import('../aim.js').Aim} aim
+ * @property {import('../hand.js').Hand} hand
+ * @property {import('../settings.js').Settings} settings
+ * @property {() => number} diagonal of the body, m
+ * @property {() => import('../types.js').State|null} state
+ * @property {(order: Record<string, unknown>) => void} send
+ * @property {() => void} changed the settings or the marks changed
+ */
+
+export class Mode {
+    /** True if the wheel is the mode's even without a drag. */
+    wheelsWhenIdle = false;
+
+    /** @param {Bench} bench */
+    constructor(bench) {
+        this.bench = bench;
+    }
+
+    /** The drag begins. @param {number} _x @param {number} _y */
+    begin(_x, _y) {}
+
+    /** @param {number} _x @param {number} _y */
+    move(_x, _y) {}
+
+    /** Once a picture while the tool is in the hand. Returns true if it wants another. @param {number} _seconds */
+    step(_seconds) {
+        return false;
+    }
+
+    /** Deeper (positive) or higher, by notches of a wheel. @param {number} _notches @returns {boolean} used */
+    deepen(_notches) {
+        return false;
+    }
+
+    end() {
+        this.bench.hand.drop();
+    }
+
+    /**
+     * What would be taken here, to be shown before the drag.
+     * @param {number} _x @param {number} _y
+     * @returns {{tool: import('../types.js').ToolDefinition, pose: import('../types.js').Pose}|null}
+     */
+    preview(_x, _y) {
+        return null;
+    }
+}

@@ -1,0 +1,31 @@
+// The numbers that are always shown.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+import { button, element, write } from './dom.js';
+import { area, whole, withUnit } from './format.js';
+
+/** Share of the wanted speed below which the speed is shown as a warning. */
+const enough = 0.95;
+
+/** @param {import('./types.js').State} state @param {boolean} operator */
+export function showReadings(state, operator) {
+    write('time', `${state.time.toFixed(2)} s`);
+    const factor = state.paused ? 'paused' : `${state.factor.toFixed(2)} × real time`;
+    write('factor', factor);
+    element('factor').classList.toggle('slow', !state.paused && state.factor < enough * Math.min(1, state.speed));
+    element('factor').title = `steps of ${withUnit(state.step * 1000, '')} ms; wanted speed ${state.speed}`;
+    const tool = state.tools.find((one) => one.mine && one.present);
+    write('force', tool?.force ? withUnit(Math.hypot(...tool.force), 'N') : '–');
+    write('opened', area(state.cut_area));
+    write('pieces', whole(state.components));
+    element('pieces').classList.toggle('many', state.components > 1);
+    write('elements', whole(state.elements));
+    write('edits', whole(state.edits));
+
+    write('speed', `${Number(state.speed.toPrecision(2))}×`);
+    const pause = button('pause');
+    pause.setAttribute('aria-pressed', String(state.paused));
+    pause.disabled = !operator;
+    button('step').disabled = !operator || !state.paused;
+    button('undo').disabled = !operator || !state.can_undo;
+    for (const id of ['reset', 'slower', 'faster']) button(id).disabled = !operator;
+}
