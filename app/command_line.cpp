@@ -22,7 +22,7 @@ namespace {
 
 using Action = std::function<int()>;
 
-constexpr std::string_view verbs[] = {"run",  "check",     "info",   "cut",    "convert",
+constexpr std::string_view verbs[] = {"run",  "live",      "check",  "info",   "cut",  "convert",
                                       "mesh", "materials", "render", "report", "bench"};
 
 constexpr const char* description =
@@ -34,6 +34,7 @@ constexpr const char* footer =
     "  incise check liver.toml                           find every problem of a scenario\n"
     "  incise run liver.toml                             simulate it; frames go to liver.out\n"
     "  incise run liver.toml --set material[0].young=2e3 the same with one number changed\n"
+    "  incise live liver.toml                            cut it by hand, in the browser\n"
     "  incise info liver.vtu --json                      size, regions and quality of a mesh\n"
     "  incise cut liver.vtu --out halves.vtu --plane 0,0,0,1,0,0\n"
     "                                                    a cut without dynamics\n"
@@ -61,7 +62,8 @@ void declare_run(CLI::App& app, Action& action) {
         ->type_name("PATH");
     verb->add_option("--out", options->out, "Folder for the results (default: NAME.out)")
         ->type_name("PATH");
-    verb->add_option("--end-time", options->end_time, "Stop at this simulated time, in seconds");
+    auto* end_time = verb->add_option("--end-time", options->end_time,
+                                      "Stop at this simulated time, in seconds");
     verb->add_option("--set", options->overrides, "Change a value of the scenario; repeatable")
         ->type_name("KEY.PATH=VALUE")
         ->expected(1)
@@ -75,6 +77,12 @@ void declare_run(CLI::App& app, Action& action) {
         "Go on with a run that was stopped, from its last checkpoint, to the same files as if it "
         "had not been; with the SCENARIO, --out and --set that it began with. A later end makes a "
         "finished run longer. Begin if nothing is there");
+    verb->add_option("--replay", options->replay,
+                     "Do what hands did in a session of incise live, from its recording, to the "
+                     "same bits; the folder is then named after the recording")
+        ->type_name("FILE")
+        ->excludes(resume)
+        ->excludes(end_time);
     verb->add_flag("--force", options->force, "Replace another run that is in the folder")
         ->excludes(resume);
     verb->add_flag("--dry-run", options->dry_run, "Do everything but simulate and write");
@@ -84,8 +92,50 @@ void declare_run(CLI::App& app, Action& action) {
         "  incise run liver.toml --out results --end-time 0.5\n"
         "  incise run liver.toml --set dynamics.damping=2 --set material[0].young=2e3\n"
         "  incise run liver.toml --out results --end-time 0.5 --resume\n"
+        "  incise run liver.toml --replay hands.jsonl\n"
         "Elements of lists are counted from 0.");
     verb->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+void declare_live(CLI::App& app, Action& action) {
+    auto options = std::make_shared<LiveOptions>();
+    auto* verb = app.add_subcommand("live", "Simulate in real time, with hands in the browser");
+    verb->add_option("SCENARIO", options->scenario, "Scenario file (.toml)")
+        ->required()
+        ->type_name("PATH");
+    verb->add_option("--port", options->port, "Port of the page; 0 for any that is free")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535).description(""))
+        ->capture_default_str();
+    verb->add_option("--host", options->host,
+                     "Address to listen on. With another one than that of this machine itself, "
+                     "whoever has the address of the page can use it")
+        ->type_name("ADDRESS")
+        ->capture_default_str();
+    verb->add_option("--record", options->record,
+                     "Write what hands do to this file, for incise run --replay")
+        ->type_name("FILE.jsonl");
+    verb->add_flag("--force", options->force, "Replace a recording that is there");
+    verb->add_option("--set", options->overrides, "Change a value of the scenario; repeatable")
+        ->type_name("KEY.PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    verb->add_option("--threads", options->num_threads,
+                     "How many threads compute (default: one a core); results are the same bits")
+        ->type_name("N")
+        ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
+    verb->add_flag_callback(
+        "--no-open", [options] { options->open = false; },
+        "Do not open the page, only print its address");
+    verb->footer(
+        "Prints the address of the page, and runs until Ctrl-C. The page works over a forwarded\n"
+        "port too: ssh -L 8080:localhost:8080 HOST.\n"
+        "\n"
+        "Examples:\n"
+        "  incise live liver.toml\n"
+        "  incise live liver.toml --record hands.jsonl\n"
+        "  incise run liver.toml --replay hands.jsonl        the same again, with frames to keep");
+    verb->callback([options, &action] { action = [options] { return live(*options); }; });
 }
 
 void declare_bench(CLI::App& app, Action& action) {
@@ -371,6 +421,7 @@ int dispatch(int argc, const char* const* argv) {
     app.set_version_flag("--version", "incise " INCISE_VERSION);
     app.require_subcommand(1);
     declare_run(app, action);
+    declare_live(app, action);
     declare_check(app, action);
     declare_info(app, action);
     declare_cut(app, action);

@@ -14,6 +14,7 @@ namespace incise::app {
 std::string run_command(const RunOptions& options) {
     std::string text = "incise run " + shell_word(options.scenario.string());
     if (options.out) text += " --out " + shell_word(options.out->string());
+    if (options.replay) text += " --replay " + shell_word(options.replay->string());
     if (options.end_time) text += " --end-time " + io::format_number(*options.end_time);
     for (const std::string& value : options.overrides) text += " --set " + shell_word(value);
     if (options.num_threads > 0) text += " --threads " + std::to_string(options.num_threads);

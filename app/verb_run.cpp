@@ -22,6 +22,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
+#include "incise/live/recording.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/runner/kept_scenario.h"
 #include "incise/runner/run_writer.h"
@@ -84,11 +85,60 @@ int num_threads(const RunOptions& options) {
     return physics::Workers::num_cores();
 }
 
+/// What advances a simulation: its scenario, or a recording of what hands did.
+class Course {
+  public:
+    virtual ~Course() = default;
+    virtual runner::Simulation& simulation() = 0;
+    virtual void advance() = 0;  ///< by a step or a tick
+    /// Returns what is wrong at the end.
+    virtual std::optional<std::string> complaint() { return std::nullopt; }
+};
+
+class OfScenario : public Course {
+  public:
+    explicit OfScenario(const scenario::Scenario& scenario) : simulation_(scenario) {}
+    runner::Simulation& simulation() override { return simulation_; }
+    void advance() override { simulation_.step(); }
+
+  private:
+    runner::Simulation simulation_;
+};
+
+class OfRecording : public Course {
+  public:
+    OfRecording(scenario::Scenario scenario, live::Recording recording, const RunOptions& options)
+        : file_(*options.replay),
+          replay_(without_checkpoints(std::move(scenario)), std::move(recording),
+                  !options.overrides.empty()) {}
+    runner::Simulation& simulation() override { return replay_.session().simulation(); }
+    void advance() override { replay_.tick(); }
+    std::optional<std::string> complaint() override {
+        const auto tick = replay_.first_difference();
+        if (!tick) return std::nullopt;
+        return file_.string() + ": from tick " + std::to_string(*tick) + " on, t = " +
+               io::format_number(static_cast<double>(*tick) * replay_.session().tick_length()) +
+               " s, the body is not as it was in the session: the scenario, the program or the "
+               "processor is another";
+    }
+
+  private:
+    /// A checkpoint does not say what hands were about to do.
+    static scenario::Scenario without_checkpoints(scenario::Scenario scenario) {
+        scenario.output.checkpoint_interval = 0.0;
+        return scenario;
+    }
+    std::filesystem::path file_;
+    live::Replay replay_;
+};
+
 /// Builds the simulation. Messages of errors name the scenario.
-std::unique_ptr<runner::Simulation> build(const scenario::Scenario& scenario,
-                                          const std::filesystem::path& file) {
+std::unique_ptr<Course> build(scenario::Scenario scenario, const RunOptions& options,
+                              std::optional<live::Recording> recording) {
+    const std::filesystem::path& file = options.scenario;
     try {
-        return std::make_unique<runner::Simulation>(scenario);
+        if (!recording) return std::make_unique<OfScenario>(scenario);
+        return std::make_unique<OfRecording>(std::move(scenario), std::move(*recording), options);
     } catch (const scenario::BodyError& error) {
         for (const std::string& warning : error.warnings) print_warning(warning);
         throw;
@@ -207,8 +257,9 @@ int print_expectations(const scenario::Scenario& scenario, const runner::Quantit
 
 /// Runs the simulation from its present state to the end or to a signal. Returns the exit status.
 /// @param is_new  nothing of the run has been written yet
-int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& writer,
-             const RunOptions& options, const StopSignals& signals) {
+int simulate(Course& course, bool is_new, runner::RunWriter& writer, const RunOptions& options,
+             const StopSignals& signals) {
+    runner::Simulation& simulation = course.simulation();
     const scenario::Scenario& scenario = simulation.scenario();
     ProgressObserver progress(scenario.dynamics.end_time, options.quiet);
     simulation.add_observer(writer);
@@ -238,18 +289,19 @@ int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& wri
     };
     try {
         if (is_new) simulation.start();
-        while (!simulation.is_finished() && signals.noted() == 0) simulation.step();
+        while (!simulation.is_finished() && signals.noted() == 0) course.advance();
     } catch (const PhysicsError& error) {
         throw PhysicsError(failure(error, simulation.num_steps() + 1));
     } catch (const InputError& error) {  // a tool has met something that it cannot cut
         throw InputError(failure(error, simulation.num_steps()));
     }
     if (!simulation.is_finished()) {
-        writer.take_checkpoint(simulation, runner::CheckpointKind::of_a_stop);
+        const bool can_resume = !options.replay;
+        if (can_resume) writer.take_checkpoint(simulation, runner::CheckpointKind::of_a_stop);
         finish({"interrupted", "stopped by a signal"});
         print_error("stopped at t = " + io::format_number(simulation.time()) +
                     " s; what was written so far is in " + writer.main_result().string() +
-                    "; to go on: " + resuming_command(options));
+                    (can_resume ? "; to go on: " + resuming_command(options) : ""));
         return 128 + signals.noted();
     }
     const auto idle_tools = warnings_of_idle_tools(simulation);
@@ -264,7 +316,13 @@ int simulate(runner::Simulation& simulation, bool is_new, runner::RunWriter& wri
                   << duration_text(watch.seconds()) << ", " << simulation.edits().size()
                   << " edits, " << writer.num_frames() << " frames\n";
     std::cout << writer.main_result().string() << '\n';
-    return print_expectations(scenario, runner::summary_quantities(simulation));
+    // What a scenario expects, it expects without hands.
+    const int status = options.replay
+                           ? done
+                           : print_expectations(scenario, runner::summary_quantities(simulation));
+    const auto complaint = course.complaint();
+    if (complaint) print_error(*complaint);
+    return complaint ? missed_expectation : status;
 }
 
 }  // namespace
@@ -274,11 +332,14 @@ int run(const RunOptions& options) {
                               (options.resume ? "it went on; nothing has been changed; to go on: " +
                                                     resuming_command(options)
                                               : "its first step; nothing has been written"));
-    auto overrides = options.overrides;
+    std::optional<live::Recording> recording;
+    if (options.replay) recording = live::read_recording(*options.replay);
+    auto overrides = recording ? recording->scenario.overrides : std::vector<std::string>();
+    overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
     if (options.end_time)
         overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
     const std::filesystem::path folder =
-        options.out.value_or(options.scenario.stem().string() + ".out");
+        options.out.value_or(options.replay.value_or(options.scenario).stem().string() + ".out");
     const auto refusal = options.resume ? std::nullopt : refusal_of(folder);
     const scenario::Scenario scenario =
         with_refusal(refusal, [&] { return load_scenario(options.scenario, overrides); });
@@ -309,8 +370,9 @@ int run(const RunOptions& options) {
         std::cerr << scenario.name << ": begins, as there is nothing to resume in "
                   << folder.string() << '\n';
 
-    const auto built = with_refusal(refusal, [&] { return build(scenario, options.scenario); });
-    runner::Simulation& simulation = *built;
+    const auto course =
+        with_refusal(refusal, [&] { return build(scenario, options, std::move(recording)); });
+    runner::Simulation& simulation = course->simulation();
     if (!options.dry_run && !refusal) simulation.set_num_threads(num_threads(options));
     if (stopped) stopped->checkpoint.restore(simulation);
     for (const std::string& warning : simulation.warnings()) print_warning(warning);
@@ -328,7 +390,7 @@ int run(const RunOptions& options) {
                                                            stopped->checkpoint.written())
                                        : runner::RunWriter(simulation, folder);
     try {
-        return simulate(simulation, !stopped, writer, options, signals);
+        return simulate(*course, !stopped, writer, options, signals);
     } catch (const OutputError& error) {
         if (!writer.has_checkpoint()) throw;
         throw OutputError(std::string(error.what()) +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,14 +29,28 @@ struct RunOptions {
     std::filesystem::path scenario;
     std::optional<std::filesystem::path> out;
     std::optional<double> end_time;
-    std::vector<std::string> overrides;  ///< KEY.PATH=VALUE; see scenario::read_scenario()
-    int num_threads = 0;                 ///< 0: one for each core
+    std::vector<std::string> overrides;           ///< KEY.PATH=VALUE; see scenario::read_scenario()
+    int num_threads = 0;                          ///< 0: one for each core
+    std::optional<std::filesystem::path> replay;  ///< a recording of incise live, to play again
     bool resume = false;
     bool force = false;  ///< replace another run in the folder
     bool dry_run = false;
     bool quiet = false;
 };
 int run(const RunOptions& options);
+
+struct LiveOptions {
+    std::filesystem::path scenario;
+    std::string host = "127.0.0.1";
+    std::uint16_t port = 8080;  ///< 0: any that is free
+    std::optional<std::filesystem::path> record;
+    std::vector<std::string> overrides;  ///< KEY.PATH=VALUE; see scenario::read_scenario()
+    int num_threads = 0;                 ///< 0: one for each core
+    bool open = true;                    ///< open the page in the browser of the desktop
+    bool force = false;                  ///< replace the recording if it is there
+};
+/// Runs until a signal. Returns 128 + signal.
+int live(const LiveOptions& options);
 
 struct BenchOptions {
     std::optional<std::filesystem::path> json;  ///< "-" for standard output

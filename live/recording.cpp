@@ -136,22 +136,18 @@ void Recorder::append(const std::string& line) {
     if (file_) file_->append(line);
 }
 
-void Recorder::note(const Order& order) { orders_.push_back(to_json(order)); }
-
 void Recorder::note_tick(const Session& session) {
     std::string line = "{\"tick\":" + std::to_string(session.num_ticks() - 1);
-    if (!orders_.empty()) {
+    if (const auto orders = session.orders_of_last_tick(); !orders.empty()) {
         line += ",\"orders\":[";
-        for (const std::string& order : orders_)
-            line += (&order == &orders_.front() ? "" : ",") + order;
+        for (const Order& order : orders)
+            line += (&order == &orders.front() ? "" : ",") + to_json(order);
         line += ']';
-        orders_.clear();
     }
     append(line + ",\"state\":\"" + hex(session.checksum()) + "\"}");
 }
 
 void Recorder::note_return(const Session& session) {
-    orders_.clear();
     append("{\"back_to\":" + std::to_string(session.num_ticks()) + "}");
 }
 

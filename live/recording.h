@@ -54,9 +54,7 @@ class Recorder {
     Recorder(const Session& session, const std::vector<std::string>& overrides,
              const std::string& version, std::optional<std::filesystem::path> file);
 
-    /// Notes an order that was executed before the next tick.
-    void note(const Order& order);
-    /// Notes a tick of the session. Throws OutputError.
+    /// Notes a tick of the session, with the orders before it. Throws OutputError.
     void note_tick(const Session& session);
     /// Notes that the session went back. Throws OutputError.
     void note_return(const Session& session);
@@ -71,7 +69,6 @@ class Recorder {
     std::optional<std::filesystem::path> path_;
     std::optional<io::LineFile> file_;
     std::string text_;
-    std::vector<std::string> orders_;  // of the next tick, as JSON
 };
 
 /// A session that does what was recorded.

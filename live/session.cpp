@@ -97,6 +97,7 @@ std::vector<std::string> Session::execute(const Order& order) {
             }
         },
         order);
+    orders_.push_back(order);
     return warnings;
 }
 
@@ -148,6 +149,7 @@ void Session::tick() {
         add_forces(world().report().tools, (step.to - step.from) / tick_);
     }
     ++num_ticks_;
+    last_orders_ = std::exchange(orders_, {});
 }
 
 void Session::lead_tools(runner::Simulation::Interval step, double begin, double end) {
@@ -177,7 +179,7 @@ void Session::add_forces(std::span<const sim::ToolState> states, double weight) 
 Session::Moment Session::save() const {
     ArchiveWriter state;
     simulation_.save(state);
-    return {num_ticks_, state.bytes(), tools_};
+    return {num_ticks_, state.bytes(), tools_, orders_};
 }
 
 void Session::restore(const Moment& moment) {
@@ -185,6 +187,8 @@ void Session::restore(const Moment& moment) {
     simulation_.restore(state);
     num_ticks_ = moment.num_ticks;
     tools_ = moment.tools;
+    orders_ = moment.orders;
+    last_orders_.clear();
 }
 
 std::uint64_t Session::checksum() const {

@@ -57,11 +57,17 @@ class Session {
 
     std::uint64_t num_ticks() const { return num_ticks_; }
     double tick_length() const { return tick_; }  ///< s
+    /// Returns the mean length of an element at the start, m.
+    double element_size() const { return element_size_; }
+    /// True if tools can touch tissue.
+    bool has_contact() const { return why_no_contact_.empty(); }
     bool is_finished() const { return num_ticks_ >= last_tick_; }
     const runner::Simulation& simulation() const { return simulation_; }
     runner::Simulation& simulation() { return simulation_; }
     sim::World& world() { return simulation_.world(); }
     const sim::World& world() const { return simulation_.world(); }
+    /// Returns the orders that were executed before the last tick, since the tick before it.
+    std::span<const Order> orders_of_last_tick() const { return last_orders_; }
     /// Returns all tools that hands have taken so far.
     std::span<const LedTool> tools() const { return tools_; }
     /// Returns a tool by name, or null.
@@ -72,6 +78,7 @@ class Session {
         std::uint64_t num_ticks;
         std::string state;
         std::vector<LedTool> tools;
+        std::vector<Order> orders;  ///< executed since the last tick
     };
     /// Returns the present state. Cost: as World::save().
     Moment save() const;
@@ -94,9 +101,10 @@ class Session {
     std::uint64_t last_tick_;
     runner::Simulation simulation_;
     std::string why_no_contact_;
-    double element_size_;  // m, at the start
+    double element_size_;
     std::vector<LedTool> tools_;
-    std::vector<Pose> poses_before_;  // of the tools, at the beginning of the tick
+    std::vector<Pose> poses_before_;           // of the tools, at the beginning of the tick
+    std::vector<Order> orders_, last_orders_;  // since the last tick, and those before it
     std::uint64_t num_ticks_ = 0;
 };
 

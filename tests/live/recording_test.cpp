@@ -22,9 +22,10 @@ class RandomHands {
     void play(Session& session, Recorder& recorder, int num_ticks) {
         std::vector<Session::Moment> marks = {session.save()};
         for (int i = 0; i < num_ticks; ++i) {
-            act(session, recorder);
+            act(session);
             session.tick();
             recorder.note_tick(session);
+            if (one_in(6)) act(session);  // what is done before a moment belongs to it
             if (one_in(6)) marks.push_back(session.save());
             if (one_in(12)) {
                 session.restore(marks[below(marks.size())]);
@@ -43,31 +44,30 @@ class RandomHands {
     double between(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random_);
     }
-    void give(Session& session, Recorder& recorder, const Order& order) {
+    void give(Session& session, const Order& order) {
         try {
             session.execute(order);
         } catch (const InputError&) {
-            return;  // a refused order changes nothing, and is not recorded
+            // A refused order changes nothing, and is not recorded.
         }
-        recorder.note(order);
     }
-    void act(Session& session, Recorder& recorder) {
+    void act(Session& session) {
         const double x = between(0.0, 0.1), y = between(0.0, 0.1), z = between(0.02, 0.07);
         if (one_in(3)) {
             const std::string name = "tool_" + std::to_string(++count_);
             switch (below(4)) {
                 case 0:
-                    give(session, recorder, add_blade(name, x, y, z));
+                    give(session, add_blade(name, x, y, z));
                     break;
                 case 1:
-                    give(session, recorder, add_ball("carver", name, x, y, 0.06));
+                    give(session, add_ball("carver", name, x, y, 0.06));
                     break;
                 case 2:
-                    give(session, recorder, add_ball("probe", name, x, y, 0.07));
+                    give(session, add_ball("probe", name, x, y, 0.07));
                     break;
                 default:
-                    give(session, recorder, add_ball("grasper", name, x, y, 0.05));
-                    give(session, recorder, CloseGrasper{name});
+                    give(session, add_ball("grasper", name, x, y, 0.05));
+                    give(session, CloseGrasper{name});
             }
         }
         for (const LedTool& tool : session.tools()) {
@@ -77,9 +77,9 @@ class RandomHands {
                 tool.pose.position +
                 Vec3(between(-0.005, 0.005), between(-0.005, 0.005), between(-0.004, 0.003));
             const Eigen::Quaterniond turn(Eigen::AngleAxisd(between(-0.1, 0.1), Vec3::UnitX()));
-            give(session, recorder, MoveTool{name, {tool.pose.rotation * turn, at}});
-            if (one_in(8)) give(session, recorder, WithdrawTool{name});
-            if (tool.kind == "grasper" && one_in(8)) give(session, recorder, OpenGrasper{name});
+            give(session, MoveTool{name, {tool.pose.rotation * turn, at}});
+            if (one_in(8)) give(session, WithdrawTool{name});
+            if (tool.kind == "grasper" && one_in(8)) give(session, OpenGrasper{name});
         }
     }
 
@@ -118,11 +118,8 @@ class RecordedStroke : public testing::Test {
         Session session(folder.scenario());
         Recorder recorder(session, {"material[0].young=3000"}, "test", std::nullopt);
         session.execute(add_blade("knife", 0.05, -0.01, 0.03));
-        recorder.note(add_blade("knife", 0.05, -0.01, 0.03));
         for (int i = 1; i <= 4; ++i) {
-            const Order moved = move("knife", 0.05, -0.01 + 0.01 * i, 0.03);
-            session.execute(moved);
-            recorder.note(moved);
+            session.execute(move("knife", 0.05, -0.01 + 0.01 * i, 0.03));
             session.tick();
             recorder.note_tick(session);
         }

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/live/loop/live_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "incise/base/error.h"
+#include "incise/io/files/number_format.h"
+#include "incise/io/vtk/vtu_writer.h"
+#include "incise/runner/frame_builder.h"
+#include "incise/topology/mesh_metrics.h"
+
+namespace incise::live {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+constexpr int most_failures = 3;
+
+}  // namespace
+
+LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
+    : session_(session),
+      recorder_(recorder),
+      server_(server),
+      pictures_(session),
+      pace_(session.tick_length()),
+      moments_(session.save()) {}
+
+void LiveLoop::run(const std::function<bool()>& is_to_stop) {
+    bool was_opened = false;
+    auto due = Pace::Clock::now();
+    while (!is_to_stop()) {
+        for (const Request& request : server_.take_requests()) handle(request);
+        was_opened = was_opened || !pages_.empty();
+        const auto now = Pace::Clock::now();
+        const bool rests = !was_opened || (is_paused_ && steps_wanted_ == 0);
+        if (rests || now < due) {
+            if (rests) pace_.rest(now);
+            if (rests && is_changed_) show();
+            server_.wait_for_request(rests ? now + milliseconds(100)
+                                           : std::min(due, now + milliseconds(100)));
+            continue;
+        }
+        tick();
+        if (is_paused_ && steps_wanted_ > 0) --steps_wanted_;
+        due = pace_.note_tick(Pace::Clock::now());
+        show();
+    }
+}
+
+void LiveLoop::handle(const Request& request) {
+    is_changed_ = true;
+    switch (request.kind) {
+        case Request::Kind::opened:
+            return open(request.page);
+        case Request::Kind::closed:
+            return close(request.page);
+        case Request::Kind::download:
+            return answer(request);
+        case Request::Kind::text:
+            break;
+    }
+    try {
+        obey(request.page, parse_object(request.text));
+    } catch (const InputError& error) {
+        server_.send(request.page,
+                     Json{{"type", "message"}, {"level", "error"}, {"text", error.what()}}.dump());
+    }
+}
+
+void LiveLoop::open(std::uint64_t page) {
+    pages_.push_back(page);
+    if (operator_ == 0) operator_ = page;
+    say_hello(page);
+}
+
+void LiveLoop::close(std::uint64_t page) {
+    std::erase(pages_, page);
+    drop(page);
+    if (operator_ != page) return;
+    operator_ = pages_.empty() ? 0 : pages_.front();
+    if (operator_ != 0) say_hello(operator_);
+}
+
+void LiveLoop::answer(const Request& request) {
+    const std::string name = session_.simulation().scenario().name;
+    if (request.text == "/recording.jsonl")
+        return server_.answer(request.page, recorder_.text(), "application/jsonl", name + ".jsonl");
+    const sim::World& world = session_.world();
+    const auto forces = world.contact_forces();
+    runner::FrameBuilder builder(world.model(), world.time(),
+                                 session_.simulation().scenario().output.fields,
+                                 forces ? &*forces : nullptr);
+    server_.answer(request.page, io::vtu_text(builder.finish(), io::Compression::zlib),
+                   "application/octet-stream", name + ".vtu");
+}
+
+void LiveLoop::obey(std::uint64_t page, const Json& wish) {
+    const std::string what = text_in(wish, "do");
+    if (what == "take_over") {
+        if (operator_ == page) return;
+        drop(operator_);
+        operator_ = page;
+        return say_hello_to_all();
+    }
+    if (operator_ != page)
+        throw InputError("another page holds the tools; take over from it first");
+    if (what == "take") return take(page, wish);
+    if (what == "move") return execute(MoveTool{in_hand(page), pose_in(member(wish, "pose"))});
+    if (what == "drop") return drop(page);
+    if (what == "close") return execute(CloseGrasper{in_hand(page)});
+    if (what == "open") return execute(OpenGrasper{in_hand(page)});
+    if (what == "sew") return sew(wish);
+    if (what == "tighten") return tighten(wish);
+    if (what == "untie") return execute(UntieSuture{text_in(wish, "name")});
+    if (what == "undo") return undo();
+    if (what == "reset") return reset();
+    if (what == "pause") {
+        is_paused_ = flag_in(wish, "on");
+        steps_wanted_ = 0;
+    } else if (what == "step") {
+        if (!is_paused_) throw InputError("single steps are for a pause");
+        steps_wanted_ = std::min(steps_wanted_ + 1, 60);
+    } else if (what == "speed") {
+        const double speed = number_in(wish, "factor");
+        if (!(speed >= 0.01 && speed <= 100.0))
+            throw InputError("'factor': must be from 0.01 to 100");
+        pace_.set_speed(speed);
+    } else if (what == "show") {
+        if (!pictures_.show(text_in(wish, "field")))
+            throw InputError("'field': there is no field '" + text_in(wish, "field") + "'");
+    } else {
+        throw InputError("'do': '" + what + "' is not known here");
+    }
+}
+
+void LiveLoop::execute(const Order& order) {
+    for (const std::string& warning : session_.execute(order)) tell("warning", warning);
+}
+
+const std::string& LiveLoop::in_hand(std::uint64_t page) const {
+    const auto found = hands_.find(page);
+    if (found == hands_.end()) throw InputError("there is no tool in the hand: take one first");
+    return found->second;
+}
+
+std::string LiveLoop::new_name(const std::string& kind) {
+    const sim::World& world = session_.world();
+    while (true) {
+        std::string name = kind + "_" + std::to_string(++last_numbers_[kind]);
+        bool is_taken = false;
+        for (std::size_t i = 0; i < world.num_tools(); ++i)
+            is_taken = is_taken || world.tool({i}).name == name;
+        if (!is_taken) return name;
+    }
+}
+
+void LiveLoop::take(std::uint64_t page, const Json& wish) {
+    const Json& definition = member(wish, "tool");
+    if (!definition.is_object()) throw InputError("'tool': must be an object");
+    const std::string kind = text_in(definition, "kind");
+    if (kind == "suture" || kind == "cut") throw InputError("a " + kind + " is not led by hand");
+    Session::Moment before = session_.save();
+    drop(page);
+    const std::string name = new_name(kind);
+    execute(AddTool{name, value_of(definition), pose_in(member(wish, "pose"))});
+    moments_.keep_stroke(std::move(before));
+    hands_[page] = name;
+}
+
+void LiveLoop::sew(const Json& wish) {
+    Json definition = {{"kind", "suture"},
+                       {"points", member(wish, "points")},
+                       {"stiffness", number_in(wish, "stiffness")}};
+    Session::Moment before = session_.save();
+    execute(AddTool{new_name("suture"), value_of(definition), {}});
+    moments_.keep_stroke(std::move(before));
+}
+
+void LiveLoop::tighten(const Json& wish) {
+    const std::string name = text_in(wish, "name");
+    const LedTool* tool = session_.find(name);
+    if (!tool) throw InputError("there is no tool '" + name + "'");
+    const double length = wish.contains("length") ? number_in(wish, "length")
+                                                  : number_in(wish, "factor") *
+                                                        session_.world().suture_length(tool->id);
+    execute(DrawSuture{name, length});
+}
+
+void LiveLoop::drop(std::uint64_t page) {
+    const auto found = hands_.find(page);
+    if (found == hands_.end()) return;
+    const std::string name = found->second;
+    hands_.erase(found);
+    execute(WithdrawTool{name});
+}
+
+void LiveLoop::go_back(const Session::Moment& moment) {
+    session_.restore(moment);
+    recorder_.note_return(session_);
+    moments_.forget_after(session_.num_ticks());
+    pictures_.forget_surface();
+    num_warnings_told_ = session_.simulation().warnings().size();
+    hands_.clear();
+    for (const LedTool& tool : session_.tools())
+        if (tool.is_in_hand && tool.kind != "suture") execute(WithdrawTool{tool.name});
+    is_changed_ = true;
+}
+
+void LiveLoop::undo() {
+    if (!moments_.has_stroke()) throw InputError("there is nothing to undo");
+    go_back(moments_.take_stroke());
+}
+
+void LiveLoop::reset() {
+    go_back(moments_.start());
+    say_hello_to_all();
+}
+
+void LiveLoop::tick() {
+    constexpr std::uint64_t ticks_between_moments = 60;
+    if (session_.num_ticks() % ticks_between_moments == 0) moments_.keep_good(session_.save());
+    try {
+        session_.tick();
+        recorder_.note_tick(session_);
+    } catch (const PhysicsError& error) {
+        return recover(error.what());
+    } catch (const InputError& error) {  // a tool has met what it cannot cut
+        return recover(error.what());
+    }
+    tell_warnings();
+}
+
+/// Goes back to the last state of now and then; if that leads to the same end, farther back.
+void LiveLoop::recover(const std::string& reason) {
+    const std::uint64_t failure = session_.num_ticks();
+    num_failures_ = failure <= last_failure_ + 1 ? num_failures_ + 1 : 1;
+    last_failure_ = failure;
+    const Session::Moment moment = moments_.take_good();
+    go_back(moment);
+    std::string text = reason +
+                       ". The body went back to t = " + io::format_number(session_.world().time()) +
+                       " s, and all tools are put away";
+    if (num_failures_ >= most_failures) {
+        is_paused_ = true;
+        num_failures_ = 0;
+        text += "; it pauses, as this happens again and again";
+    }
+    tell("error", text);
+}
+
+void LiveLoop::tell(std::string_view level, const std::string& text) {
+    server_.send_to_all(Json{{"type", "message"}, {"level", level}, {"text", text}}.dump());
+    if (on_message) on_message(level, text);
+}
+
+void LiveLoop::tell_warnings() {
+    const auto& warnings = session_.simulation().warnings();
+    for (; num_warnings_told_ < warnings.size(); ++num_warnings_told_)
+        tell("warning", warnings[num_warnings_told_]);
+}
+
+void LiveLoop::say_hello(std::uint64_t page) {
+    const topology::Mesh& mesh = session_.world().mesh();
+    const auto positions = session_.world().positions();
+    Eigen::AlignedBox3d box;
+    for (const NodeId n : mesh.nodes()) box.extend(positions[n.index()]);
+    Json hello = {{"type", "hello"},
+                  {"title", session_.simulation().scenario().title},
+                  {"tick", session_.tick_length()},
+                  {"role", page == operator_ ? "operator" : "watcher"},
+                  {"size", {json_of(Vec3(box.min())), json_of(Vec3(box.max()))}},
+                  {"element_size", session_.element_size()},
+                  {"has_contact", session_.has_contact()},
+                  {"recording", recorder_.file() ? recorder_.file()->string() : ""},
+                  {"regions", Json::array()},
+                  {"fields", Json::array()},
+                  {"kinds", {"blade", "carver"}}};
+    if (session_.has_contact())
+        for (const char* kind : {"probe", "grasper", "suture"}) hello["kinds"].push_back(kind);
+    for (const int region : pictures_.mesh().regions())
+        hello["regions"].push_back({{"id", region}, {"name", "region " + std::to_string(region)}});
+    for (const ShownField& field : PictureMaker::fields())
+        hello["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
+    server_.send(page, hello.dump());
+}
+
+void LiveLoop::say_hello_to_all() {
+    for (const std::uint64_t page : pages_) say_hello(page);
+}
+
+void LiveLoop::show() {
+    is_changed_ = false;
+    if (pages_.empty()) return;
+    auto picture = pictures_.make(session_);
+    picture->state = state();
+    server_.show(std::move(picture));
+}
+
+std::string LiveLoop::state() const {
+    const sim::World& world = session_.world();
+    const auto& edits = session_.simulation().edits();
+    const double cut_area = std::accumulate(
+        edits.begin(), edits.end(), 0.0,
+        [](double sum, const sim::EditRecord& edit) { return sum + edit.cut_area; });
+    const sim::BodyTotals& last = world.ledger().last();
+    Json state = {{"type", "state"},
+                  {"tick", session_.num_ticks()},
+                  {"time", world.time()},
+                  {"paused", is_paused_},
+                  {"speed", pace_.speed()},
+                  {"factor", pace_.factor()},
+                  {"step", session_.simulation().time_step()},
+                  {"nodes", last.nodes},
+                  {"elements", last.elements},
+                  {"components", last.components},
+                  {"edits", edits.size()},
+                  {"cut_area", cut_area},
+                  {"mass", last.totals.mass},
+                  {"field", pictures_.field()},
+                  {"can_undo", moments_.has_stroke()},
+                  {"tools", Json::array()}};
+    for (const LedTool& tool : session_.tools()) {
+        const bool is_suture = tool.kind == "suture";
+        const bool is_tied = is_suture && world.is_suture_tied(tool.id);
+        if (is_suture ? !is_tied : !tool.is_in_hand) continue;
+        Json entry = {{"name", tool.name},
+                      {"kind", tool.kind},
+                      {"tool", live::json_of(tool.definition)},
+                      {"present", world.is_tool_present(tool.id)},
+                      {"force", json_of(tool.force)},
+                      {"torque", json_of(tool.torque)}};
+        const auto hand = hands_.find(operator_);
+        entry["mine"] = hand != hands_.end() && hand->second == tool.name;
+        if (is_suture) entry["length"] = world.suture_length(tool.id);
+        Json pose;
+        add_pose(pose, is_suture ? Pose() : world.tool_pose(tool.id));
+        entry["pose"] = std::move(pose);
+        if (tool.kind == "grasper") {
+            entry["held"] = world.num_held(tool.id);
+            entry["closed"] = world.is_grasper_closed(tool.id);
+        }
+        state["tools"].push_back(std::move(entry));
+    }
+    return state.dump();
+}
+
+}  // namespace incise::live

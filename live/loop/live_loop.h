@@ -1,0 +1,82 @@
+// The loop of a live session: what pages want, ticks, pictures.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "incise/live/json_values.h"
+#include "incise/live/loop/moments.h"
+#include "incise/live/loop/pace.h"
+#include "incise/live/loop/picture_maker.h"
+#include "incise/live/recording.h"
+#include "incise/live/server/server.h"
+#include "incise/live/session.h"
+
+namespace incise::live {
+
+/// Runs a session in real time, lets pages take part, and shows it to them.
+///
+/// One page is the operator: the first that opens, or one that takes over. The others look on.
+class LiveLoop {
+  public:
+    /// @lifetime  all must outlive the loop
+    LiveLoop(Session& session, Recorder& recorder, Server& server);
+
+    /// Runs until `is_to_stop` returns true, which is asked at least ten times a second. Nothing
+    /// moves before the first page has opened. Throws OutputError if the recording cannot be
+    /// written, and PhysicsError if the body is lost at the start again and again.
+    void run(const std::function<bool()>& is_to_stop);
+
+    /// Is called with each message that pages get too: its level (info, warning, error), its text.
+    std::function<void(std::string_view, const std::string&)> on_message;
+
+  private:
+    void handle(const Request& request);
+    void open(std::uint64_t page);
+    void close(std::uint64_t page);
+    void answer(const Request& request);
+    void obey(std::uint64_t page, const Json& wish);
+
+    void take(std::uint64_t page, const Json& wish);
+    void sew(const Json& wish);
+    void tighten(const Json& wish);
+    void drop(std::uint64_t page);
+    void undo();
+    void reset();
+    void execute(const Order& order);
+    const std::string& in_hand(std::uint64_t page) const;
+    std::string new_name(const std::string& kind);
+
+    void tick();
+    void go_back(const Session::Moment& moment);
+    void recover(const std::string& reason);
+    void tell(std::string_view level, const std::string& text);
+    void tell_warnings();
+    void say_hello(std::uint64_t page);
+    void say_hello_to_all();
+    void show();
+    std::string state() const;
+
+    Session& session_;
+    Recorder& recorder_;
+    Server& server_;
+    PictureMaker pictures_;
+    Pace pace_;
+    Moments moments_;
+    std::vector<std::uint64_t> pages_;            // in the order of opening
+    std::uint64_t operator_ = 0;                  // 0: none
+    std::map<std::uint64_t, std::string> hands_;  // the tool in the hand of a page
+    std::map<std::string, int> last_numbers_;     // of tools, by kind
+    bool is_paused_ = false, is_changed_ = true;
+    int steps_wanted_ = 0;  // while paused
+    std::size_t num_warnings_told_ = 0;
+    std::uint64_t last_failure_ = 0;  // tick
+    int num_failures_ = 0;            // that got no farther than the last one
+};
+
+}  // namespace incise::live

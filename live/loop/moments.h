@@ -1,0 +1,62 @@
+// The states that a live session can go back to.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "incise/live/session.h"
+
+namespace incise::live {
+
+/// The start of a session, the states before the last strokes, and some of the last seconds, for
+/// when the body blows up. The memory of all is bounded: the oldest ones are forgotten.
+class Moments {
+  public:
+    explicit Moments(Session::Moment start) : start_(std::move(start)) {}
+
+    const Session::Moment& start() const { return start_; }
+
+    /// Keeps the state before a stroke.
+    void keep_stroke(Session::Moment moment) { keep(strokes_, std::move(moment), 64, 512u << 20); }
+    bool has_stroke() const { return !strokes_.empty(); }
+    /// Returns the state before the last stroke, and forgets it.
+    Session::Moment take_stroke() { return take(strokes_); }
+
+    /// Keeps a state of now and then.
+    void keep_good(Session::Moment moment) { keep(good_, std::move(moment), 5, 256u << 20); }
+    /// Returns the newest state of now and then, and forgets it: without any, the start.
+    Session::Moment take_good() { return good_.empty() ? start_ : take(good_); }
+
+    /// Forgets all that is after a number of ticks: the session went back.
+    void forget_after(std::uint64_t num_ticks) {
+        const auto is_after = [&](const auto& moment) { return moment.num_ticks > num_ticks; };
+        std::erase_if(strokes_, is_after);
+        std::erase_if(good_, is_after);
+    }
+
+  private:
+    using List = std::deque<Session::Moment>;
+    static Session::Moment take(List& list) {
+        Session::Moment moment = std::move(list.back());
+        list.pop_back();
+        return moment;
+    }
+    static void keep(List& list, Session::Moment moment, std::size_t most, std::size_t most_bytes) {
+        list.push_back(std::move(moment));
+        std::size_t bytes = 0;
+        for (const auto& kept : list) bytes += kept.state.size();
+        while (list.size() > 1 && (list.size() > most || bytes > most_bytes)) {
+            bytes -= list.front().state.size();
+            list.pop_front();
+        }
+    }
+
+    Session::Moment start_;
+    List strokes_, good_;
+};
+
+}  // namespace incise::live
