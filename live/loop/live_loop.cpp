@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <sstream>
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
@@ -19,6 +20,10 @@ using std::chrono::milliseconds;
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+std::string message_text(std::string_view level, const std::string& text) {
+    return Json{{"type", "message"}, {"level", level}, {"text", text}}.dump();
+}
+
 constexpr int most_failures = 3;
 
 }  // namespace
@@ -29,7 +34,8 @@ LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
       server_(server),
       pictures_(session),
       pace_(session.tick_length()),
-      moments_(session.save()) {}
+      moments_(session.save()),
+      num_warnings_told_(session.simulation().warnings().size()) {}
 
 void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     bool was_opened = false;
@@ -49,6 +55,7 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
         tick();
         if (is_paused_ && steps_wanted_ > 0) --steps_wanted_;
         due = pace_.note_tick(Pace::Clock::now());
+        tell_if_slow();
         show();
     }
 }
@@ -68,8 +75,7 @@ void LiveLoop::handle(const Request& request) {
     try {
         obey(request.page, parse_object(request.text));
     } catch (const InputError& error) {
-        server_.send(request.page,
-                     Json{{"type", "message"}, {"level", "error"}, {"text", error.what()}}.dump());
+        server_.send(request.page, message_text("error", error.what()));
     }
 }
 
@@ -77,6 +83,8 @@ void LiveLoop::open(std::uint64_t page) {
     pages_.push_back(page);
     if (operator_ == 0) operator_ = page;
     say_hello(page);
+    for (const std::string& warning : session_.simulation().warnings())
+        server_.send(page, message_text("warning", warning));
 }
 
 void LiveLoop::close(std::uint64_t page) {
@@ -255,7 +263,7 @@ void LiveLoop::recover(const std::string& reason) {
 }
 
 void LiveLoop::tell(std::string_view level, const std::string& text) {
-    server_.send_to_all(Json{{"type", "message"}, {"level", level}, {"text", text}}.dump());
+    server_.send_to_all(message_text(level, text));
     if (on_message) on_message(level, text);
 }
 
@@ -263,6 +271,22 @@ void LiveLoop::tell_warnings() {
     const auto& warnings = session_.simulation().warnings();
     for (; num_warnings_told_ < warnings.size(); ++num_warnings_told_)
         tell("warning", warnings[num_warnings_told_]);
+}
+
+/// Says once, after the first seconds, if the body is too much for this machine.
+void LiveLoop::tell_if_slow() {
+    constexpr double enough = 0.9, known_after = 2.0;  // s
+    if (has_told_pace_ || session_.world().time() < known_after * std::min(1.0, pace_.factor()))
+        return;
+    has_told_pace_ = true;
+    if (pace_.factor() >= enough * pace_.speed()) return;
+    std::ostringstream text;
+    text.precision(2);
+    text << "on this machine the body runs at " << pace_.factor()
+         << " times real time, in steps of " << session_.simulation().time_step() * 1e3
+         << " ms. Faster are a coarser mesh, softer materials, fewer small elements, and "
+            "dynamics.precision = \"single\"";
+    tell("warning", text.str());
 }
 
 void LiveLoop::say_hello(std::uint64_t page) {

@@ -33,6 +33,7 @@ class LiveLoop {
     void run(const std::function<bool()>& is_to_stop);
 
     /// Is called with each message that pages get too: its level (info, warning, error), its text.
+    /// Warnings of the body are not repeated.
     std::function<void(std::string_view, const std::string&)> on_message;
 
   private:
@@ -57,6 +58,7 @@ class LiveLoop {
     void recover(const std::string& reason);
     void tell(std::string_view level, const std::string& text);
     void tell_warnings();
+    void tell_if_slow();
     void say_hello(std::uint64_t page);
     void say_hello_to_all();
     void show();
@@ -74,7 +76,8 @@ class LiveLoop {
     std::map<std::string, int> last_numbers_;     // of tools, by kind
     bool is_paused_ = false, is_changed_ = true;
     int steps_wanted_ = 0;  // while paused
-    std::size_t num_warnings_told_ = 0;
+    std::size_t num_warnings_told_;
+    bool has_told_pace_ = false;
     std::uint64_t last_failure_ = 0;  // tick
     int num_failures_ = 0;            // that got no farther than the last one
 };

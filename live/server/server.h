@@ -39,10 +39,10 @@ struct Request {
 };
 
 struct ServerOptions {
-    std::string host = "127.0.0.1";      ///< address to listen on
-    std::uint16_t port = 8080;           ///< 0: any that is free
-    std::vector<PageFile> files;         ///< their texts must outlive the server
-    std::vector<std::string> downloads;  ///< paths, such as "/recording.jsonl"
+    std::string host = "127.0.0.1";           ///< address to listen on
+    std::uint16_t port = 8080;                ///< 0: any that is free
+    std::vector<PageFile> files = {};         ///< their texts must outlive the server
+    std::vector<std::string> downloads = {};  ///< paths, such as "/recording.jsonl"
 };
 
 /// A server with a thread of its own. Nothing that a page does or leaves undone makes a caller

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/live/server/server.h"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "incise/base/error.h"
+
+namespace incise::live {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// A client that knows nothing of HTTP but bytes.
+class Client {
+  public:
+    explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+            throw std::runtime_error("cannot connect");
+    }
+    ~Client() { ::close(socket_); }
+    Client(const Client&) = delete;
+    Client& operator=(const Client&) = delete;
+
+    void send(const std::string& bytes) {
+        for (std::size_t sent = 0; sent < bytes.size();) {
+            const auto n = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+            if (n <= 0) return;  // the server has closed
+            sent += static_cast<std::size_t>(n);
+        }
+    }
+    /// Reads until the end, or until `is_enough`.
+    std::string read(const std::function<bool(const std::string&)>& is_enough = {}) {
+        const auto until = Clock::now() + seconds(20);
+        while (!(is_enough && is_enough(received_)) && Clock::now() < until) {
+            pollfd waits{socket_, POLLIN, 0};
+            if (::poll(&waits, 1, 100) <= 0) continue;
+            std::array<char, 65536> buffer;
+            const auto n = ::recv(socket_, buffer.data(), buffer.size(), 0);
+            if (n <= 0) break;
+            received_.append(buffer.data(), static_cast<std::size_t>(n));
+        }
+        return received_;
+    }
+
+  private:
+    int socket_;
+    std::string received_;
+};
+
+std::string frame(std::string_view text, unsigned char kind = 0x81) {
+    std::string bytes(1, static_cast<char>(kind));
+    if (text.size() < 126) {
+        bytes += static_cast<char>(0x80u | text.size());
+    } else if (text.size() < 65536) {
+        bytes += static_cast<char>(0x80u | 126u);
+        bytes += static_cast<char>(text.size() >> 8);
+        bytes += static_cast<char>(text.size() & 0xff);
+    } else {
+        bytes += static_cast<char>(0x80u | 127u);
+        for (int i = 7; i >= 0; --i)
+            bytes += static_cast<char>((std::uint64_t{text.size()} >> (8 * i)) & 0xff);
+    }
+    bytes += std::string(4, '\0');  // a mask that changes nothing
+    return bytes.append(text);
+}
+
+bool is_head_complete(const std::string& text) { return text.find("\r\n\r\n") != text.npos; }
+
+class ServerTest : public testing::Test {
+  protected:
+    ServerTest()
+        : server({.host = "127.0.0.1",
+                  .port = 0,
+                  .files = {{"/", "text/html", "the page"}, {"/app.js", "text/javascript", "code"}},
+                  .downloads = {"/file.bin"}}),
+          token(server.address().substr(server.address().find("token=") + 6)),
+          host("127.0.0.1:" + std::to_string(server.port())) {}
+
+    std::string get(const std::string& target, std::optional<std::string> as_host = {},
+                    const std::string& method = "GET") {
+        Client client(server.port());
+        client.send(method + " " + target + " HTTP/1.1\r\nHost: " + as_host.value_or(host) +
+                    "\r\nConnection: close\r\n\r\n");
+        return client.read();
+    }
+    std::string upgrade(const std::string& target, const std::string& origin) const {
+        return "GET " + target + " HTTP/1.1\r\nHost: " + host +
+               "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+               (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n";
+    }
+    /// A page that has connected.
+    std::unique_ptr<Client> page() {
+        auto client = std::make_unique<Client>(server.port());
+        client->send(upgrade("/ws?token=" + token, "http://" + host));
+        EXPECT_THAT(client->read(is_head_complete), StartsWith("HTTP/1.1 101"));
+        return client;
+    }
+    /// Collects requests until there are enough.
+    std::vector<Request> requests(std::size_t count) {
+        std::vector<Request> all;
+        const auto until = Clock::now() + seconds(20);
+        while (all.size() < count && Clock::now() < until) {
+            server.wait_for_request(Clock::now() + milliseconds(100));
+            for (Request& request : server.take_requests()) all.push_back(std::move(request));
+        }
+        return all;
+    }
+
+    Server server;
+    std::string token, host;
+};
+
+TEST_F(ServerTest, GivesThePageToThoseWithTheToken) {
+    const std::string page = get("/?token=" + token);
+    EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(page, HasSubstr("the page"));
+    EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'self'"));
+    EXPECT_THAT(page, HasSubstr("nosniff"));
+    EXPECT_THAT(get("/app.js?x"), HasSubstr("code"));
+    for (const std::string& wrong :
+         {std::string("/"), std::string("/?token="), "/?token=" + token.substr(1),
+          "/?token=" + std::string(32, '0')}) {
+        const std::string refusal = get(wrong);
+        EXPECT_THAT(refusal, StartsWith("HTTP/1.1 403")) << wrong;
+        EXPECT_THAT(refusal, Not(HasSubstr("the page"))) << wrong;
+    }
+}
+
+TEST_F(ServerTest, RefusesOtherHostsPathsAndMethods) {
+    EXPECT_THAT(get("/?token=" + token, "evil.example"), StartsWith("HTTP/1.1 421"));
+    EXPECT_THAT(get("/?token=" + token, ""), StartsWith("HTTP/1.1 421"));
+    EXPECT_THAT(get("/?token=" + token, "127.0.0.1.evil.example:80"), StartsWith("HTTP/1.1 421"));
+    // A forwarded port is another one here and there.
+    EXPECT_THAT(get("/?token=" + token, "localhost:9999"), StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(get("/../etc/passwd"), StartsWith("HTTP/1.1 404"));
+    EXPECT_THAT(get("/%2e%2e/app.js"), StartsWith("HTTP/1.1 404"));
+    EXPECT_THAT(get("/app.js", {}, "POST"), StartsWith("HTTP/1.1 405"));
+    EXPECT_THAT(get("/" + std::string(20000, 'a')), Not(HasSubstr("200 OK")));
+    EXPECT_THAT(get("/app.js", {}, "\xff\x01 rubbish"), Not(HasSubstr("200 OK")));
+}
+
+TEST_F(ServerTest, LetsOnlyItsOwnPageConnect) {
+    const auto answer = [&](const std::string& target, const std::string& origin) {
+        Client client(server.port());
+        client.send(upgrade(target, origin));
+        return client.read(is_head_complete);
+    };
+    const std::string own = "/ws?token=" + token, origin = "http://" + host;
+    EXPECT_THAT(answer(own, origin), StartsWith("HTTP/1.1 101"));
+    EXPECT_THAT(answer(own, "http://evil.example"), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(answer(own, ""), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(answer("/ws?token=wrong", origin), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(answer("/elsewhere?token=" + token, origin), StartsWith("HTTP/1.1 404"));
+}
+
+TEST_F(ServerTest, PassesMessagesInTheirOrder) {
+    server.greet_with("welcome");
+    const auto client = page();
+    client->send(frame("one") + frame("two"));
+    const auto all = requests(3);
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(all[0].kind, Request::Kind::opened);
+    EXPECT_EQ(all[1].text, "one");
+    EXPECT_EQ(all[2].text, "two");
+    EXPECT_EQ(all[2].page, all[0].page);
+    server.send(all[0].page, "for you");
+    server.send_to_all("for all");
+    EXPECT_THAT(client->read([](const std::string& s) { return s.ends_with("for all"); }),
+                testing::ContainsRegex("welcome.*for you.*for all"));
+}
+
+TEST_F(ServerTest, SendsTheTopologyOnlyToThoseThatLackIt) {
+    const auto picture = [](std::uint64_t version, const std::string& moving) {
+        auto made = std::make_shared<Picture>();
+        made->topology_version = version;
+        made->head_with_topology = "HEAD+";
+        made->head_without_topology = "HEAD-";
+        made->topology = std::make_shared<const std::string>("TOPOLOGY");
+        made->moving = moving;
+        made->state = "state of " + moving;
+        return made;
+    };
+    const auto show_and_read = [&](Client& client, std::shared_ptr<const Picture> shown) {
+        const std::string end = shown->state;
+        server.show(std::move(shown));
+        const std::size_t before = client.read([](const std::string&) { return true; }).size();
+        return client.read([&](const std::string& s) { return s.ends_with(end); }).substr(before);
+    };
+    const auto first = page();
+    EXPECT_THAT(show_and_read(*first, picture(1, "a")), HasSubstr("HEAD+TOPOLOGYa"));
+    EXPECT_THAT(show_and_read(*first, picture(1, "b")), HasSubstr("HEAD-b"));
+    EXPECT_THAT(show_and_read(*first, picture(2, "c")), HasSubstr("HEAD+TOPOLOGYc"));
+    const auto second = page();  // gets the last picture at once
+    EXPECT_THAT(second->read([](const std::string& s) { return s.ends_with("state of c"); }),
+                HasSubstr("HEAD+TOPOLOGYc"));
+}
+
+TEST_F(ServerTest, DisconnectsThoseThatBreakRules) {
+    for (const std::string& bytes :
+         {frame(std::string(70000, 'x')), frame("\xff\xfe\xfd"), frame("x", 0xf1),
+          std::string("\x81\x05hello"), std::string(300, '\x7f')}) {
+        const auto client = page();
+        client->send(bytes);
+        client->read();  // ends, as the server closes
+    }
+    const auto all = requests(10);
+    EXPECT_EQ(std::ranges::count(all, Request::Kind::opened, &Request::kind), 5);
+    EXPECT_EQ(std::ranges::count(all, Request::Kind::closed, &Request::kind), 5);
+}
+
+TEST_F(ServerTest, HoldsBackAPageThatFloods) {
+    const auto flooding = page(), calm = page();
+    std::string flood;
+    for (int i = 0; i < 5000; ++i) flood += frame(std::to_string(i));
+    std::jthread sender([&] { flooding->send(flood); });
+    calm->send(frame("calm"));
+    std::size_t most = 0, num_texts = 0;
+    bool is_calm_heard = false;
+    const auto until = Clock::now() + seconds(30);
+    while (num_texts < 5001 && Clock::now() < until) {
+        std::this_thread::sleep_for(milliseconds(1));  // a tick
+        const auto taken = server.take_requests();
+        most = std::max(most, taken.size());
+        for (const Request& request : taken) {
+            if (request.kind != Request::Kind::text) continue;
+            if (request.text == "calm") is_calm_heard = true;
+            ++num_texts;
+        }
+    }
+    EXPECT_EQ(num_texts, 5001u);  // none is lost
+    EXPECT_LE(most, 200u);
+    EXPECT_TRUE(is_calm_heard);
+}
+
+TEST_F(ServerTest, DoesNotWaitForAPageThatReadsNothing) {
+    const auto deaf = page(), good = page();
+    auto big = std::make_shared<Picture>();
+    big->topology_version = 1;
+    big->topology = std::make_shared<const std::string>();
+    big->moving = std::string(1 << 20, 'm');
+    big->state = "done";
+    for (int i = 0; i < 200; ++i) server.show(big);
+    EXPECT_THAT(good->read([](const std::string& s) { return s.ends_with("done"); }),
+                HasSubstr("done"));
+    // Texts must not be lost: the deaf page is disconnected, and the good one is not.
+    for (int i = 0; i < 300; ++i) {
+        const std::string text = "text " + std::to_string(i) + ".";
+        server.send_to_all(text);
+        EXPECT_TRUE(
+            good->read([&](const std::string& s) { return s.ends_with(text); }).ends_with(text));
+    }
+    const auto all = requests(3);
+    EXPECT_EQ(std::ranges::count(all, Request::Kind::closed, &Request::kind), 1);
+}
+
+TEST_F(ServerTest, AnswersDownloadsOfThoseWithTheToken) {
+    EXPECT_THAT(get("/file.bin"), StartsWith("HTTP/1.1 403"));
+    std::string answer;
+    std::jthread client([&] { answer = get("/file.bin?token=" + token); });
+    const auto all = requests(1);
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all[0].text, "/file.bin");
+    server.answer(all[0].page, std::string("\0\1\2", 3), "application/octet-stream", "a.bin");
+    client.join();
+    EXPECT_THAT(answer, HasSubstr("filename=\"a.bin\""));
+    EXPECT_TRUE(answer.ends_with(std::string("\0\1\2", 3)));
+}
+
+TEST_F(ServerTest, RefusesMorePagesThanItServes) {
+    std::vector<std::unique_ptr<Client>> pages;
+    for (std::size_t i = 0; i < Server::most_pages; ++i) pages.push_back(page());
+    requests(Server::most_pages);
+    Client further(server.port());
+    further.send(upgrade("/ws?token=" + token, "http://" + host));
+    EXPECT_THAT(further.read(is_head_complete), StartsWith("HTTP/1.1 503"));
+}
+
+TEST_F(ServerTest, EndsWhilePagesAreOpen) {
+    auto other = std::make_unique<Server>(ServerOptions{.port = 0});
+    Client idle(other->port());
+    idle.send("GET / HT");
+    const auto begin = Clock::now();
+    other.reset();
+    EXPECT_LT(Clock::now() - begin, seconds(5));
+}
+
+TEST_F(ServerTest, SaysWhyItCannotListen) {
+    try {
+        Server second({.host = "127.0.0.1", .port = server.port()});
+        FAIL();
+    } catch (const OutputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("cannot be listened on"));
+        EXPECT_THAT(error.what(), HasSubstr("--port"));
+    }
+    EXPECT_THROW(Server({.host = "nonsense", .port = 0}), InputError);
+}
+
+}  // namespace
+}  // namespace incise::live
