@@ -56,14 +56,11 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
       warnings_(std::move(body.warnings)),
       world_(scenario::make_world(scenario, std::move(body.mesh), std::move(body.materials),
                                   std::move(body.boundary_conditions))),
+      tools_(world_, std::move(body.tools)),
       fingerprint_(fingerprint_of(model(), scenario.tools)),
       warned_step_(ledger().initial().stable_step),
       size_(topology::mean_element_length(mesh())),
       num_body_warnings_(warnings_.size()) {
-    for (scenario::ScriptedTool& tool : body.tools) {
-        world_.add_tool({std::move(tool.name), std::move(tool.shape)});
-        scripts_.push_back({std::move(tool.path), tool.close, tool.open, tool.over, tool.length});
-    }
     // Refuses a fixed step that is too large before anything is written.
     scenario::step_limit(scenario_, model(), world_.stable_step(), num_steps());
 }
@@ -77,7 +74,7 @@ void Simulation::start() {
 bool Simulation::is_finished() const { return time() >= scenario_.dynamics.end_time; }
 
 void Simulation::step(Interval step) {
-    move_tools(step);
+    tools_.move(world_, step.from, step.to, warnings_);
     try {
         world_.step_to(step.to);
     } catch (const sim::ToolError& error) {
@@ -91,7 +88,7 @@ void Simulation::step(Interval step) {
     }
     last_step_ = step.to - step.from;
     report_edits();
-    warn_of_lost_holds();
+    tools_.warn_of_lost_holds(world_, warnings_);
     note_overlap();
     for (Observer* observer : observers_) observer->on_step(*this);
     if (is_finished()) {
@@ -100,63 +97,6 @@ void Simulation::step(Interval step) {
     }
     report_frame();
     report_pause();
-}
-
-/// Places the tools that act in the step, and withdraws those whose path ends in it.
-void Simulation::move_tools(Interval step) {
-    for (std::size_t i = 0; i < scripts_.size(); ++i) {
-        const scenario::ToolPath& path = scripts_[i].path;
-        const sim::ToolId tool{i};
-        if (std::holds_alternative<cutting::Suture>(world_.tool(tool).shape)) {
-            draw_suture(tool, step);
-            continue;
-        }
-        if (!path.is_present(step.from, step.to)) continue;
-        if (!world_.is_tool_present(tool)) world_.place_tool(tool, path.pose(step.from));
-        move_jaws(tool, step.from);
-        world_.set_tool_pose(tool, path.pose(step.to));
-        if (step.to < path.last_time()) continue;
-        const auto before = path.pose_before_end();
-        world_.withdraw_tool(tool, before ? &*before : nullptr);
-    }
-}
-
-/// Closes or opens the jaws of a grasper at the beginning of a step.
-void Simulation::move_jaws(sim::ToolId tool, double time) {
-    const auto& [path, close, open, over, length] = scripts_[tool.index];
-    if (!close) return;
-    const bool is_to_be_closed = time >= *close && !(open && time >= *open);
-    if (is_to_be_closed == world_.is_grasper_closed(tool)) return;
-    if (!is_to_be_closed) return world_.open_grasper(tool);
-    if (world_.close_grasper(tool) == 0) {
-        lost_.push_back(tool.index);
-        warnings_.push_back("grasper '" + world_.tool(tool).name +
-                            "' closes on nothing at t = " + io::format_number(time) +
-                            " s; check where its path and the tissue are then");
-    }
-}
-
-/// Ties a suture at its time, and draws its thread.
-void Simulation::draw_suture(sim::ToolId tool, Interval step) {
-    const Script& script = scripts_[tool.index];
-    const double begin = script.path.first_time(), end = begin + script.over;
-    // The first step that begins at its time, or the last one that can.
-    if (!world_.is_tool_present(tool)) {
-        if (step.to <= begin) return;
-        const std::size_t num_points =
-            std::get<cutting::Suture>(world_.tool(tool).shape).points.size();
-        if (const std::size_t num_found = world_.tie_suture(tool); num_found < num_points)
-            warnings_.push_back("suture '" + world_.tool(tool).name +
-                                "', at t = " + io::format_number(step.from) + " s: of its " +
-                                std::to_string(num_points) + " points, " +
-                                std::to_string(num_points - num_found) +
-                                " have no tissue any more, and are left out");
-    }
-    const double now = world_.suture_length(tool);
-    if (!script.length || now == *script.length) return;
-    const double from = std::max(begin, step.from);
-    const double part = step.to >= end ? 1.0 : (step.to - from) / (end - from);
-    world_.set_suture_length(tool, now + part * (*script.length - now));
 }
 
 void Simulation::note_overlap() {
@@ -177,27 +117,6 @@ void Simulation::warn_of_overlaps() {
     warnings_.push_back(text.str());
 }
 
-void Simulation::warn_of_lost_holds() {
-    for (std::size_t i = 0; i < scripts_.size(); ++i) {
-        if (world_.is_grasper_closed({i}) && world_.num_held({i}) == 0 &&
-            std::ranges::find(lost_, i) == lost_.end()) {
-            lost_.push_back(i);
-            warnings_.push_back("grasper '" + world_.tool({i}).name +
-                                "' holds nothing from t = " + io::format_number(time()) +
-                                " s on: all tissue has slipped out of its jaws, or was removed");
-            continue;
-        }
-        const bool is_suture = std::holds_alternative<cutting::Suture>(world_.tool({i}).shape);
-        if (!is_suture || !world_.is_tool_present({i}) || world_.is_suture_tied({i}) ||
-            std::ranges::find(lost_, i) != lost_.end())
-            continue;
-        lost_.push_back(i);
-        warnings_.push_back("suture '" + world_.tool({i}).name +
-                            "' holds nothing from t = " + io::format_number(time()) +
-                            " s on: its thread has torn at max_force, or its tissue was removed");
-    }
-}
-
 void Simulation::report_edits() {
     for (const sim::Edit& edit : world_.report().edits) {
         edits_.push_back(edit.record);
@@ -209,19 +128,18 @@ void Simulation::report_edits() {
 void Simulation::save(ArchiveWriter& ar) const {
     const std::vector<std::string> added(
         warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
-    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, lost_, warned_step_, added);
+    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
 }
 
 void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
     std::vector<std::string> added;
-    ar(edits_, last_step_, num_frames_, overlap_, lost_, warned_step_, added);
+    ar(edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
     warnings_.resize(num_body_warnings_);
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
-    if (world_.num_tools() < scripts_.size())
-        throw InputError("its tools are not those of the run");
+    if (world_.num_tools() < tools_.size()) throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
     if (!(last_step_ >= 0.0 && last_step_ <= time()))

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/runner/scripted_tools.h"
 #include "incise/runner/step_policy.h"
 #include "incise/scenario/scenario.h"
-#include "incise/scenario/tool_build.h"
 #include "incise/sim/ledger.h"
 #include "incise/sim/world.h"
 #include "incise/topology/mesh.h"
@@ -107,10 +107,11 @@ class Simulation {
     Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy);
 
     double next_stop() const;
-    void move_tools(Interval step);
     void report_edits();
     void warn_of_short_steps(const sim::EditRecord& edit);
     void warn_of_lost_elements();
+    void note_overlap();
+    void warn_of_overlaps();
     void report_frame();
     void report_pause();
 
@@ -118,27 +119,13 @@ class Simulation {
     StepPolicy policy_;
     std::vector<std::string> warnings_;
     sim::World world_;
-    /// What a tool does when.
-    struct Script {
-        scenario::ToolPath path;
-        std::optional<double> close, open;  // of a grasper, s
-        double over;                        // of a suture, s
-        std::optional<double> length;       // of a suture, m
-    };
-    void move_jaws(sim::ToolId tool, double time);
-    void draw_suture(sim::ToolId tool, Interval step);
-    void warn_of_lost_holds();
-    void note_overlap();
-    void warn_of_overlaps();
-
-    std::vector<Script> scripts_;  // by the number of the tool in the world
+    ScriptedTools tools_;
     /// The largest overlap of surfaces so far.
     struct Overlap {
         double depth = 0.0, time = 0.0;  // m, s
         static void archive(auto& ar, auto& self) { ar(self.depth, self.time); }
     };
     Overlap overlap_;
-    std::vector<std::size_t> lost_;  // sutures and graspers that a warning has named
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;
