@@ -28,14 +28,15 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 
 }  // namespace
 
-Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals) {
-    const physics::Model& model = simulation.model();
+Quantities history_row(const sim::World& world, double time_step,
+                       const sim::BodyTotals& body_totals) {
+    const physics::Model& model = world.model();
     const physics::Totals& t = body_totals.totals;
-    const sim::ContactState& contact = simulation.world().report().contact;
+    const sim::ContactState& contact = world.report().contact;
     Quantities row;
     append(row, scenario::history_quantities,
-           std::array{simulation.time(),
-                      static_cast<double>(simulation.num_steps()),
+           std::array{world.time(),
+                      static_cast<double>(world.num_steps()),
                       static_cast<double>(body_totals.nodes),
                       static_cast<double>(body_totals.elements),
                       static_cast<double>(body_totals.components),
@@ -52,8 +53,8 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
                       t.angular_momentum.y(),
                       t.angular_momentum.z(),
                       body_totals.min_volume_ratio,
-                      simulation.time_step(),
-                      simulation.world().stable_step(),
+                      time_step,
+                      world.stable_step(),
                       static_cast<double>(contact.num_points),
                       contact.max_penetration,
                       contact.dissipation,
@@ -64,7 +65,6 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
     }
-    const sim::World& world = simulation.world();
     for (std::size_t i = 0; i < world.num_tools(); ++i) {
         if (!cutting::feels_force(world.tool({i}).shape)) continue;
         Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
@@ -79,11 +79,12 @@ Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body
     return row;
 }
 
-Quantities summary_quantities(const Simulation& simulation) {
-    auto quantities = history_row(simulation);
+Quantities summary_quantities(const sim::World& world, double time_step,
+                              std::span<const sim::EditRecord> edits) {
+    auto quantities = history_row(world, time_step, world.ledger().body_totals());
     std::size_t removed = 0, split = 0, added = 0, opened = 0;
     double cut_area = 0.0, mass_removed = 0.0;
-    for (const sim::EditRecord& edit : simulation.edits()) {
+    for (const sim::EditRecord& edit : edits) {
         removed += edit.elements_removed;
         split += edit.elements_split;
         added += edit.elements_added;
@@ -91,14 +92,13 @@ Quantities summary_quantities(const Simulation& simulation) {
         cut_area += edit.cut_area;
         mass_removed += edit.mass_removed;
     }
-    const sim::Ledger& ledger = simulation.ledger();
+    const sim::Ledger& ledger = world.ledger();
     append(quantities, scenario::run_quantities,
-           std::array{simulation.model().totals().gravity_energy,
-                      static_cast<double>(simulation.edits().size()), static_cast<double>(removed),
-                      static_cast<double>(split), static_cast<double>(added),
-                      static_cast<double>(opened), cut_area, mass_removed, ledger.mass_error(),
-                      ledger.energy_error(), simulation.model().volume_change(),
-                      simulation.model().max_displacement()});
+           std::array{world.model().totals().gravity_energy, static_cast<double>(edits.size()),
+                      static_cast<double>(removed), static_cast<double>(split),
+                      static_cast<double>(added), static_cast<double>(opened), cut_area,
+                      mass_removed, ledger.mass_error(), ledger.energy_error(),
+                      world.model().volume_change(), world.model().max_displacement()});
     return quantities;
 }
 

@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "incise/runner/simulation.h"
 #include "incise/scenario/scenario.h"
+#include "incise/sim/world.h"
 
 namespace incise::runner {
 
@@ -17,16 +19,32 @@ namespace incise::runner {
 using Quantities = std::vector<std::pair<std::string, double>>;
 
 /// Returns the values of a row of history.csv, with the names of its columns.
+/// @param world        the world
+/// @param time_step    the last step, s
+/// @param body_totals  the body totals at the time of the row
+Quantities history_row(const sim::World& world, double time_step,
+                       const sim::BodyTotals& body_totals);
+/// Returns the row of a run.
 /// @param simulation   the simulation
 /// @param body_totals  the body totals at the time of the row
-Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals);
+inline Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals) {
+    return history_row(simulation.world(), simulation.time_step(), body_totals);
+}
 inline Quantities history_row(const Simulation& simulation) {
     return history_row(simulation, simulation.ledger().body_totals());
 }
 
 /// Returns the quantities of summary.json that [expect] can name: the present history row, and
 /// totals over the run.
-Quantities summary_quantities(const Simulation& simulation);
+/// @param world      the world
+/// @param time_step  the last step, s
+/// @param edits      the records of all edits of the world
+Quantities summary_quantities(const sim::World& world, double time_step,
+                              std::span<const sim::EditRecord> edits);
+/// Returns the quantities of a run.
+inline Quantities summary_quantities(const Simulation& simulation) {
+    return summary_quantities(simulation.world(), simulation.time_step(), simulation.edits());
+}
 
 /// Returns a sentence for each expectation of the scenario that is not met.
 /// @pre  `quantities` has all quantities of [expect], which the scenario reader checks

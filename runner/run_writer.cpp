@@ -11,6 +11,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_format.h"
+#include "incise/runner/edit_line.h"
 #include "incise/runner/kept_scenario.h"
 
 namespace incise::runner {
@@ -19,54 +20,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-Json to_json(const sim::BodyTotals& body_totals) {
-    return {{"nodes", body_totals.nodes},
-            {"elements", body_totals.elements},
-            {"components", body_totals.components},
-            {"mass", body_totals.totals.mass},
-            {"volume", body_totals.totals.rest_volume},
-            {"kinetic_energy", body_totals.totals.kinetic_energy},
-            {"elastic_energy", body_totals.totals.elastic_energy},
-            {"momentum", to_json(body_totals.totals.momentum)},
-            {"angular_momentum", to_json(body_totals.totals.angular_momentum)},
-            {"centre_of_mass", to_json(body_totals.totals.centre_of_mass)},
-            {"stable_step", body_totals.stable_step}};
-}
-
-Json to_json(const sim::EditRecord& edit) {
-    return {{"time", edit.time},
-            {"step", edit.step},
-            {"tool", edit.tool},
-            {"elements_removed", edit.elements_removed},
-            {"elements_crossed", edit.elements_crossed},
-            {"elements_split", edit.elements_split},
-            {"elements_added", edit.elements_added},
-            {"faces_opened", edit.faces_opened},
-            {"nodes_added", edit.nodes_added},
-            {"nodes_duplicated", edit.nodes_duplicated},
-            {"nodes_removed", edit.nodes_removed},
-            {"nodes_snapped", edit.nodes_snapped},
-            {"cut_area", edit.cut_area},
-            {"mass_removed", edit.mass_removed},
-            {"fragments_copied", edit.fragments_copied},
-            {"fragment_nodes_copied", edit.fragment_nodes_copied},
-            {"volume_joined", edit.volume_joined},
-            {"volume_released", edit.volume_released},
-            {"min_altitude_ratio", edit.min_altitude_ratio},
-            {"before", to_json(edit.before)},
-            {"after", to_json(edit.after)}};
-}
-
 /// Returns JSON as text. Bytes that are not UTF-8, for example in file names, are replaced.
 std::string text_of(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string line_of(const sim::EditRecord& edit) {
-    // Names are UTF-8, except in a forged checkpoint.
-    return text_of(to_json(edit), -1);
 }
 
 /// Throws InputError unless the files of the run begin with what the run had written.
@@ -81,7 +37,7 @@ void require_files(const std::filesystem::path& folder, const Simulation& simula
         throw InputError(std::string(error.what()) + ", or begin anew without --resume");
     }
     io::BytesWritten lines;
-    for (const sim::EditRecord& edit : simulation.edits()) lines.append(line_of(edit) + "\n");
+    for (const sim::EditRecord& edit : simulation.edits()) lines.append(edit_line(edit) + "\n");
     if (lines != written.edits)
         throw InputError(edits.string() +
                          ": its edits are not those of the checkpoint; begin anew without "
@@ -146,7 +102,7 @@ void RunWriter::on_start(const Simulation& simulation) {
 }
 
 void RunWriter::on_edit(const Simulation& simulation, const sim::EditRecord& edit) {
-    edits_.append(line_of(edit));
+    edits_.append(edit_line(edit));
     append_history(simulation, edit.after);
 }
 
