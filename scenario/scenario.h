@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@
 #include "incise/scenario/time_key.h"
 #include "incise/sim/selection.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::scenario {
 
@@ -37,8 +39,9 @@ struct BoxMeshSpec {
 /// The [mesh] section.
 struct MeshSpec {
     /// A file, with the folder of the scenario in its path, or a box. The path is empty if the mesh
-    /// is not known.
-    std::variant<std::filesystem::path, BoxMeshSpec> source;
+    /// is not known. A program can put a mesh of its own here after reading; it must not be null.
+    std::variant<std::filesystem::path, BoxMeshSpec, std::shared_ptr<const topology::MeshData>>
+        source;
     double scale = 1.0;  ///< factor of all coordinates of the source
     std::string region_array = "region";
     /// For a file: true if points at the same position are joined. False states that such points

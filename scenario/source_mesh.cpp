@@ -56,6 +56,11 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         file.mesh.scale(scale);
         return file;
     }
+    if (const auto* given = std::get_if<std::shared_ptr<const topology::MeshData>>(&spec.source)) {
+        io::MeshFile file{**given, {}};
+        file.mesh.scale(scale);
+        return file;
+    }
     const auto& box = std::get<BoxMeshSpec>(spec.source);
     require_memory_for(box, spec.location);
     return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
@@ -118,9 +123,8 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
                                 " makes the mesh too " + (spec.scale > 1.0 ? "large" : "small") +
                                 " to compute with, which without it is sound: use a " +
                                 (spec.scale > 1.0 ? "smaller" : "larger") + " one");
-        if (!path)
-            throw BodyError(spec.location,
-                            what_is_wrong_with(std::get<BoxMeshSpec>(spec.source), spec.scale));
+        if (const auto* box = std::get_if<BoxMeshSpec>(&spec.source))
+            throw BodyError(spec.location, what_is_wrong_with(*box, spec.scale));
         BodyProblems problems;
         for (const std::string& line : prefixed_lines(prefix, error.what()))
             problems.add(spec.location, line);
