@@ -1,0 +1,113 @@
+// A world as Python holds it: with a mark while a thread uses it, and a count of its views.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "incise/python/world_driver.h"
+
+namespace incise::python {
+
+namespace py = pybind11;
+
+/// A use of a world that another use forbids. It becomes incise.Error.
+struct UsageError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A world with what Python needs to know of it. All members are used with the GIL held, except
+/// the driver while `is_busy` is set.
+struct Handle {
+    Handle(scenario::Scenario scenario, bool is_endless)
+        : driver(std::move(scenario), is_endless) {}
+
+    WorldDriver driver;
+    bool is_busy = false;         ///< a thread uses the driver without the GIL
+    std::size_t num_exports = 0;  ///< open views, and arrays that show memory of the world
+    int num_threads = 1;
+    std::size_t num_warned = 0;  ///< of the warnings of the driver
+
+    /// The living nodes, in ascending order: row r of the arrays of Python is node nodes[r].
+    struct Rows {
+        std::uint64_t version = std::numeric_limits<std::uint64_t>::max();
+        bool are_ids = true;                ///< all nodes live: rows are ids
+        std::vector<NodeId> nodes;          ///< empty if rows are ids
+        std::vector<std::int64_t> of_node;  ///< by id; -1 for dead nodes; empty if rows are ids
+        std::int64_t row(NodeId n) const { return are_ids ? n.value : of_node[n.index()]; }
+    };
+    const Rows& rows();
+
+    /// Objects that are made anew after edits only.
+    struct Kept {
+        std::uint64_t version = std::numeric_limits<std::uint64_t>::max();
+        py::object value;
+    };
+    Kept surface, cells, regions;
+
+  private:
+    Rows rows_;
+};
+
+using World = std::shared_ptr<Handle>;
+
+/// Returns the driver. Throws UsageError while another thread uses it.
+WorldDriver& driver_of(const World& world);
+
+/// Throws BufferError if views of the world are open.
+void require_no_views(const World& world);
+
+/// Runs a function on the driver without the GIL. No other thread can use the world meanwhile.
+template <class Function>
+auto without_gil(const World& world, Function function) {
+    WorldDriver& driver = driver_of(world);
+    struct Lease {
+        Handle& handle;
+        explicit Lease(Handle& h) : handle(h) { handle.is_busy = true; }
+        ~Lease() { handle.is_busy = false; }
+        Lease(const Lease&) = delete;
+        Lease& operator=(const Lease&) = delete;
+    } lease(*world);
+    const py::gil_scoped_release release;
+    return function(driver);
+}
+
+/// Passes warnings that are new to Python's warnings. Throws if these are errors there.
+void pass_warnings(const World& world);
+void pass_warning(const std::string& text);
+
+/// Returns points as an array of shape (N, 3).
+py::array_t<double> matrix_of(std::span<const Vec3> points);
+py::array_t<double> array_of(const Vec3& v);
+/// Returns rows of an array of points as nodes of a world. Throws InputError for other rows.
+std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows);
+/// Returns a vector from any three numbers. Throws TypeError or InputError, with the name.
+Vec3 vector_from(const py::handle& object, const std::string& name);
+/// Returns points from anything of shape (N, 3).
+std::vector<Vec3> points_from(const py::handle& object, const std::string& name);
+/// Makes an array read-only, and returns it.
+template <class Array>
+Array frozen(Array array) {
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+/// Returns the path that a str or an os.PathLike names.
+std::filesystem::path path_from(const py::handle& object);
+
+void register_errors(py::module_& module);
+void register_pose(py::module_& module);
+void register_mesh(py::module_& module);
+void register_report(py::module_& module);
+void register_tools(py::module_& module);
+void register_world(py::module_& module);
+
+}  // namespace incise::python

@@ -1,0 +1,61 @@
+"""Deformation and cutting of soft tissue.
+
+A World is a soft body with its constraints, loads and tools. It is made from a scenario file or
+from dicts with the same keys, stepped, and looked at as arrays of numpy:
+
+>>> import incise
+>>> world = incise.World(
+...     mesh={"box": {"size": [0.1, 0.02, 0.02], "cells": [5, 1, 1]}},
+...     materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
+>>> report = world.step()
+>>> world.positions.shape
+(24, 3)
+
+All values are in SI units. docs/python.md of the sources is the guide.
+"""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+from ._incise import (
+    Constraint,
+    CutResult,
+    Error,
+    InputError,
+    Load,
+    Mesh,
+    OutputError,
+    PhysicsError,
+    Pose,
+    StepReport,
+    Surface,
+    Tool,
+    View,
+    World,
+    __version__,
+    cut,
+    read_mesh,
+)
+
+
+class InciseWarning(UserWarning):
+    """What is unusual about a mesh, a scenario or a tool. The message says what to look at."""
+
+
+__all__ = [
+    "Constraint",
+    "CutResult",
+    "Error",
+    "InciseWarning",
+    "InputError",
+    "Load",
+    "Mesh",
+    "OutputError",
+    "PhysicsError",
+    "Pose",
+    "StepReport",
+    "Surface",
+    "Tool",
+    "View",
+    "World",
+    "__version__",
+    "cut",
+    "read_mesh",
+]

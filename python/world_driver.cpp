@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/python/world_driver.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "incise/base/archive.h"
+#include "incise/base/error.h"
+#include "incise/io/files/checked_file.h"
+#include "incise/io/files/number_format.h"
+#include "incise/runner/step_policy.h"
+#include "incise/scenario/diagnostics.h"
+#include "incise/scenario/held_tool.h"
+#include "incise/scenario/remedies.h"
+#include "incise/scenario/step_limit.h"
+#include "incise/scenario/tool_build.h"
+
+namespace incise::python {
+
+namespace {
+
+/// Throws InputError unless a name may be used in files, as those of scenarios.
+void require_name(const std::string& what, const std::string& name) {
+    const auto is_allowed = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-';
+    };
+    if (name.empty() || !std::ranges::all_of(name, is_allowed))
+        throw InputError(what + ": the name " + scenario::in_quotes(name) +
+                         " is not allowed: use letters, digits, _ and -");
+}
+
+void require_sound(const std::string& what, const Pose& pose) {
+    if (!pose.is_sound())
+        throw InputError(what +
+                         ": its pose must have a finite position, m, and a rotation of length 1");
+}
+
+/// True for tools that cut in one step, where they lie in the frame of the world.
+bool is_at_once(const cutting::ToolShape& shape) {
+    return std::holds_alternative<cutting::PlaneCut>(shape) ||
+           std::holds_alternative<cutting::SurfaceCut>(shape);
+}
+
+/// Names the step in which something went wrong, as the program does.
+std::string at_step(const scenario::Scenario& scenario, std::uint64_t step, double time,
+                    const std::string& text) {
+    return scenario.name + ": step " + std::to_string(step) + ", t = " + io::format_number(time) +
+           " s: " + text;
+}
+
+}  // namespace
+
+WorldDriver::WorldDriver(scenario::Scenario scenario, bool is_endless)
+    : WorldDriver(scenario, scenario::build_body(scenario), is_endless) {}
+
+WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool is_endless)
+    : scenario_(std::move(scenario)),
+      is_endless_(is_endless),
+      warnings_(std::move(body.warnings)),
+      world_(scenario::make_world(scenario_, std::move(body.mesh), std::move(body.materials),
+                                  std::move(body.boundary_conditions))),
+      scripts_(world_, std::move(body.tools)),
+      led_(scripts_.size()) {
+    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
+        constraints_.push_back({world_.model().constraint_name(i), {i}, {}, {}});
+    for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);
+    note_tools();
+    if (scenario_.dynamics.mode == scenario::Mode::dynamic && is_endless_)
+        scenario_.dynamics.end_time = 0.0;  // bounds no number of steps
+    next_step();                            // refuses a fixed step that is too large
+}
+
+void WorldDriver::note_tools() {
+    auto feeling = std::make_shared<FeelingTools>();
+    for (std::size_t i = 0; i < world_.num_tools(); ++i)
+        if (const sim::ToolDef& tool = world_.tool({i}); cutting::feels_force(tool.shape)) {
+            feeling->ids.push_back({i});
+            feeling->names.push_back(tool.name);
+        }
+    feeling_ = std::move(feeling);
+}
+
+double WorldDriver::next_step() const {
+    return scenario::step_limit(scenario_, world_.model(), world_.stable_step(),
+                                world_.num_steps());
+}
+
+// --- Steps
+
+void WorldDriver::begin_call() {
+    for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
+        Led& led = led_[i];
+        led.from.reset();
+        if (led.target && world_.is_tool_present({i})) led.from = world_.tool_pose({i});
+        led.length_from.reset();
+        if (led.length_target) led.length_from = world_.suture_length({i});
+    }
+}
+
+/// Sets where the tools and grasps are at the end of the next step.
+/// @param part  of the way from the beginning of the call to its end
+void WorldDriver::lead(double part, bool is_last) {
+    for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
+        const Led& led = led_[i];
+        if (led.target) {
+            const bool is_there = is_last || !led.from;
+            world_.set_tool_pose(
+                {i}, is_there ? *led.target : interpolate(*led.from, *led.target, part));
+        }
+        if (led.length_target)
+            world_.set_suture_length(
+                {i}, is_last ? *led.length_target
+                             : std::lerp(*led.length_from, *led.length_target, part));
+        if (led.leaves && is_last && world_.is_tool_present({i})) world_.withdraw_tool({i});
+    }
+    for (const NamedConstraint& grasp : constraints_)
+        if (grasp.target)
+            world_.set_grasp_pose(
+                grasp.id, is_last ? *grasp.target : interpolate(*grasp.pose, *grasp.target, part));
+}
+
+void WorldDriver::end_call() {
+    for (Led& led : led_) led = {};
+    for (NamedConstraint& grasp : constraints_)
+        if (grasp.target) {
+            grasp.pose = grasp.target;
+            grasp.target.reset();
+        }
+}
+
+void WorldDriver::make_step(double end, double part, bool is_last, Report& report) {
+    const double from = world_.time();
+    const std::uint64_t number = world_.num_steps() + 1;
+    scripts_.move(world_, from, end, warnings_);
+    lead(part, is_last);
+    try {
+        world_.step_to(end);
+    } catch (const sim::ToolError& error) {
+        note(report);
+        std::string text = error.what();
+        if (error.undividable.is_valid())
+            text += "; " + scenario::instead_of_dividing(world_.tool(error.tool).shape);
+        throw InputError(at_step(scenario_, number, from, text));
+    } catch (const physics::MotionFailure& failure) {
+        note(report);
+        throw PhysicsError(
+            at_step(scenario_, number, from, failure.what() + scenario::remedy_for(failure)));
+    }
+    last_step_ = end - from;
+    note(report);
+    scripts_.warn_of_lost_holds(world_, warnings_);
+}
+
+/// Adds the last step to a report.
+void WorldDriver::note(Report& report) {
+    const sim::StepReport& step = world_.report();
+    report.to = step.to;
+    ++report.num_steps;
+    report.num_parts += step.num_parts;
+    report.contact = step.contact;
+    report.max_penetration = std::max(report.max_penetration, step.contact.max_penetration);
+    for (const sim::Edit& edit : step.edits) {
+        edits_.push_back(edit.record);
+        report.edits.push_back(edit.record);
+    }
+    const double dt = step.to - step.from;
+    auto row = report.tools->ids.begin();
+    for (const sim::ToolState& tool : step.tools) {
+        row = std::find(row, report.tools->ids.end(), tool.tool);
+        if (row == report.tools->ids.end()) {
+            row = report.tools->ids.begin();
+            continue;
+        }
+        const auto i = static_cast<std::size_t>(row - report.tools->ids.begin());
+        report.forces[i] += dt * tool.force;
+        report.torques[i] += dt * tool.torque;
+    }
+}
+
+/// Turns the sums of a report into means.
+void WorldDriver::finish(Report& report) const {
+    const double duration = report.to - report.from;
+    if (!(duration > 0.0)) return;
+    for (Vec3& force : report.forces) force /= duration;
+    for (Vec3& torque : report.torques) torque /= duration;
+}
+
+/// Makes steps. next_end(i) returns the end of step i, which part of the call it ends, and whether
+/// it is the last.
+template <class NextEnd>
+Report WorldDriver::call(NextEnd next_end, const Poll& poll) {
+    using Clock = std::chrono::steady_clock;
+    constexpr auto between_polls = std::chrono::milliseconds(100);
+    Report report;
+    report.from = report.to = world_.time();
+    report.tools = feeling_;
+    report.forces.assign(feeling_->ids.size(), Vec3::Zero());
+    report.torques = report.forces;
+    begin_call();
+    auto polled = Clock::now();
+    for (std::uint64_t i = 0;; ++i) {
+        const auto [end, part, is_last] = next_end(i);
+        make_step(end, part, is_last, report);
+        if (is_last) break;
+        if (const auto now = Clock::now(); now - polled > between_polls) {
+            polled = now;
+            poll();
+        }
+    }
+    end_call();
+    finish(report);
+    return report;
+}
+
+namespace {
+struct NextStep {
+    double end, part;
+    bool is_last;
+};
+}  // namespace
+
+Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& poll) {
+    if (n == 0) throw InputError("a call of 0 steps: n must be at least 1");
+    if (dt && !(*dt > 0.0 && std::isfinite(*dt)))
+        throw InputError("a step of " + io::format_number(*dt) + " s: it must be above 0");
+    return call(
+        [&](std::uint64_t i) {
+            const double length = dt ? *dt : next_step();
+            return NextStep{world_.time() + length,
+                            static_cast<double>(i + 1) / static_cast<double>(n), i + 1 == n};
+        },
+        poll);
+}
+
+Report WorldDriver::run_until(double time, const Poll& poll) {
+    const double from = world_.time();
+    if (!(time >= from && std::isfinite(time)))
+        throw InputError("the world cannot run until " + io::format_number(time) +
+                         " s: its time is " + io::format_number(from) + " s");
+    if (time == from) {
+        Report report;
+        report.from = report.to = time;
+        report.tools = feeling_;
+        report.forces.assign(feeling_->ids.size(), Vec3::Zero());
+        report.torques = report.forces;
+        return report;
+    }
+    constexpr double max_steps = 1e10;  // more would take years
+    if (!(next_step() * max_steps >= time - from))
+        throw InputError("to run until " + io::format_number(time) +
+                         " s takes more than 1e10 steps of " + io::format_number(next_step()) +
+                         " s: use an earlier time");
+    return call(
+        [&](std::uint64_t) {
+            const double end = runner::even_steps({scenario_, world_.model(), world_.time(), time,
+                                                   world_.stable_step(), world_.num_steps()});
+            return NextStep{end, (end - from) / (time - from), end == time};
+        },
+        poll);
+}
+
+// --- Tools
+
+std::optional<sim::ToolId> WorldDriver::find_tool(std::string_view name) const {
+    for (std::size_t i = 0; i < world_.num_tools(); ++i)
+        if (world_.tool({i}).name == name) return sim::ToolId{i};
+    return std::nullopt;
+}
+
+sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value& definition,
+                                  const std::optional<Pose>& pose) {
+    require_name("tool", name);
+    if (find_tool(name))
+        throw InputError("tool '" + name + "': the world has a tool of this name already");
+    if (pose) require_sound("tool '" + name + "'", *pose);
+    scenario::HeldTool held = [&] {
+        try {
+            return scenario::build_held_tool(
+                definition, scenario_.folder, world_.mesh(),
+                scenario::why_no_contact(scenario_.dynamics, scenario_.contact));
+        } catch (const InputError& error) {
+            throw InputError("tool '" + name + "': " + error.what());
+        }
+    }();
+    if (pose && std::holds_alternative<cutting::Suture>(held.shape))
+        throw InputError("tool '" + name + "': a suture has no pose: its points are in the tissue");
+    const bool is_cut = is_at_once(held.shape);
+    if (pose && is_cut)
+        throw InputError("tool '" + name +
+                         "': a cut has no pose: it lies in the frame of the world");
+    const sim::ToolId tool = world_.add_tool({name, std::move(held.shape)});
+    led_.resize(world_.num_tools());
+    note_tools();
+    add_warnings(held.warnings);
+    if (pose || is_cut) world_.place_tool(tool, pose.value_or(Pose()));
+    if (is_cut) world_.withdraw_tool(tool);  // after it has cut in the next step
+    return tool;
+}
+
+std::optional<Pose> WorldDriver::tool_pose(sim::ToolId tool) const {
+    if (led_.at(tool.index).target) return led_[tool.index].target;
+    if (!world_.is_tool_present(tool)) return std::nullopt;
+    return world_.tool_pose(tool);
+}
+
+void WorldDriver::require_led(sim::ToolId tool) const {
+    if (is_scripted(tool))
+        throw InputError("tool '" + world_.tool(tool).name +
+                         "' is led by the scenario, and cannot be led by hand");
+}
+
+void WorldDriver::require_posable(sim::ToolId tool, const Pose& pose) const {
+    require_led(tool);
+    const sim::ToolDef& def = world_.tool(tool);
+    require_sound("tool '" + def.name + "'", pose);
+    if (std::holds_alternative<cutting::Suture>(def.shape))
+        throw InputError("tool '" + def.name + "' is a suture, which has no pose: use tie()");
+    if (is_at_once(def.shape))
+        throw InputError("tool '" + def.name +
+                         "' is a cut, which has no pose; add another tool for another cut");
+}
+
+void WorldDriver::set_tool_target(sim::ToolId tool, const Pose& pose) {
+    require_posable(tool, pose);
+    led_[tool.index].target = pose;
+}
+
+void WorldDriver::place_tool(sim::ToolId tool, const Pose& pose) {
+    require_posable(tool, pose);
+    world_.place_tool(tool, pose);
+    led_[tool.index] = {};
+}
+
+void WorldDriver::withdraw_tool(sim::ToolId tool) {
+    require_led(tool);
+    Led& led = led_[tool.index];
+    const sim::ToolDef& def = world_.tool(tool);
+    if (std::holds_alternative<cutting::Suture>(def.shape))
+        throw InputError("tool '" + def.name + "' is a suture: use untie()");
+    if (!world_.is_tool_present(tool) && !led.target)
+        throw InputError("tool '" + def.name + "' is not there to be withdrawn");
+    led.leaves = true;
+}
+
+std::size_t WorldDriver::close(sim::ToolId tool) {
+    require_led(tool);
+    return world_.close_grasper(tool);
+}
+
+void WorldDriver::open(sim::ToolId tool) {
+    require_led(tool);
+    world_.open_grasper(tool);
+}
+
+std::size_t WorldDriver::tie(sim::ToolId tool) {
+    require_led(tool);
+    const std::size_t num_points = world_.tie_suture(tool);
+    led_[tool.index] = {};
+    return num_points;
+}
+
+void WorldDriver::untie(sim::ToolId tool) {
+    require_led(tool);
+    world_.untie_suture(tool);
+    led_[tool.index] = {};
+}
+
+void WorldDriver::set_suture_target(sim::ToolId tool, double length) {
+    require_led(tool);
+    // The world checks the length, and that the tool is a tied suture.
+    world_.set_suture_length(tool, length);
+    led_[tool.index].length_target = length;
+}
+
+sim::ToolState WorldDriver::tool_state(sim::ToolId tool) const {
+    for (const sim::ToolState& state : world_.report().tools)
+        if (state.tool == tool) return state;
+    sim::ToolState absent{};
+    absent.tool = tool;
+    return absent;
+}
+
+// --- Constraints and loads
+
+namespace {
+auto find_constraint(auto& constraints, const std::string& name) {
+    const auto found = std::ranges::find(constraints, name, &NamedConstraint::name);
+    if (found == constraints.end()) throw InputError("the world has no constraint '" + name + "'");
+    return found;
+}
+}  // namespace
+
+void WorldDriver::grasp(const std::string& name, std::vector<NodeId> nodes, const Pose& pose) {
+    require_name("grasp", name);
+    if (std::ranges::find(constraints_, name, &NamedConstraint::name) != constraints_.end())
+        throw InputError("grasp '" + name + "': the world has a constraint of this name already");
+    const sim::ConstraintId id = world_.grasp(name, std::move(nodes), pose);
+    constraints_.push_back({name, id, pose, {}});
+}
+
+void WorldDriver::set_grasp_target(const std::string& name, const Pose& pose) {
+    const auto found = find_constraint(constraints_, name);
+    if (!found->pose)
+        throw InputError("constraint '" + name + "' is no grasp: the scenario says how it moves");
+    require_sound("grasp '" + name + "'", pose);
+    found->target = pose;
+}
+
+void WorldDriver::release(const std::string& name) {
+    const auto found = find_constraint(constraints_, name);
+    world_.release(found->id);
+    constraints_.erase(found);
+}
+
+const physics::Load& WorldDriver::load(const std::string& name) const {
+    const auto found = std::ranges::find(loads_, name);
+    if (found == loads_.end()) throw InputError("the world has no load '" + name + "'");
+    return world_.model().loads().all()[static_cast<std::size_t>(found - loads_.begin())];
+}
+
+void WorldDriver::set_load_factor(const std::string& name, double factor) {
+    load(name);
+    const auto found = std::ranges::find(loads_, name);
+    world_.set_load_factor({static_cast<std::size_t>(found - loads_.begin())}, factor);
+}
+
+// --- State
+
+namespace {
+constexpr std::string_view mark = "Incise state";
+}  // namespace
+
+std::string WorldDriver::save() const {
+    ArchiveWriter ar;
+    ar(world_.save(), std::uint64_t{scripts_.size()}, last_step_, scripts_, led_, constraints_,
+       edits_);
+    const std::string& bytes = ar.bytes();
+    ArchiveWriter head;
+    head(std::string(mark), sim::World::state_format, io::checksum(bytes));
+    return head.bytes() + bytes;
+}
+
+void WorldDriver::restore(std::string_view bytes) {
+    const auto refuse = [](const std::string& why) {
+        throw InputError("these bytes are no state of this world: " + why);
+    };
+    ArchiveReader head(bytes);
+    std::string name;
+    std::uint32_t format = 0;
+    std::uint64_t sum = 0;
+    const std::size_t head_size = sizeof(std::uint64_t) + mark.size() + sizeof format + sizeof sum;
+    if (bytes.size() < head_size) refuse("they are too few");
+    head(name);
+    if (name != mark) refuse("save() has not made them");
+    head(format, sum);
+    if (format != sim::World::state_format) refuse("another version of Incise has saved them");
+    const std::string_view body = bytes.substr(head_size);
+    if (io::checksum(body) != sum) refuse("they are damaged");
+    ArchiveReader ar(body);
+    std::string state;
+    std::uint64_t num_scripts = 0;
+    double last = 0.0;
+    ar(state, num_scripts, last);
+    if (num_scripts != scripts_.size())
+        refuse("the scenario of the saved world has " + std::to_string(num_scripts) +
+               " tools, and this one " + std::to_string(scripts_.size()));
+    runner::ScriptedTools scripts = scripts_;
+    std::vector<Led> led;
+    std::vector<NamedConstraint> constraints;
+    std::vector<sim::EditRecord> edits;
+    ar(scripts, led, constraints, edits);
+    const std::uint64_t version = topology_version();
+    world_.restore(state);
+    last_step_ = last;
+    scripts_ = std::move(scripts);
+    led_ = std::move(led);
+    constraints_ = std::move(constraints);
+    edits_ = std::move(edits);
+    loads_.clear();
+    for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);
+    version_base_ = version + 1 - world_.mesh().epoch();
+    note_tools();
+}
+
+}  // namespace incise::python
