@@ -239,7 +239,7 @@ export class Body {
      */
     positions(origin, displacement, time) {
         const result = new Float32Array(this.rest.length);
-        const breath = 0.0006 * Math.sin(2 * time);
+        const breath = 0.0001 * Math.sin(2 * time);
         for (let vertex = 0; vertex < this.owner.length; ++vertex) {
             const p = [0, 1, 2].map((axis) => this.rest[3 * vertex + axis]);
             const u = displacement ? displacement(p, this.pieceOf[vertex]) : [0, 0, 0];

@@ -18,7 +18,7 @@ const byName = [
     [/white/i, '#cdb9a6', '#f0e3d2'],
     [/kidney|medulla/i, '#84382f', '#c9655c'],
     [/uter|cervi/i, '#b0605a', '#dd8a84'],
-    [/liver|hepat/i, '#7d3a32', '#cf6f66'],
+    [/liver|hepat/i, '#73362f', '#cf6f66'],
 ];
 
 /** Where the name says nothing, by the place in the list. @type {[string, string][]} */

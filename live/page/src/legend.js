@@ -22,8 +22,7 @@ export class Legend {
     /** @param {string} name @param {string} unit @param {{low: number, high: number}} range */
     show(name, unit, { low, high }) {
         element('legend').hidden = false;
-        const words = name.replace(/_/g, ' ');
-        write('legend-name', unit ? `${words} (${unit})` : words);
+        write('legend-name', name.replace(/_/g, ' '));
         write('legend-low', withUnit(low, unit));
         write('legend-middle', withUnit((low + high) / 2, unit));
         write('legend-high', withUnit(high, unit));

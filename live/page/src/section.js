@@ -99,7 +99,7 @@ export class Section {
 
     /** Colours the cap like the cut faces, or in grey while a field is shown. @param {import('three').ColorRepresentation} colour */
     setColour(colour) {
-        this.cap.material.color.set(colour);
+        this.cap.material.color.set(colour).multiplyScalar(0.85);
     }
 
     /** The plane that clips, or null while the section is off. */

@@ -1,0 +1,450 @@
+// The live page in a browser, with the program behind it.
+// The environment names the program (INCISE_PROGRAM), a scenario (INCISE_SCENARIO) and the folder
+// with playwright-core (INCISE_NODE_MODULES). The tests want both cores of a small machine.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, beforeEach, describe, test } from 'node:test';
+import { between, beyond, launch, LivePage } from './page.mjs';
+import { colourAt, countChanged, difference } from './picture.mjs';
+import { run, scenario, startLive } from './program.mjs';
+
+const folder = mkdtempSync(join(tmpdir(), 'incise-live-'));
+/** Milliseconds for one test, and for a group of them. */
+const timeout = 180000;
+const whole = 1800000;
+/** @type {Awaited<ReturnType<typeof startLive>>} */
+let session;
+/** @type {any} */
+let browser;
+
+before(async () => {
+    browser = await launch();
+    session = await startLive(join(folder, 'record.jsonl'));
+}, { timeout });
+
+after(async () => {
+    await browser?.close();
+    await session?.stop();
+    rmSync(folder, { recursive: true, force: true });
+}, { timeout });
+
+/** A shallow stroke of the scalpel across the middle of the body. @param {LivePage} live */
+async function cutAcross(live) {
+    const middle = await live.middle();
+    const { from, to } = await live.chord(middle, 0);
+    await live.press('2');
+    const ends = [between(from, to, 0.3), between(from, to, 0.65)];
+    await live.drag(ends[0], ends[1]);
+    await live.until(() => window.incise.state().edits > 0 && !window.incise.state().tools.some((tool) => tool.mine && tool.present));
+    return ends;
+}
+
+/** The box round a stroke. @param {import('./page.mjs').Point} from @param {import('./page.mjs').Point} to */
+const around = (from, to) => ({
+    left: Math.min(from.x, to.x) - 30,
+    right: Math.max(from.x, to.x) + 30,
+    top: Math.min(from.y, to.y) - 40,
+    bottom: Math.max(from.y, to.y) + 40,
+});
+
+describe('loading', { timeout: whole }, () => {
+    test('BodyComesWithoutErrors', { timeout }, async () => {
+        const started = performance.now();
+        const live = await LivePage.open(browser, session.address);
+        assert.ok(performance.now() - started < 30000);
+        await live.until(() => document.getElementById('loading')?.hidden);
+        const icon = await live.ask(async () => (await fetch('/favicon.svg')).status);
+        assert.equal(icon, 200);
+        assert.deepEqual(live.errors, []);
+        const picture = await live.picture();
+        const { x, y } = await live.middle();
+        const corner = colourAt(picture, 200, picture.height - 8);
+        assert.ok(difference(colourAt(picture, x, y), corner) > 30, 'the body is not seen');
+        await live.close();
+    });
+
+    test('PageFollowsReload', { timeout }, async () => {
+        const live = await LivePage.open(browser, session.address);
+        await live.beginAnew();
+        await cutAcross(live);
+        const { edits } = await live.state();
+        await live.page.reload();
+        await live.ready();
+        assert.equal((await live.state()).edits, edits);
+        assert.ok(await live.ask(() => [...Array(window.incise.numVertices()).keys()].some((i) => window.incise.isCut(i))));
+        assert.deepEqual(live.errors, []);
+        await live.close();
+    });
+});
+
+describe('hands', { timeout: whole }, () => {
+    /** @type {LivePage} */
+    let live;
+    beforeEach(async () => {
+        live = await LivePage.open(browser, session.address);
+        await live.beginAnew();
+    }, { timeout });
+    afterEach(async () => {
+        await live.close();
+        assert.deepEqual(live.errors, []);
+    });
+
+    test('OrbitTurnsOnlyTheView', { timeout }, async () => {
+        await live.press('Space');
+        await live.until(() => window.incise.state().paused);
+        const before = await live.picture();
+        const sent = await live.ask(() => window.incise.ordersSent());
+        const { x, y } = await live.middle();
+        await live.page.mouse.move(x, y);
+        await live.page.mouse.down({ button: 'right' });
+        await live.page.mouse.move(x + 90, y + 30, { steps: 5 });
+        await live.page.mouse.up({ button: 'right' });
+        assert.ok(countChanged(before, await live.picture()) > 500);
+        assert.equal(await live.ask(() => window.incise.ordersSent()), sent);
+    });
+
+    test('ShallowStrokeOpensOneBody', { timeout }, async () => {
+        const before = await live.picture();
+        const [from, to] = await cutAcross(live);
+        const state = await live.state();
+        assert.ok(state.edits > 0);
+        assert.ok(state.cut_area > 0);
+        assert.equal(state.components, 1);
+        await live.press('1');
+        const picture = await live.picture();
+        assert.ok(countChanged(before, picture, around(from, to)) > 60, 'the cut is not seen');
+        // The vertices of the cut faces that are in sight have another colour than the skin had there.
+        const seen = await live.ask(() =>
+            [...Array(window.incise.numVertices()).keys()]
+                .filter((vertex) => window.incise.isCut(vertex))
+                .map((vertex) => window.incise.vertexOnScreen(vertex))
+                .filter((at) => at.visible)
+        );
+        assert.ok(seen.length >= 3, 'no cut face is in sight');
+        const changed = seen.filter(({ x, y }) => {
+            for (const dx of [-1, 0, 1])
+                for (const dy of [-1, 0, 1])
+                    if (difference(colourAt(picture, x + dx, y + dy), colourAt(before, x + dx, y + dy)) > 20) return true;
+            return false;
+        });
+        assert.ok(changed.length >= seen.length / 4, `${changed.length} of ${seen.length} look cut`);
+        assert.ok(Number((await live.page.textContent('#edits')).replace(/\D/g, '')) > 0);
+    });
+
+    test('StrokeOverTheEdgePartsTheBody', { timeout }, async () => {
+        await live.press('2');
+        await live.page.check('#through');
+        const { from, to } = await live.shortestChord(await live.middle());
+        await live.drag(beyond(to, from, 20), beyond(from, to, 20), { steps: 24 });
+        await live.until(() => window.incise.state().components === 2);
+        assert.equal(await live.page.textContent('#pieces'), '2');
+    });
+
+    test('StrokeFromBesideCutsWhatItReaches', { timeout }, async () => {
+        const middle = await live.middle();
+        const { from } = await live.shortestChord(middle);
+        await live.press('2');
+        await live.drag(beyond(middle, from, 20), middle, { steps: 20 });
+        await live.until(() => window.incise.state().edits > 0);
+    });
+
+    test('GrasperFeelsForceWhileItHolds', { timeout }, async () => {
+        const middle = await live.middle();
+        await live.press('4');
+        await live.drag(middle, { x: middle.x + 20, y: middle.y - 60 }, { release: false });
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.held > 0 && Math.hypot(...tool.force) > 0));
+        await live.until(() => /[1-9].* (m|µ)?N$/.test(document.getElementById('force')?.textContent ?? ''));
+        await live.page.mouse.up();
+        await live.until(() => !window.incise.state().tools.some((tool) => tool.mine && tool.present && Math.hypot(...tool.force) > 0));
+    });
+
+    test('BurrRemovesElements', { timeout }, async () => {
+        const { elements } = await live.state();
+        const middle = await live.middle();
+        await live.press('6');
+        await live.drag(middle, { x: middle.x + 40, y: middle.y });
+        await live.until((count) => window.incise.state().elements < count, elements);
+    });
+
+    test('ProbePressesAndLetsGo', { timeout }, async () => {
+        if (!(await live.ask(() => window.incise.hello().has_contact))) return;
+        const middle = await live.middle();
+        await live.press('3');
+        await live.drag(middle, { x: middle.x + 3, y: middle.y }, { release: false });
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.kind === 'probe' && Math.hypot(...tool.force) > 0));
+        await live.page.mouse.up();
+        await live.until(() => !window.incise.state().tools.some((tool) => tool.mine && tool.present));
+    });
+
+    test('SutureTiesClickedPoints', { timeout }, async () => {
+        const middle = await live.middle();
+        const { from, to } = await live.chord(middle, 0);
+        await live.press('5');
+        for (const part of [0.4, 0.6]) {
+            const at = between(from, to, part);
+            await live.page.mouse.click(at.x, at.y);
+            // Two clicks in short order would be a double click.
+            await live.page.waitForTimeout(400);
+        }
+        await live.until(() => document.getElementById('thread')?.textContent === '2 points laid');
+        await live.press('Enter');
+        await live.until(() => window.incise.state().tools.some((tool) => tool.kind === 'suture'));
+    });
+
+    test('PauseHoldsTimeAndStepIsOneTick', { timeout }, async () => {
+        await live.press('Space');
+        await live.until(() => window.incise.state().paused);
+        const { tick, time } = await live.state();
+        const field = await live.ask(() => window.incise.hello().fields[1].name);
+        // Another order is answered with a state; in it the time is the same.
+        await live.send({ do: 'show', field });
+        await live.until((name) => window.incise.state().field === name, field);
+        assert.equal((await live.state()).tick, tick);
+        assert.equal((await live.state()).time, time);
+        await live.press('.');
+        await live.until((before) => window.incise.state().tick !== before, tick);
+        await live.send({ do: 'show', field: 'none' });
+        await live.until(() => window.incise.state().field === 'none');
+        assert.equal((await live.state()).tick, tick + 1);
+        assert.equal(await live.page.getAttribute('#pause', 'aria-pressed'), 'true');
+    });
+
+    test('UndoRestoresElementsAndPicture', { timeout }, async () => {
+        await live.press('2');
+        const middle = await live.middle();
+        const { from, to } = await live.chord(middle, 0);
+        await live.press('Space');
+        await live.until(() => window.incise.state().paused);
+        const before = await live.picture();
+        const { elements } = await live.state();
+        const [first, last] = [between(from, to, 0.3), between(from, to, 0.65)];
+        await live.page.mouse.move(first.x, first.y);
+        await live.page.mouse.down();
+        await live.press('Space');
+        await live.until(() => !window.incise.state().paused);
+        await live.movePressed(first, last, 12);
+        await live.page.mouse.up();
+        await live.until(() => window.incise.state().edits > 0);
+        await live.press('Space');
+        await live.until(() => window.incise.state().paused);
+        const box = around(first, last);
+        const cut = countChanged(before, await live.picture(), box);
+        await live.press('z');
+        await live.until((count) => window.incise.state().elements === count && window.incise.state().edits === 0, elements);
+        await live.until(() => ![...Array(window.incise.numVertices()).keys()].some((vertex) => window.incise.isCut(vertex)));
+        const undone = countChanged(before, await live.picture(), box);
+        assert.ok(cut > 60, `the cut changed ${cut} pixels`);
+        assert.ok(undone < cut / 10, `${undone} pixels differ after undo, ${cut} before`);
+    });
+
+    test('ResetAsksTwice', { timeout }, async () => {
+        await cutAcross(live);
+        await live.press('r');
+        await live.until(() => !document.getElementById('reset-ask')?.hidden);
+        assert.ok((await live.state()).edits > 0);
+        await live.press('r');
+        await live.until(() => window.incise.state().edits === 0 && window.incise.state().components === 1);
+    });
+
+    test('KeyboardAloneCuts', { timeout }, async () => {
+        await live.press('2');
+        const target = await live.middle();
+        await live.press('ArrowLeft');
+        const start = await live.ask(() => {
+            const { left, top, width, height } = /** @type {Element} */ (document.getElementById('cursor')).getBoundingClientRect();
+            return { x: left + width / 2, y: top + height / 2 };
+        });
+        const steps = (/** @type {number} */ pixels, /** @type {string} */ less, /** @type {string} */ more) =>
+            Array(Math.round(Math.abs(pixels) / 6)).fill(pixels < 0 ? less : more);
+        const way = [...steps(target.x - start.x, 'ArrowLeft', 'ArrowRight'), ...steps(target.y - start.y, 'ArrowUp', 'ArrowDown')];
+        for (const key of way) await live.press(key);
+        await live.press('Enter');
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.present));
+        for (let i = 0; i < 14; ++i) {
+            const seen = await live.ask(() => window.incise.framesReceived());
+            await live.press('ArrowRight');
+            await live.until((count) => window.incise.framesReceived() > count, seen);
+        }
+        await live.press('Enter');
+        await live.until(() => window.incise.state().edits > 0 && !window.incise.state().tools.some((tool) => tool.mine && tool.present));
+    });
+
+    test('ButtonsSayWhichToolIsChosen', { timeout }, async () => {
+        const names = await live.ask(() =>
+            [...document.querySelectorAll('[data-mode]')].filter((one) => !one.hidden).map((one) => one.dataset.mode)
+        );
+        assert.ok(names.length >= 4);
+        for (const name of names) {
+            await live.page.click(`[data-mode="${name}"]`);
+            const pressed = await live.ask(() => [...document.querySelectorAll('[data-mode][aria-pressed="true"]')].map((one) => one.dataset.mode));
+            assert.deepEqual(pressed, [name]);
+        }
+    });
+
+    test('FieldColoursTheBody', { timeout }, async () => {
+        await live.send({ do: 'pause', on: true });
+        await live.until(() => window.incise.state().paused);
+        const before = await live.picture();
+        await live.press('f');
+        await live.until(() => window.incise.state().field !== 'none' && !document.getElementById('legend')?.hidden);
+        assert.ok(countChanged(before, await live.picture()) > 1000);
+        const unit = await live.ask(() => window.incise.hello().fields.find((field) => field.name === window.incise.state().field).unit ?? '');
+        assert.ok((await live.page.textContent('#legend-high')).endsWith(unit));
+    });
+
+    test('SectionPlaneShowsTheInside', { timeout }, async () => {
+        await live.send({ do: 'pause', on: true });
+        await live.until(() => window.incise.state().paused);
+        const before = await live.picture();
+        const sent = await live.ask(() => window.incise.ordersSent());
+        await live.press('s');
+        const half = await live.picture();
+        assert.ok(countChanged(before, half) > 1000);
+        await live.page.click('[data-direction="x"]');
+        assert.ok(countChanged(half, await live.picture()) > 1000);
+        await live.press('s');
+        assert.ok(countChanged(before, await live.picture()) < 1000);
+        assert.equal(await live.ask(() => window.incise.ordersSent()), sent);
+    });
+
+    test('NarrowPageLeavesTheMiddleFree', { timeout }, async () => {
+        await live.page.setViewportSize({ width: 375, height: 700 });
+        await live.drawn();
+        const look = () => live.ask(() =>
+            ['top', 'readings', 'tools', 'transport', 'more', 'settings', 'corner', 'legend', 'notice']
+                .map((id) => ({ id, part: /** @type {HTMLElement} */ (document.getElementById(id)) }))
+                .filter(({ part }) => part.offsetParent !== null || getComputedStyle(part).position === 'fixed')
+                .map(({ id, part }) => {
+                    const { left, top, right, bottom } = part.getBoundingClientRect();
+                    return { id, left, top, right, bottom };
+                })
+                .filter(({ left, right, top, bottom }) => right > left && bottom > top)
+        );
+        for (const open of [false, true]) {
+            if (open) await live.page.click('#more');
+            const parts = await look();
+            for (const part of parts) {
+                assert.ok(part.left >= 0 && part.right <= 375 && part.bottom <= 700, `${part.id} leaves the page`);
+                const middle = part.left < 187 && part.right > 187 && part.top < 350 && part.bottom > 350;
+                assert.ok(!middle, `${part.id} covers the middle`);
+                for (const other of parts) {
+                    if (part.id >= other.id) continue;
+                    const apart = part.right <= other.left || other.right <= part.left || part.bottom <= other.top || other.bottom <= part.top;
+                    assert.ok(apart, `${part.id} overlaps ${other.id}`);
+                }
+            }
+        }
+    });
+
+    test('TwoPagesSeeOneBody', { timeout }, async () => {
+        const other = await LivePage.open(browser, session.address);
+        assert.equal(await other.ask(() => window.incise.hello().role), 'watcher');
+        assert.equal(await live.ask(() => window.incise.hello().role), 'operator');
+        assert.match(await other.page.textContent('#notice'), /Another page holds the tools/);
+        await cutAcross(live);
+        await live.send({ do: 'pause', on: true });
+        await live.until(() => window.incise.state().paused);
+        const { tick, edits, elements } = await live.state();
+        await other.until((now) => window.incise.state().paused && window.incise.state().tick === now, tick);
+        assert.deepEqual([edits, elements], await other.ask(() => [window.incise.state().edits, window.incise.state().elements]));
+        const body = () => [window.incise.numVertices(), ...window.incise.vertex(5), ...window.incise.vertex(50)];
+        await other.until((count) => window.incise.numVertices() === count, (await live.ask(body))[0]);
+        await other.drawn();
+        await live.drawn();
+        assert.deepEqual(await live.ask(body), await other.ask(body));
+        await other.page.click('#take-over');
+        await other.until(() => window.incise.hello()?.role === 'operator');
+        await live.until(() => window.incise.hello()?.role === 'watcher');
+        assert.deepEqual(other.errors, []);
+        await other.close();
+    });
+
+    test('HostileMessagesAreAnswered', { timeout }, async () => {
+        const answers = await live.ask(async () => {
+            const pose = { at: [0, 0, 0], rotation: [0, 0, 0, 1] };
+            const blade = { kind: 'blade', edge: [[0, 0, 0.01], [0, 0, -0.01]] };
+            const texts = [
+                'cut it',
+                '{"do":',
+                '[]',
+                '7',
+                '{}',
+                '{"do":"explode"}',
+                '{"do":7}',
+                '{"do":"move","pose":{"at":[NaN,0,0],"rotation":[0,0,0,1]}}',
+                '{"do":"take","tool":{"kind":"blade","edge":[[0,0,1e300],[0,0,-1e300]]},"pose":{"at":[1e300,0,0],"rotation":[0,0,0,1]}}',
+                JSON.stringify({ do: 'take', tool: { kind: 'spoon' }, pose }),
+                JSON.stringify({ do: 'take', tool: { ...blade, edge: [[0, 0, 0]] }, pose }),
+                JSON.stringify({ do: 'take', tool: blade, pose: { at: 'here', rotation: null } }),
+                JSON.stringify({ do: 'take', tool: blade }),
+                JSON.stringify({ do: 'sew', points: 'all' }),
+                JSON.stringify({ do: 'speed', factor: 'fast' }),
+                JSON.stringify({ do: 'pause', on: 'yes' }),
+                JSON.stringify({ do: 'show', field: 'nothing of the kind' }),
+            ];
+            const socket = new WebSocket(`ws://${location.host}/ws${location.search}`);
+            /** @type {string[]} */
+            const errors = [];
+            /** @type {() => void} */
+            let heard = () => {};
+            socket.onmessage = ({ data }) => {
+                if (typeof data !== 'string') return;
+                const message = JSON.parse(data);
+                if (message.type !== 'message' || message.level !== 'error') return;
+                errors.push(message.text);
+                heard();
+            };
+            await new Promise((opened) => (socket.onopen = opened));
+            socket.send('{"do":"take_over"}');
+            /** @type {[string, boolean][]} */
+            const results = [];
+            for (const text of texts) {
+                const answered = new Promise((done) => {
+                    heard = () => done(true);
+                    setTimeout(() => done(false), 8000);
+                });
+                socket.send(text);
+                results.push([text.slice(0, 80), Boolean(await answered)]);
+            }
+            const refused = new Promise((done) => {
+                heard = () => done(true);
+                socket.onclose = () => done(true);
+                setTimeout(() => done(false), 8000);
+            });
+            socket.send(`{"do":"show","field":"${'x'.repeat(100 * 1024)}"}`);
+            results.push(['100 KiB', Boolean(await refused)]);
+            socket.close();
+            return results;
+        });
+        assert.deepEqual(answers.filter(([, answered]) => !answered).map(([text]) => text), []);
+        const { tick } = await live.state();
+        await live.until((before) => window.incise.state().tick > before + 2, tick);
+    });
+});
+
+describe('records', { timeout: whole }, () => {
+    test('RecordOfASessionRunsAgain', { timeout }, async () => {
+        const record = join(folder, 'again.jsonl');
+        const own = await startLive(record);
+        try {
+            const live = await LivePage.open(browser, own.address);
+            await cutAcross(live);
+            const middle = await live.middle();
+            await live.press('4');
+            await live.drag(middle, { x: middle.x, y: middle.y - 30 });
+            await live.until(() => !window.incise.state().tools.some((tool) => tool.mine && tool.present));
+            const status = await own.stop();
+            assert.ok([0, 130].includes(status), `ended with ${status}: ${own.said()}`);
+            // The page says that the program is gone.
+            await live.until(() => document.getElementById('status')?.dataset.status === 'lost');
+            await live.close();
+        } finally {
+            await own.stop();
+        }
+        const again = await run(['run', scenario, '--replay', record, '--out', join(folder, 'again.out')]);
+        assert.equal(again.code, 0, again.said);
+    });
+});

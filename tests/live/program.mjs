@@ -1,0 +1,58 @@
+// Starts `incise live` for a test, and ends it as a user would: with Ctrl+C.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+
+const need = (/** @type {string} */ name) => {
+    const value = process.env[name];
+    if (!value) throw new Error(`the environment variable ${name} is not set`);
+    return value;
+};
+
+export const program = need('INCISE_PROGRAM');
+export const scenario = need('INCISE_SCENARIO');
+export const nodeModules = need('INCISE_NODE_MODULES');
+
+/** Seconds in which the program must name its address. */
+const startWithin = 60;
+
+/** @param {string} record file for what is done */
+export async function startLive(record) {
+    const args = ['live', scenario, '--port', '0', '--no-open', '--record', record];
+    const child = spawn(program, args, { stdio: ['ignore', 'ignore', 'pipe'] });
+    let said = '';
+    const address = await new Promise((found, failed) => {
+        const late = setTimeout(() => failed(new Error(`no address in ${startWithin} s: ${said}`)), 1000 * startWithin);
+        child.stderr.on('data', (data) => {
+            said += data;
+            const url = /http:\/\/\S+/.exec(said)?.[0];
+            if (!url || !said.includes('\n')) return;
+            clearTimeout(late);
+            found(url);
+        });
+        child.on('error', failed);
+        child.on('exit', (code) => failed(new Error(`the program ended with ${code}: ${said}`)));
+    });
+    return {
+        /** @type {string} */
+        address,
+        said: () => said,
+        /** Ends the program with SIGINT; returns its exit status. */
+        stop: async () => {
+            if (child.exitCode !== null || child.signalCode !== null) return child.exitCode;
+            const ended = once(child, 'exit');
+            child.kill('SIGINT');
+            const [code] = await ended;
+            return code;
+        },
+    };
+}
+
+/** Runs the program to its end. @param {string[]} args */
+export async function run(args) {
+    const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    let said = '';
+    for (const stream of [child.stdout, child.stderr]) stream.on('data', (data) => (said += data));
+    const [code] = await once(child, 'close');
+    return { code, said };
+}
