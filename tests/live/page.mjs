@@ -7,12 +7,32 @@ import { nodeModules } from './program.mjs';
 import { readPng } from './picture.mjs';
 
 const { chromium } = createRequire(join(nodeModules, 'x.js'))('playwright-core');
-const patience = { timeout: 60000 };
+const patience = { timeout: 40000 };
 
 export async function launch() {
     return chromium.launch({
         executablePath: process.env.INCISE_CHROMIUM ?? '/usr/bin/chromium',
-        args: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
+        args: [
+            '--use-gl=angle',
+            '--use-angle=swiftshader',
+            '--enable-unsafe-swiftshader',
+            '--no-sandbox',
+            // Files that a test puts in place of the program's have no address, and may not connect.
+            ...(process.env.INCISE_PAGE ? ['--disable-features=LocalNetworkAccessChecks'] : []),
+        ],
+    });
+}
+
+/**
+ * Takes the files of the page from a folder in place of the program, to test a page without building
+ * the program anew.
+ * @param {string|undefined} folder @param {any} page
+ */
+async function serveFrom(folder, page) {
+    if (!folder) return;
+    await page.route(/\/(app\.js|style\.css|favicon\.svg|)(\?.*)?$/, (/** @type {any} */ route) => {
+        const name = new URL(route.request().url()).pathname.slice(1) || 'index.html';
+        return route.fulfill({ path: join(folder, name) });
     });
 }
 
@@ -40,6 +60,7 @@ export class LivePage {
      */
     static async open(browser, address, viewport = { width: 1000, height: 680 }) {
         const live = new LivePage(await browser.newPage({ viewport }));
+        await serveFrom(process.env.INCISE_PAGE, live.page);
         await live.page.goto(`${address}#low`);
         await live.ready();
         return live;
@@ -74,8 +95,13 @@ export class LivePage {
     }
 
     /** Waits until a function of the page gives something true. @param {Function} condition @param {any} [argument] */
-    until(condition, argument) {
-        return this.page.waitForFunction(condition, argument, patience);
+    async until(condition, argument) {
+        try {
+            return await this.page.waitForFunction(condition, argument, patience);
+        } catch (error) {
+            const facts = await this.ask(() => [window.incise?.mode(), window.incise?.state(), window.incise?.messages()]).catch(String);
+            throw new Error(`${error}\nwaiting for ${condition}\nwith ${JSON.stringify(facts)}`);
+        }
     }
 
     state() {

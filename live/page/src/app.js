@@ -168,8 +168,10 @@ export class App {
 
     /** The server may not know the tool yet, or it took the tool away: for instance in an undo. */
     #missing() {
-        if (++this.#missed < 30) return;
+        // After so many states without the tool, it will not come back.
+        if (++this.#missed < 120) return;
         this.#missed = 0;
+        this.send({ do: 'drop' });
         this.#letGo();
     }
 
@@ -459,6 +461,8 @@ export class App {
         notice.hidden = !(this.#lost || watching);
         notice.classList.toggle('lost', this.#lost);
         button('take-over').hidden = this.#lost;
+        if (this.#lost) write('loading-text', 'The program does not answer. Trying again …');
+        else if (!this.hello) write('loading-text', 'Waiting for the body');
         write('notice-text', this.#lost ? 'Connection lost. Trying again …' : watching ? 'Another page holds the tools' : '');
         for (const one of this.#modeButtons()) one.disabled = !this.isOperator && one.dataset.mode !== 'look';
         const field = /** @type {HTMLSelectElement} */ (element('field'));
