@@ -19,8 +19,9 @@ export class Legend {
         element('legend').hidden = true;
     }
 
-    /** @param {string} name @param {string} unit @param {{low: number, high: number}} range */
-    show(name, unit, { low, high }) {
+    /** @param {string} name @param {string} unitInFiles "1" for plain numbers @param {{low: number, high: number}} range */
+    show(name, unitInFiles, { low, high }) {
+        const unit = unitInFiles === '1' ? '' : unitInFiles.replace('m3', 'm³').replace('m2', 'm²');
         element('legend').hidden = false;
         write('legend-name', name.replace(/_/g, ' '));
         write('legend-low', withUnit(low, unit));

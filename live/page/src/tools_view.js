@@ -138,6 +138,8 @@ export class ToolsView {
         const add = (/** @type {import('three').BufferGeometry} */ geometry, /** @type {import('three').Material} */ material, parent = group) => {
             const mesh = new Mesh(geometry, ghost ? this.ghost : material);
             mesh.castShadow = !ghost && !this.#low;
+            // Nothing is worked out from sizes that another page may have sent.
+            mesh.frustumCulled = false;
             parent.add(mesh);
             if (geometry !== this.#rod && geometry !== this.#ball) (group.userData.own ??= []).push(geometry);
             return mesh;
