@@ -85,6 +85,37 @@ auto without_gil(const World& world, Function function) {
 void pass_warnings(const World& world);
 void pass_warning(const std::string& text);
 
+/// Wraps a member function of Python given as f(const T&, ...), so that it takes the holder of the
+/// object: pybind11 then refuses an object that was never made, as by T.__new__(T). It would pass a
+/// reference to memory without contents.
+template <class Result, class T, class... Arguments>
+auto held(Result (*f)(const T&, Arguments...)) {
+    return [f](const std::shared_ptr<T>& self, Arguments... arguments) -> Result {
+        if (!self) throw py::type_error("None is no object of this class");
+        return f(*self, std::forward<Arguments>(arguments)...);
+    };
+}
+/// Returns a function that reads a member.
+template <class T, class Member>
+auto held(Member T::*member) {
+    return [member](const std::shared_ptr<T>& self) -> Member {
+        if (!self) throw py::type_error("None is no object of this class");
+        return (*self).*member;
+    };
+}
+/// Lets copy and pickle refuse objects of a class.
+template <class Class>
+void forbid_copies(Class& type, const char* remedy) {
+    type.def(
+        "__reduce_ex__",
+        [remedy](const py::object& self, int) -> py::object {
+            throw py::type_error("incise." +
+                                 py::type::of(self).attr("__name__").cast<std::string>() +
+                                 " cannot be copied or pickled: " + remedy);
+        },
+        py::arg("protocol"), "Raise TypeError: objects of this class cannot be copied.");
+}
+
 /// Returns points as an array of shape (N, 3).
 py::array_t<double> matrix_of(std::span<const Vec3> points);
 py::array_t<double> array_of(const Vec3& v);

@@ -313,9 +313,11 @@ std::vector<app::CutTool> tools_from(const py::sequence& planes, const py::seque
     return tools;
 }
 
-CutResult cut(const PyMesh& mesh, const py::sequence& planes, const py::sequence& surfaces,
-              const py::sequence& sweeps, const py::sequence& spheres, const py::sequence& boxes,
-              const py::sequence& capsules, const std::optional<std::string>& mode, double snap) {
+CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
+              const py::sequence& surfaces, const py::sequence& sweeps, const py::sequence& spheres,
+              const py::sequence& boxes, const py::sequence& capsules,
+              const std::optional<std::string>& mode, double snap) {
+    if (!given) throw py::type_error("mesh must be an incise.Mesh");
     if (mode && *mode != "split" && *mode != "separate")
         throw InputError("mode is '" + *mode + "': it must be 'split' or 'separate'");
     if (!(snap >= 0.0 && snap <= 0.5)) throw InputError("snap must be from 0 to 0.5");
@@ -325,6 +327,7 @@ CutResult cut(const PyMesh& mesh, const py::sequence& planes, const py::sequence
         throw InputError(
             "no tool is given: use planes, surfaces, sweeps, remove_spheres, "
             "remove_boxes or remove_capsules");
+    const PyMesh& mesh = *given;
     CutResult result;
     {
         const py::gil_scoped_release release;
@@ -376,13 +379,15 @@ py::dict report_of(const CutResult& result) {
 }
 
 void register_cut(py::module_& module) {
-    py::class_<CutResult> type(module, "CutResult", "The result of incise.cut().");
+    py::class_<CutResult, std::shared_ptr<CutResult>> type(module, "CutResult",
+                                                           "The result of incise.cut().");
     type.attr("__module__") = "incise";
+    forbid_copies(type, "keep its mesh");
     type.def_property_readonly(
-            "mesh", [](const CutResult& result) { return result.mesh; },
+            "mesh", held(+[](const CutResult& result) { return result.mesh; }),
             "The mesh after the cuts, an incise.Mesh. The two sides of a cut have points of their\n"
             "own at the same positions.")
-        .def_property_readonly("report", &report_of,
+        .def_property_readonly("report", held(&report_of),
                                R"(What was done, a dict with names as in `incise cut --json`.
 
 pieces: list of dicts with volume, m3, and elements, the largest first.
@@ -418,7 +423,8 @@ be, for elements that cannot be divided, and if nothing is left.
 }  // namespace
 
 void register_mesh(py::module_& module) {
-    py::class_<PyMesh> type(module, "Mesh", R"(A mesh of a body at rest. It does not change.
+    py::class_<PyMesh, std::shared_ptr<PyMesh>> type(
+        module, "Mesh", R"(A mesh of a body at rest. It does not change.
 
 Cells are tetrahedra (4 corners), hexahedra (8), wedges (6) and pyramids (5), with their corners in
 the order of VTK. Lengths are metres if the mesh is for a World.
@@ -429,6 +435,7 @@ the order of VTK. Lengths are metres if the mesh is for a World.
 >>> round(mesh.volume, 6)
 0.002)");
     type.attr("__module__") = "incise";
+    forbid_copies(type, "keep its points, cells and regions");
     type.def(py::init(&mesh_from), py::arg("points"), py::arg("cells"),
              py::arg("regions") = py::none(), R"(points: shape (N, 3).
 cells: whole numbers, shape (M, 4), (M, 5), (M, 6) or (M, 8); of several kinds a dict by kind, with
@@ -444,38 +451,36 @@ size: the three edge lengths.  cells: numbers of bricks along x, y and z.
 element: 'tet' divides each brick into six tetrahedra, 'hex' makes it a hexahedron.
 origin: the lowest corner.)")
         .def_property_readonly(
-            "points", [](const PyMesh& mesh) { return matrix_of(mesh.data->points); },
+            "points", held(+[](const PyMesh& mesh) { return matrix_of(mesh.data->points); }),
             "The points at rest, shape (N, 3), a copy.")
         .def_property_readonly(
-            "cells", &cells_of,
+            "cells", held(&cells_of),
             "Whole numbers, rows of points: shape (M, 4) or (M, 8), a copy. Of several kinds a\n"
             "dict of such arrays with the keys tetrahedron, hexahedron, wedge and pyramid.")
         .def_property_readonly(
-            "regions", &regions_of,
+            "regions", held(&regions_of),
             "The region of each cell, shape (M,), a copy; a dict if cells is one.")
+        .def_property_readonly("num_points",
+                               held(+[](const PyMesh& mesh) { return mesh.data->points.size(); }),
+                               "Number of points.")
+        .def_property_readonly("num_cells",
+                               held(+[](const PyMesh& mesh) { return mesh.data->num_cells(); }),
+                               "Number of cells of all kinds.")
+        .def_property_readonly("volume", held(+[](const PyMesh& mesh) {
+                                   return topology::measure(*mesh.data).volume;
+                               }),
+                               "The volume of all cells.")
+        .def_property_readonly("surface_area", held(+[](const PyMesh& mesh) {
+                                   return topology::measure(*mesh.data).surface_area;
+                               }),
+                               "The area of the faces that belong to one cell only.")
+        .def_property_readonly("bounding_box", held(+[](const PyMesh& mesh) {
+                                   const auto metrics = topology::measure(*mesh.data);
+                                   return matrix_of(std::array{metrics.box_min, metrics.box_max});
+                               }),
+                               "The lowest and the highest corner, shape (2, 3).")
         .def_property_readonly(
-            "num_points", [](const PyMesh& mesh) { return mesh.data->points.size(); },
-            "Number of points.")
-        .def_property_readonly(
-            "num_cells", [](const PyMesh& mesh) { return mesh.data->num_cells(); },
-            "Number of cells of all kinds.")
-        .def_property_readonly(
-            "volume", [](const PyMesh& mesh) { return topology::measure(*mesh.data).volume; },
-            "The volume of all cells.")
-        .def_property_readonly(
-            "surface_area",
-            [](const PyMesh& mesh) { return topology::measure(*mesh.data).surface_area; },
-            "The area of the faces that belong to one cell only.")
-        .def_property_readonly(
-            "bounding_box",
-            [](const PyMesh& mesh) {
-                const auto metrics = topology::measure(*mesh.data);
-                return matrix_of(std::array{metrics.box_min, metrics.box_max});
-            },
-            "The lowest and the highest corner, shape (2, 3).")
-        .def_property_readonly(
-            "quality",
-            [](const PyMesh& mesh) {
+            "quality", held(+[](const PyMesh& mesh) {
                 const auto metrics = topology::measure(*mesh.data);
                 py::dict quality;
                 quality["min_altitude"] = metrics.min_altitude;
@@ -483,29 +488,25 @@ origin: the lowest corner.)")
                 quality["edge_length"] = py::make_tuple(
                     metrics.min_edge_length, metrics.mean_edge_length, metrics.max_edge_length);
                 return quality;
-            },
+            }),
             "A dict: min_altitude, the least altitude of all cells; min_dihedral_angle, the least\n"
             "angle between two faces of a cell, rad; edge_length, a tuple (min, mean, max).")
-        .def_readonly("warnings", &PyMesh::warnings,
-                      "What is unusual about the mesh: a list of sentences.")
-        .def(
-            "write",
-            [](const PyMesh& mesh, const py::object& path) {
-                const std::filesystem::path file = path_from(path);
-                const py::gil_scoped_release release;
-                io::write_mesh(file, *mesh.data);
-            },
-            py::arg("path"), R"(Write the mesh to a file.
+        .def_property_readonly("warnings", held(&PyMesh::warnings),
+                               "What is unusual about the mesh: a list of sentences.")
+        .def("write", held(+[](const PyMesh& mesh, const py::object& path) {
+                 const std::filesystem::path file = path_from(path);
+                 const py::gil_scoped_release release;
+                 io::write_mesh(file, *mesh.data);
+             }),
+             py::arg("path"), R"(Write the mesh to a file.
 
 path: its ending is the format: .vtu, .vtk, .msh, .mesh, .inp or .usda.
 Raises InputError for another ending, OutputError if the file cannot be written.)")
-        .def(
-            "__repr__",
-            [](const PyMesh& mesh) {
-                return "<incise.Mesh: " + std::to_string(mesh.data->points.size()) + " points, " +
-                       std::to_string(mesh.data->num_cells()) + " cells>";
-            },
-            "Return the size of the mesh as text.");
+        .def("__repr__", held(+[](const PyMesh& mesh) {
+                 return "<incise.Mesh: " + std::to_string(mesh.data->points.size()) + " points, " +
+                        std::to_string(mesh.data->num_cells()) + " cells>";
+             }),
+             "Return the size of the mesh as text.");
 
     module.def("read_mesh", &read_mesh, py::arg("path"), py::kw_only(),
                py::arg("region_array") = std::string(io::ReadOptions::usual_region_array),

@@ -25,42 +25,47 @@ py::dict by_tool(const Report& report, const std::vector<Vec3>& values) {
 }  // namespace
 
 void register_report(py::module_& module) {
-    py::class_<Report> type(module, "StepReport",
-                            R"(What a call of World.step() or World.run_until() did.
+    py::class_<Report, std::shared_ptr<Report>> type(
+        module, "StepReport",
+        R"(What a call of World.step() or World.run_until() did.
 
 A report keeps its values: later steps do not change it.)");
     type.attr("__module__") = "incise";
-    type.def_readonly("start", &Report::from, "Time at the beginning of the call, s.")
-        .def_readonly("end", &Report::to, "Time at its end, s.")
-        .def_readonly("num_steps", &Report::num_steps, "Number of steps of the call.")
-        .def_readonly("num_parts", &Report::num_parts,
-                      "Number of explicit steps that these were divided into. More than num_steps\n"
-                      "where strain or a fast probe needs shorter ones.")
+    forbid_copies(type, "keep its values");
+    type.def_property_readonly("start", held(&Report::from),
+                               "Time at the beginning of the call, s.")
+        .def_property_readonly("end", held(&Report::to), "Time at its end, s.")
+        .def_property_readonly("num_steps", held(&Report::num_steps),
+                               "Number of steps of the call.")
         .def_property_readonly(
-            "edits", [](const Report& report) { return edits_of(report.edits); },
+            "num_parts", held(&Report::num_parts),
+            "Number of explicit steps that these were divided into. More than num_steps\n"
+            "where strain or a fast probe needs shorter ones.")
+        .def_property_readonly(
+            "edits", held(+[](const Report& report) { return edits_of(report.edits); }),
             "The edits of the mesh, in their order: a list of dicts, as World.edits().")
         .def_property_readonly(
-            "tool_forces", [](const Report& report) { return by_tool(report, report.forces); },
+            "tool_forces",
+            held(+[](const Report& report) { return by_tool(report, report.forces); }),
             "What the tissue exerted on each probe, grasper, suture, and blade with a toughness:\n"
             "a dict by name of arrays (3,), N, in the frame of the world, means over the call.")
+        .def_property_readonly("tool_torques", held(+[](const Report& report) {
+                                   return by_tool(report, report.torques);
+                               }),
+                               "The same for torques about the origins of the tools, N m.")
         .def_property_readonly(
-            "tool_torques", [](const Report& report) { return by_tool(report, report.torques); },
-            "The same for torques about the origins of the tools, N m.")
-        .def_property_readonly(
-            "contacts", [](const Report& report) { return report.contact.num_points; },
+            "contacts", held(+[](const Report& report) { return report.contact.num_points; }),
             "Number of points of contact in the last step.")
-        .def_readonly("max_penetration", &Report::max_penetration,
-                      "Largest overlap of surfaces during the call, m.")
-        .def(
-            "__repr__",
-            [](const Report& report) {
-                std::ostringstream text;
-                text << "<incise.StepReport: " << report.from << " s to " << report.to << " s, "
-                     << report.num_steps << (report.num_steps == 1 ? " step, " : " steps, ")
-                     << report.edits.size() << (report.edits.size() == 1 ? " edit>" : " edits>");
-                return text.str();
-            },
-            "Return times and numbers as text.");
+        .def_property_readonly("max_penetration", held(&Report::max_penetration),
+                               "Largest overlap of surfaces during the call, m.")
+        .def("__repr__", held(+[](const Report& report) {
+                 std::ostringstream text;
+                 text << "<incise.StepReport: " << report.from << " s to " << report.to << " s, "
+                      << report.num_steps << (report.num_steps == 1 ? " step, " : " steps, ")
+                      << report.edits.size() << (report.edits.size() == 1 ? " edit>" : " edits>");
+                 return text.str();
+             }),
+             "Return times and numbers as text.");
 }
 
 }  // namespace incise::python

@@ -38,179 +38,176 @@ const NamedConstraint& find(const Constraint& constraint) {
 }
 
 void register_tool(py::module_& module) {
-    py::class_<Tool> type(module, "Tool",
-                          R"(A tool of a world: see World.add_tool() and World.tools.
+    py::class_<Tool, std::shared_ptr<Tool>> type(
+        module, "Tool",
+        R"(A tool of a world: see World.add_tool() and World.tools.
 
 A tool of a scenario follows its path there; it can be looked at, but not led. All methods raise
 InputError for a tool of the wrong kind, and incise.Error while another thread uses the world.)");
     type.attr("__module__") = "incise";
-    type.def_readonly("name", &Tool::name, "The name of the tool.")
+    forbid_copies(type, "keep its name");
+    type.def_property_readonly("name", held(&Tool::name), "The name of the tool.")
+        .def_property_readonly("kind", held(+[](const Tool& tool) {
+                                   return kind_of(driver_of(tool).world().tool(tool.id).shape);
+                               }),
+                               "'blade', 'carver', 'cut', 'probe', 'grasper' or 'suture'.")
+        .def_property_readonly("is_scripted", held(+[](const Tool& tool) {
+                                   return driver_of(tool).is_scripted(tool.id);
+                               }),
+                               "True if the scenario leads the tool along a path.")
         .def_property_readonly(
-            "kind",
-            [](const Tool& tool) { return kind_of(driver_of(tool).world().tool(tool.id).shape); },
-            "'blade', 'carver', 'cut', 'probe', 'grasper' or 'suture'.")
-        .def_property_readonly(
-            "is_scripted", [](const Tool& tool) { return driver_of(tool).is_scripted(tool.id); },
-            "True if the scenario leads the tool along a path.")
-        .def_property_readonly(
-            "is_present",
-            [](const Tool& tool) { return driver_of(tool).world().is_tool_present(tool.id); },
+            "is_present", held(+[](const Tool& tool) {
+                return driver_of(tool).world().is_tool_present(tool.id);
+            }),
             "True while the tool acts: from its first pose until it has been withdrawn.")
         .def_property(
-            "pose", [](const Tool& tool) { return driver_of(tool).tool_pose(tool.id); },
-            [](const Tool& tool, const Pose& pose) {
+            "pose", held(+[](const Tool& tool) { return driver_of(tool).tool_pose(tool.id); }),
+            held(+[](const Tool& tool, const Pose& pose) {
                 driver_of(tool).set_tool_target(tool.id, pose);
-            },
+            }),
             R"(Where the tool is to be at the end of the next call of step() or run_until(), a Pose.
 
 During the call the tool goes there straight and by the shortest turn, and acts on all that it
 meets. A tool that is not there appears at the pose. Before a pose is set it is where the tool is;
 None for a tool that is not there.)")
-        .def(
-            "place",
-            [](const Tool& tool, const Pose& pose) { driver_of(tool).place_tool(tool.id, pose); },
-            py::arg("pose"), R"(Put the tool at a pose at once. It meets nothing on its way there.
+        .def("place", held(+[](const Tool& tool, const Pose& pose) {
+                 driver_of(tool).place_tool(tool.id, pose);
+             }),
+             py::arg("pose"), R"(Put the tool at a pose at once. It meets nothing on its way there.
 
 Raises InputError for a blade whose cut ends in the tissue: withdraw it first.)")
         .def_property_readonly(
-            "force",
-            [](const Tool& tool) { return array_of(driver_of(tool).tool_state(tool.id).force); },
+            "force", held(+[](const Tool& tool) {
+                return array_of(driver_of(tool).tool_state(tool.id).force);
+            }),
             R"(What the tissue exerted on the tool in the last step, N. Shape (3,), a copy.
 
 In the frame of the world, mean over the step. Zero for carvers, cuts, and blades without a
 toughness. For a suture it is the force on its thread at its first point; its length is the tension.)")
         .def_property_readonly(
-            "torque",
-            [](const Tool& tool) { return array_of(driver_of(tool).tool_state(tool.id).torque); },
+            "torque", held(+[](const Tool& tool) {
+                return array_of(driver_of(tool).tool_state(tool.id).torque);
+            }),
             "The same for the torque about the origin of the tool, N m. Shape (3,), a copy.")
         .def_property_readonly(
-            "is_in_tissue",
-            [](const Tool& tool) { return driver_of(tool).tool_state(tool.id).is_in_tissue; },
+            "is_in_tissue", held(+[](const Tool& tool) {
+                return driver_of(tool).tool_state(tool.id).is_in_tissue;
+            }),
             "True if the tool divides elements and its cut ended in one in the last step.")
-        .def(
-            "withdraw", [](const Tool& tool) { driver_of(tool).withdraw_tool(tool.id); },
-            R"(Take the tool away at the end of the next call of step() or run_until().
+        .def("withdraw", held(+[](const Tool& tool) { driver_of(tool).withdraw_tool(tool.id); }),
+             R"(Take the tool away at the end of the next call of step() or run_until().
 
 It still acts in that call, with a pose that is set before or after this. Its cut ends where the
 blade then is. A new pose after that brings it back, for another cut.)")
-        .def(
-            "close", [](const Tool& tool) { return driver_of(tool).close(tool.id); },
-            R"(Close the jaws of a grasper. They hold the surface that is in them from now on.
+        .def("close", held(+[](const Tool& tool) { return driver_of(tool).close(tool.id); }),
+             R"(Close the jaws of a grasper. They hold the surface that is in them from now on.
 
 Returns how many points they hold: 0 if there is no tissue in them.)")
-        .def(
-            "open", [](const Tool& tool) { driver_of(tool).open(tool.id); },
-            "Open the jaws of a grasper. The tissue keeps its velocity.")
+        .def("open", held(+[](const Tool& tool) { driver_of(tool).open(tool.id); }),
+             "Open the jaws of a grasper. The tissue keeps its velocity.")
         .def_property_readonly(
-            "held", [](const Tool& tool) { return driver_of(tool).world().num_held(tool.id); },
+            "held",
+            held(+[](const Tool& tool) { return driver_of(tool).world().num_held(tool.id); }),
             "How many points a grasper holds. 0 if it is open, or if all have slipped out.")
-        .def(
-            "tie", [](const Tool& tool) { return driver_of(tool).tie(tool.id); },
-            R"(Pass the thread of a suture through its points, where the tissue now is.
+        .def("tie", held(+[](const Tool& tool) { return driver_of(tool).tie(tool.id); }),
+             R"(Pass the thread of a suture through its points, where the tissue now is.
 
 The thread is then as long as its way. Returns through how many points it passes: points without
 tissue in reach are left out.)")
-        .def(
-            "tighten",
-            [](const Tool& tool, double length) {
-                driver_of(tool).set_suture_target(tool.id, length);
-            },
-            py::arg("length"),
-            R"(Draw the thread of a tied suture to a length without tension, m, 0 or more.
+        .def("tighten", held(+[](const Tool& tool, double length) {
+                 driver_of(tool).set_suture_target(tool.id, length);
+             }),
+             py::arg("length"),
+             R"(Draw the thread of a tied suture to a length without tension, m, 0 or more.
 
 It has this length at the end of the next call of step() or run_until(), and gets there evenly.)")
-        .def(
-            "untie", [](const Tool& tool) { driver_of(tool).untie(tool.id); },
-            "Take the thread of a suture out of the tissue.")
+        .def("untie", held(+[](const Tool& tool) { driver_of(tool).untie(tool.id); }),
+             "Take the thread of a suture out of the tissue.")
         .def_property_readonly(
             "is_tied",
-            [](const Tool& tool) { return driver_of(tool).world().is_suture_tied(tool.id); },
+            held(+[](const Tool& tool) { return driver_of(tool).world().is_suture_tied(tool.id); }),
             "True from tie() to untie(), until the thread of the suture has torn.")
         .def_property_readonly(
             "length",
-            [](const Tool& tool) { return driver_of(tool).world().suture_length(tool.id); },
+            held(+[](const Tool& tool) { return driver_of(tool).world().suture_length(tool.id); }),
             "The length of the thread of a suture without tension, m. 0 if it is not tied.")
-        .def(
-            "__repr__", [](const Tool& tool) { return "<incise.Tool '" + tool.name + "'>"; },
-            "Return the name as text.");
+        .def("__repr__",
+             held(+[](const Tool& tool) { return "<incise.Tool '" + tool.name + "'>"; }),
+             "Return the name as text.");
 }
 
 void register_constraint(py::module_& module) {
-    py::class_<Constraint> type(module, "Constraint",
-                                R"(A constraint of a world: see World.constraints and World.grasp().
+    py::class_<Constraint, std::shared_ptr<Constraint>> type(
+        module, "Constraint",
+        R"(A constraint of a world: see World.constraints and World.grasp().
 
 Those of a scenario hold or move nodes as it says. A grasp carries nodes with a frame.)");
     type.attr("__module__") = "incise";
-    type.def_readonly("name", &Constraint::name, "The name of the constraint.")
+    forbid_copies(type, "keep its name");
+    type.def_property_readonly("name", held(&Constraint::name), "The name of the constraint.")
         .def_property_readonly(
-            "force",
-            [](const Constraint& constraint) {
+            "force", held(+[](const Constraint& constraint) {
                 const auto id = find(constraint).id;
                 return array_of(driver_of(constraint.world).world().reaction(id).force);
-            },
+            }),
             R"(The force that the constraint exerted on the body in the last step, N. Shape (3,).
 
 A grasp on moving tissue stops it within one step: leave out that step, or take a mean.)")
         .def_property_readonly(
-            "torque",
-            [](const Constraint& constraint) {
+            "torque", held(+[](const Constraint& constraint) {
                 const auto id = find(constraint).id;
                 return array_of(driver_of(constraint.world).world().reaction(id).moment);
-            },
+            }),
             "The moment that it exerted about the origin of the world, N m. Shape (3,), a copy.")
-        .def_property_readonly(
-            "is_grasp",
-            [](const Constraint& constraint) { return find(constraint).pose.has_value(); },
-            "True for the result of World.grasp().")
+        .def_property_readonly("is_grasp", held(+[](const Constraint& constraint) {
+                                   return find(constraint).pose.has_value();
+                               }),
+                               "True for the result of World.grasp().")
         .def_property(
-            "pose",
-            [](const Constraint& constraint) {
+            "pose", held(+[](const Constraint& constraint) {
                 const NamedConstraint& found = find(constraint);
                 return found.target ? found.target : found.pose;
-            },
-            [](const Constraint& constraint, const Pose& pose) {
+            }),
+            held(+[](const Constraint& constraint, const Pose& pose) {
                 find(constraint);
                 driver_of(constraint.world).set_grasp_target(constraint.name, pose);
-            },
+            }),
             R"(Where the frame of a grasp is to be at the end of the next call of step() or run_until().
 
 The nodes go with the frame. None for a constraint that is no grasp; setting it then raises
 InputError.)")
-        .def(
-            "release",
-            [](const Constraint& constraint) {
-                find(constraint);
-                driver_of(constraint.world).release(constraint.name);
-            },
-            "Remove the constraint. Its nodes keep their velocities.")
-        .def(
-            "__repr__",
-            [](const Constraint& constraint) {
-                return "<incise.Constraint '" + constraint.name + "'>";
-            },
-            "Return the name as text.");
+        .def("release", held(+[](const Constraint& constraint) {
+                 find(constraint);
+                 driver_of(constraint.world).release(constraint.name);
+             }),
+             "Remove the constraint. Its nodes keep their velocities.")
+        .def("__repr__", held(+[](const Constraint& constraint) {
+                 return "<incise.Constraint '" + constraint.name + "'>";
+             }),
+             "Return the name as text.");
 }
 
 void register_load(py::module_& module) {
-    py::class_<Load> type(module, "Load", "A load of the scenario: see World.loads.");
+    py::class_<Load, std::shared_ptr<Load>> type(module, "Load",
+                                                 "A load of the scenario: see World.loads.");
     type.attr("__module__") = "incise";
-    type.def_readonly("name", &Load::name, "The name of the load.")
+    forbid_copies(type, "keep its name");
+    type.def_property_readonly("name", held(&Load::name), "The name of the load.")
         .def_property(
-            "factor",
-            [](const Load& load) {
+            "factor", held(+[](const Load& load) {
                 WorldDriver& driver = driver_of(load.world);
                 const auto& curve = driver.load(load.name).factor;
                 return curve.is_empty() ? 1.0 : curve.at(driver.world().time());
-            },
-            [](const Load& load, double factor) {
+            }),
+            held(+[](const Load& load, double factor) {
                 driver_of(load.world).set_load_factor(load.name, factor);
-            },
+            }),
             "By what the load is multiplied, now. Setting it replaces the curve of the scenario "
             "from\n"
             "now on. Raises InputError for a number that is not finite.")
-        .def(
-            "__repr__", [](const Load& load) { return "<incise.Load '" + load.name + "'>"; },
-            "Return the name as text.");
+        .def("__repr__",
+             held(+[](const Load& load) { return "<incise.Load '" + load.name + "'>"; }),
+             "Return the name as text.");
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ void complete(Source& source) {
 void set_mesh(Source& source, const py::object& mesh) {
     auto& root = std::get<scenario::Table>(source.document->data);
     if (py::isinstance<PyMesh>(mesh)) {
-        source.mesh = mesh.cast<const PyMesh&>().data;
+        source.mesh = mesh.cast<std::shared_ptr<PyMesh>>()->data;
         const scenario::Array ones{
             {std::int64_t{1}, {}}, {std::int64_t{1}, {}}, {std::int64_t{1}, {}}};
         const scenario::Table box{{"size", {}, {ones, {}}}, {"cells", {}, {ones, {}}}};
@@ -243,6 +243,7 @@ py::object kept(const World& world, Handle::Kept& kept, Make make_anew) {
 }
 
 py::object cells(const World& world) {
+    driver_of(world);
     return kept(world, world->cells, [&] {
         const Handle::Rows& rows = world->rows();
         const topology::Mesh& mesh = world->driver.world().mesh();
@@ -254,6 +255,7 @@ py::object cells(const World& world) {
 }
 
 py::object regions(const World& world) {
+    driver_of(world);
     return kept(world, world->regions, [&] {
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(false);
@@ -269,6 +271,7 @@ struct Surface {
 };
 
 py::object surface(const World& world) {
+    driver_of(world);
     return kept(world, world->surface, [&] {
         const Handle::Rows& rows = world->rows();
         sim::World& body = world->driver.world();
@@ -420,54 +423,63 @@ Constraint grasp(const World& world, const std::string& name, const py::object& 
 }
 
 void register_surface(py::module_& module) {
-    py::class_<Surface> type(module, "Surface", R"(The surface of a body: see World.surface.
+    py::class_<Surface, std::shared_ptr<Surface>> type(module, "Surface",
+                                                       R"(The surface of a body: see World.surface.
 
 The arrays are read-only copies: they are valid for ever, and belong to one topology_version.)");
     type.attr("__module__") = "incise";
-    type.def_readonly("vertices", &Surface::vertices,
-                      "Rows of positions that are on the surface, ascending. Shape (V,).")
-        .def_readonly("triangles", &Surface::triangles,
-                      "Rows of positions, anticlockwise as seen from outside. Shape (T, 3).")
-        .def_readonly("is_cut", &Surface::is_cut,
-                      "True for the triangles of cuts, which lay inside at first. Shape (T,).")
-        .def_readonly("version", &Surface::version,
-                      "The topology_version that the arrays are for.");
+    forbid_copies(type, "copy its arrays");
+    type.def_property_readonly("vertices", held(&Surface::vertices),
+                               "Rows of positions that are on the surface, ascending. Shape (V,).")
+        .def_property_readonly(
+            "triangles", held(&Surface::triangles),
+            "Rows of positions, anticlockwise as seen from outside. Shape (T, 3).")
+        .def_property_readonly(
+            "is_cut", held(&Surface::is_cut),
+            "True for the triangles of cuts, which lay inside at first. Shape (T,).")
+        .def_property_readonly("version", held(&Surface::version),
+                               "The topology_version that the arrays are for.");
 }
 
 void register_view(py::module_& module) {
-    py::class_<View> type(module, "View",
-                          R"(Arrays that show the memory of a world: see World.view().
+    py::class_<View, std::shared_ptr<View>> type(
+        module, "View",
+        R"(Arrays that show the memory of a world: see World.view().
 
 They are valid inside the with statement. An array that is kept longer still never dangles: it keeps
 the world alive, and step(), run_until() and restore() raise BufferError until it is gone.)");
     type.attr("__module__") = "incise";
+    forbid_copies(type, "copy its arrays");
     type.def(
             "__enter__",
             [](const py::object& self) {
-                self.cast<View&>().enter();
+                const auto view = self.cast<std::shared_ptr<View>>();
+                if (!view) throw py::type_error("None is no view");
+                view->enter();
                 return self;
             },
             "Open the view.")
         .def(
-            "__exit__", [](View& view, const py::args&) { view.exit(); }, "Close the view.")
-        .def_property_readonly(
-            "positions",
-            [](const View& view) {
-                return view.show([](const sim::World& world) { return world.positions(); });
+            "__exit__",
+            [](const std::shared_ptr<View>& view, const py::args&) {
+                if (view) view->exit();
             },
+            "Close the view.")
+        .def_property_readonly(
+            "positions", held(+[](const View& view) {
+                return view.show([](const sim::World& world) { return world.positions(); });
+            }),
             "As World.positions, read-only and without a copy. Shape (N, 3), m.")
         .def_property_readonly(
-            "velocities",
-            [](const View& view) {
+            "velocities", held(+[](const View& view) {
                 return view.show([](const sim::World& world) { return world.velocities(); });
-            },
+            }),
             "As World.velocities, read-only and without a copy. Shape (N, 3), m/s.")
         .def_property_readonly(
-            "rest_positions",
-            [](const View& view) {
+            "rest_positions", held(+[](const View& view) {
                 return view.show(
                     [](const sim::World& world) { return world.mesh().rest_positions(); });
-            },
+            }),
             "As World.rest_positions, read-only and without a copy. Shape (N, 3), m.");
 }
 
@@ -495,6 +507,7 @@ Several threads may step several worlds. A world that one thread steps raises in
 >>> bool(world.positions[:, 2].min() < 0)
 True)");
     type.attr("__module__") = "incise";
+    forbid_copies(type, "save() its state");
     type.def(
             py::init(&make_world), py::arg("scenario") = py::none(), py::kw_only(),
             py::arg("mesh") = py::none(), py::arg("materials") = py::none(),
@@ -618,7 +631,7 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
             "view",
             [](const World& world) {
                 driver_of(world);
-                return std::make_unique<View>(world);
+                return std::make_shared<View>(world);
             },
             R"(Return a View: arrays without a copy, read-only, in a with statement.
 

@@ -230,6 +230,12 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
     return call(
         [&](std::uint64_t i) {
             const double length = dt ? *dt : next_step();
+            if (!dt && !(world_.time() + length > world_.time()))
+                throw PhysicsError(at_step(
+                    scenario_, world_.num_steps() + 1, world_.time(),
+                    "the stable step has fallen to " + io::format_number(length) +
+                        " s, too short for the time to go on: something crushes or draws out an "
+                        "element; use smaller motions or loads"));
             return NextStep{world_.time() + length,
                             static_cast<double>(i + 1) / static_cast<double>(n), i + 1 == n};
         },

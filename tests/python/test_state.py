@@ -1,0 +1,139 @@
+"""Saving and going back."""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+import random
+import unittest
+
+import numpy as np
+
+import incise
+import support
+
+
+def led_world() -> incise.World:
+    body = support.world(gravity=[0, 0, -9.81])
+    body.add_tool("knife", support.BLADE, incise.Pose([0.07, 0, 0.06]))
+    return body
+
+
+def go_on(body: incise.World) -> None:
+    """Cut and grasp in several calls."""
+    knife = body.tools["knife"]
+    for z in (0.03, 0.015, -0.02):
+        knife.pose = incise.Pose([0.07, 0, z])
+        body.run_until(body.time + 0.004)
+    knife.withdraw()
+    body.run_until(body.time + 0.004)
+
+
+class State(unittest.TestCase):
+    def test_the_same_bits_go_on(self) -> None:
+        body = led_world()
+        body.tools["knife"].pose = incise.Pose([0.07, 0, 0.035])
+        body.run_until(0.003)
+        body.tools["knife"].pose = incise.Pose([0.07, 0, 0.02])  # still to come
+        state = body.save()
+        self.assertIsInstance(state, bytes)
+        go_on(body)
+        ends = [(body.positions, body.velocities, body.edits(), body.time)]
+        other = support.world(gravity=[0, 0, -9.81])
+        for world in (body, other):
+            world.restore(state)
+            self.assertEqual(world.tools["knife"].pose, incise.Pose([0.07, 0, 0.02]))
+            self.assertEqual(world.save(), state)
+            go_on(world)
+            ends.append((world.positions, world.velocities, world.edits(), world.time))
+        self.assertTrue(ends[0][2])
+        for end in ends[1:]:
+            np.testing.assert_array_equal(end[0], ends[0][0])
+            np.testing.assert_array_equal(end[1], ends[0][1])
+            self.assertEqual(end[2:], ends[0][2:])
+
+    def test_scenario_tools_go_on(self) -> None:
+        body = incise.World(support.SCENARIOS / "beam.toml")
+        body.run_until(0.05)
+        state = body.save()
+        body.run_until(0.1)
+        end = body.positions
+        body.restore(state)
+        body.run_until(0.1)
+        np.testing.assert_array_equal(body.positions, end)
+
+    def test_version_never_names_two_meshes(self) -> None:
+        body = support.world()
+        state = body.save()
+        versions = {body.topology_version}
+        for x in (0.05, 0.07, 0.09):
+            support.cut_through(body, x)
+            triangles = body.surface.triangles
+            self.assertEqual(triangles.max(), body.num_nodes - 1)
+            self.assertNotIn(body.topology_version, versions)
+            versions.add(body.topology_version)
+            body.restore(state)
+            self.assertNotIn(body.topology_version, versions)
+            versions.add(body.topology_version)
+            self.assertLess(body.surface.triangles.max(), body.num_nodes)
+            self.assertEqual(body.cells.shape, (144, 4))
+
+    def test_tools_and_grasps_of_later_are_gone(self) -> None:
+        body = support.world()
+        state = body.save()
+        knife = body.add_tool("knife", support.BLADE)
+        hand = body.grasp("hand", np.flatnonzero(body.rest_positions[:, 0] > 0.1))
+        body.restore(state)
+        self.assertEqual(list(body.tools), [])
+        self.assertEqual(list(body.constraints), ["clamp"])
+        with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
+            knife.pose = incise.Pose()
+        with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
+            hand.release()
+
+    def test_a_failed_world_goes_back(self) -> None:
+        # Two blocks: the plane meets hexahedra, which it cannot divide.
+        tets = incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        hexes = incise.Mesh.box([1, 1, 1], [1, 1, 1], "hex", origin=[2, 0, 0])
+        mesh = incise.Mesh(np.vstack([tets.points, hexes.points]),
+                           {"tetrahedron": tets.cells, "hexahedron": hexes.cells + 8},
+                           {"tetrahedron": [1] * 6, "hexahedron": [2]})
+        body = incise.World(mesh=mesh, materials=[{**support.MATERIAL, "regions": [1]},
+                                                  {**support.HEX_MATERIAL, "regions": [2]}])
+        self.assertEqual(sorted(body.cells), ["hexahedron", "tetrahedron"])
+        state = body.save()
+        body.add_tool("plane", {"kind": "cut", "plane": {"point": [0, 0, 0.4],
+                                                         "normal": [0, 0, 1]}})
+        with self.assertRaisesRegex(incise.InputError, "^world: step 1, t = 0 s: tool 'plane'"):
+            body.step()
+        self.assertTrue(body.has_failed)
+        with self.assertRaisesRegex(incise.InputError, "the world has failed"):
+            body.step()
+        self.assertEqual(body.positions.shape, (body.num_nodes, 3))
+        body.restore(state)
+        self.assertFalse(body.has_failed)
+        body.step()
+
+    def test_other_bytes_are_refused_and_change_nothing(self) -> None:
+        body = led_world()
+        body.run_until(0.002)
+        state = body.save()
+        source = random.Random(1)
+        for _ in range(200):
+            damaged = bytearray(state)
+            kind = source.randrange(3)
+            if kind == 0:
+                damaged[source.randrange(len(damaged))] ^= 1 << source.randrange(8)
+            elif kind == 1:
+                del damaged[source.randrange(len(damaged)):]
+            else:
+                damaged += b"x"
+            with self.assertRaises(incise.InputError):
+                body.restore(bytes(damaged))
+        self.assertEqual(body.save(), state)
+        with self.assertRaisesRegex(incise.InputError, "save.. has not made them"):
+            body.restore(b"\x0c" + bytes(100))
+        with self.assertRaisesRegex(incise.InputError, "has 0 tools, and this one 1"):
+            incise.World(support.SCENARIOS / "beam.toml").restore(state)
+        with self.assertRaises(incise.InputError):
+            support.world(materials=[{**support.MATERIAL, "young": 2e4}]).restore(state)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,122 @@
+"""Worlds and threads."""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+import incise
+import support
+
+
+class Threads(unittest.TestCase):
+    def test_several_worlds_step_at_the_same_time(self) -> None:
+        def run(x: float) -> np.ndarray:
+            body = support.world(gravity=[0, 0, -9.81])
+            support.cut_through(body, x)
+            return body.positions
+
+        places = [0.03, 0.05, 0.07, 0.09] * 2
+        alone = [run(x) for x in places]
+        with ThreadPoolExecutor(4) as pool:
+            together = list(pool.map(run, places))
+        for a, b in zip(alone, together):
+            np.testing.assert_array_equal(a, b)
+
+    def test_a_step_lets_other_threads_run(self) -> None:
+        body = support.world()
+        count, done = 0, threading.Event()
+
+        def step() -> None:
+            body.run_until(4.0)
+            done.set()
+
+        thread = threading.Thread(target=step)
+        thread.start()
+        while not done.is_set():
+            count += 1
+        thread.join()
+        self.assertGreater(count, 10000)  # a call that held the lock would leave none
+
+    def test_one_world_in_two_threads_raises(self) -> None:
+        body = support.world()
+        began = threading.Event()
+
+        def step() -> None:
+            began.set()
+            body.run_until(3.0)
+
+        thread = threading.Thread(target=step)
+        thread.start()
+        began.wait()
+        refused = 0
+        while thread.is_alive():
+            for use in (lambda: body.time, lambda: body.positions, lambda: body.step(),
+                        lambda: body.add_tool("x", {}), lambda: body.view().__enter__(),
+                        lambda: body.surface, lambda: body.save(), lambda: body.edits()):
+                try:
+                    use()
+                except incise.Error as error:
+                    refused += "another thread uses this world" in str(error)
+                    break
+        thread.join()
+        self.assertGreater(refused, 0)
+        self.assertGreaterEqual(body.time, 3.0)
+
+    def test_many_threads_hammer_one_world(self) -> None:
+        body = support.world()
+        state = body.save()
+        kinds: set[str] = set()
+
+        def hammer(i: int) -> None:
+            for k in range(150):
+                try:
+                    if (i + k) % 5 == 0:
+                        body.restore(state)
+                    elif (i + k) % 5 == 1:
+                        with body.view() as view:
+                            view.positions.sum()
+                    elif (i + k) % 5 == 2:
+                        body.surface.triangles.sum()
+                    else:
+                        body.step(n=20)
+                except (incise.Error, BufferError) as error:
+                    kinds.add(type(error).__name__)
+
+        threads = [threading.Thread(target=hammer, args=(i,)) for i in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertLessEqual(kinds, {"Error", "BufferError"})
+        body.step()
+
+    def test_an_interrupt_ends_a_long_call_between_steps(self) -> None:
+        script = textwrap.dedent("""
+            import support
+            body = support.world()
+            print("begun", flush=True)
+            try:
+                body.run_until(1e4)
+            except KeyboardInterrupt:
+                body.step()
+                print("stopped", body.has_failed)
+        """)
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
+                                   text=True)
+        assert process.stdout is not None
+        self.assertEqual(process.stdout.readline(), "begun\n")
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(out, "stopped False\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

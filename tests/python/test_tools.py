@@ -1,0 +1,161 @@
+"""Tools that a program leads, grasps and sutures."""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+import unittest
+
+import numpy as np
+
+import incise
+import support
+
+JAWS = {"kind": "grasper", "shape": {"sphere": {"radius": 0.015}}}
+PROBE = {"kind": "probe", "shape": {"sphere": {"radius": 0.01}}}
+
+
+class Poses(unittest.TestCase):
+    def test_rotation_is_made_of_length_one(self) -> None:
+        pose = incise.Pose([1, 2, 3], [0, 0, 0, 2])
+        np.testing.assert_array_equal(pose.rotation, [0, 0, 0, 1])
+        np.testing.assert_array_equal(pose.position, [1, 2, 3])
+        self.assertEqual(pose, incise.Pose(np.array([1.0, 2.0, 3.0])))
+        self.assertNotEqual(pose, incise.Pose())
+        self.assertNotEqual(pose, 3)
+
+    def test_turned_turns_about_the_axis(self) -> None:
+        pose = incise.Pose.turned([0, 0, 1], [0, 0, 5], np.pi / 2)
+        np.testing.assert_allclose(pose.to_world([[1, 0, 0]]), [[0, 1, 1]], atol=1e-15)
+
+
+class Tools(unittest.TestCase):
+    def test_blade_parts_the_block(self) -> None:
+        body = support.world()
+        support.cut_through(body)
+        self.assertEqual(body.ledger()["components"], 2)
+        self.assertFalse(body.tools["knife_0"].is_present)
+
+    def test_tool_goes_evenly_during_a_call(self) -> None:
+        """One call of many steps cuts as many calls of one step each."""
+        one, many = support.world(), support.world()
+        dt = 0.5 * one.stable_step / 4
+        for body in (one, many):
+            body.add_tool("knife", support.BLADE, incise.Pose([0.07, 0, 0.05]))
+        one.tools["knife"].pose = incise.Pose([0.07, 0, 0.01])
+        one.step(dt, n=64)
+        for i in range(64):
+            many.tools["knife"].pose = incise.Pose([0.07, 0, 0.05 - 0.04 * (i + 1) / 64])
+            many.step(dt)
+        self.assertTrue(one.edits())
+        self.assertEqual(len(one.edits()), len(many.edits()))
+        np.testing.assert_allclose(one.positions, many.positions, atol=1e-12)
+
+    def test_pose_reads_back(self) -> None:
+        body = support.world()
+        knife = body.add_tool("knife", support.BLADE)
+        self.assertIsNone(knife.pose)
+        self.assertFalse(knife.is_present)
+        knife.pose = incise.Pose([0, 0, 1])
+        self.assertEqual(knife.pose, incise.Pose([0, 0, 1]))
+        body.step()
+        self.assertTrue(knife.is_present)
+        knife.pose = incise.Pose([0, 0, 2])
+        body.run_until(body.time + 10 * body.stable_step)
+        np.testing.assert_array_equal(knife.pose.position, [0, 0, 2])
+        knife.place(incise.Pose([0, 0, 3]))
+        np.testing.assert_array_equal(body.tools["knife"].pose.position, [0, 0, 3])
+
+    def test_probe_feels_what_it_pushes(self) -> None:
+        body = support.world()
+        probe = body.add_tool("probe", PROBE, incise.Pose([0.1, 0.02, 0.055]))
+        probe.pose = incise.Pose([0.1, 0.02, 0.043])
+        report = body.run_until(0.05)
+        self.assertGreater(probe.force[2], 0.0)
+        self.assertGreater(report.tool_forces["probe"][2], 0.0)
+        self.assertEqual(report.tool_torques["probe"].shape, (3,))
+        self.assertGreater(report.contacts, 0)
+        self.assertGreater(body.contact_forces[:, 2].min(), -10)
+        self.assertLess(body.contact_forces[:, 2].sum(), 0.0)
+        # The mean of the call is that of its steps, by their lengths.
+        total, start = np.zeros(3), body.time
+        for _ in range(20):
+            step = body.step()
+            total += step.tool_forces["probe"] * (step.end - step.start)
+            np.testing.assert_allclose(step.tool_forces["probe"], probe.force, rtol=1e-12)
+        self.assertGreater((total / (body.time - start))[2], 0.0)
+
+    def test_grasper_holds_and_carries(self) -> None:
+        body = support.world()
+        jaws = body.add_tool("jaws", JAWS, incise.Pose([0.12, 0.02, 0.04]))
+        self.assertEqual(jaws.held, 0)
+        self.assertGreater(jaws.close(), 0)
+        self.assertGreater(jaws.held, 0)
+        jaws.pose = incise.Pose([0.12, 0.02, 0.05])
+        body.run_until(0.1)
+        self.assertLess(jaws.force[2], 0.0)
+        self.assertGreater(body.positions[:, 2].max(), 0.045)
+        jaws.open()
+        self.assertEqual(jaws.held, 0)
+
+    def test_suture_draws_points_together(self) -> None:
+        body = support.world()
+        thread = body.add_tool("thread", {"kind": "suture", "stiffness": 50.0,
+                                          "points": [[0.06, 0.02, 0.04], [0.1, 0.02, 0.04]]})
+        self.assertFalse(thread.is_tied)
+        self.assertEqual(thread.tie(), 2)
+        self.assertAlmostEqual(thread.length, 0.04)
+        thread.tighten(0.038)
+        body.run_until(0.02)
+        self.assertAlmostEqual(thread.length, 0.038)
+        self.assertGreater(np.linalg.norm(thread.force), 0.0)
+        thread.untie()
+        self.assertFalse(thread.is_tied)
+
+    def test_cut_divides_in_the_next_call(self) -> None:
+        body = support.world()
+        plane = {"point": [0.05, 0, 0], "normal": [1, 0, 0.2]}
+        cut = body.add_tool("plane", {"kind": "cut", "plane": plane})
+        report = body.step(n=3)
+        self.assertEqual(len(report.edits), 1)
+        self.assertFalse(cut.is_present)
+        self.assertEqual(body.ledger()["components"], 2)
+        with self.assertRaisesRegex(incise.InputError, "has no pose"):
+            cut.pose = incise.Pose()
+
+    def test_kinds_and_names(self) -> None:
+        body = incise.World(support.SCENARIOS / "beam.toml")
+        blade = body.tools["blade_1"]
+        self.assertEqual((blade.kind, blade.is_scripted), ("blade", True))
+        with self.assertRaisesRegex(incise.InputError, "is led by the scenario"):
+            blade.pose = incise.Pose()
+        probe = body.add_tool("probe", PROBE)
+        self.assertEqual((probe.kind, probe.is_scripted, probe.name), ("probe", False, "probe"))
+        self.assertEqual(list(body.tools), ["blade_1", "probe"])
+        with self.assertRaisesRegex(incise.InputError, "has a tool of this name already"):
+            body.add_tool("probe", PROBE)
+
+    def test_tool_keeps_its_world(self) -> None:
+        probe = support.world().add_tool("probe", PROBE)
+        self.assertFalse(probe.is_present)
+
+
+class Grasps(unittest.TestCase):
+    def test_grasp_carries_nodes_and_is_felt(self) -> None:
+        body = support.world()
+        end = np.flatnonzero(body.rest_positions[:, 0] > 0.119)
+        hand = body.grasp("hand", end)
+        self.assertTrue(hand.is_grasp)
+        self.assertFalse(body.constraints["clamp"].is_grasp)
+        pose = hand.pose
+        hand.pose = incise.Pose(pose.position + [0.01, 0, 0])
+        body.run_until(0.05)
+        np.testing.assert_allclose(body.positions[end, 0], 0.13, atol=1e-12)
+        self.assertGreater(hand.force[0], 0.0)
+        self.assertLess(body.constraints["clamp"].force[0], 0.0)
+        self.assertEqual(hand.torque.shape, (3,))
+        hand.release()
+        with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
+            hand.force
+        body.run_until(0.1)
+        self.assertLess(body.positions[end, 0].mean(), 0.13)
+
+
+if __name__ == "__main__":
+    unittest.main()

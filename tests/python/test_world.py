@@ -1,0 +1,227 @@
+"""Worlds, their arrays and what steps report."""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+import pathlib
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import incise
+import support
+
+
+class Arrays(unittest.TestCase):
+    def test_shapes_and_types(self) -> None:
+        body = support.world()
+        n = body.num_nodes
+        for name in ("positions", "velocities", "rest_positions", "contact_forces"):
+            array = getattr(body, name)
+            self.assertEqual((array.shape, array.dtype), ((n, 3), np.float64), name)
+        self.assertEqual((body.masses.shape, body.masses.dtype), ((n,), np.float64))
+        self.assertEqual(body.cells.shape, (144, 4))
+        self.assertEqual(body.regions.tolist(), [0] * 144)
+        self.assertEqual(body.node_ids.shape, (n,))
+        self.assertAlmostEqual(body.masses.sum(), 1000 * 0.12 * 0.04 * 0.04)
+
+    def test_copies_survive_edits(self) -> None:
+        body = support.world()
+        positions, cells, surface = body.positions, body.cells, body.surface
+        kept = positions.copy(), cells.copy(), surface.triangles.copy()
+        support.cut_through(body)
+        self.assertGreater(body.num_nodes, len(positions))
+        np.testing.assert_array_equal(positions, kept[0])
+        np.testing.assert_array_equal(cells, kept[1])
+        np.testing.assert_array_equal(surface.triangles, kept[2])
+        positions[:] = 0.0  # a copy may be changed
+        self.assertGreater(np.abs(body.positions).max(), 0.0)
+
+    def test_hexahedra_have_eight_corners(self) -> None:
+        body = support.hex_world()
+        self.assertEqual(body.cells.shape, (24, 8))
+        self.assertEqual(body.surface.triangles.shape[0], 2 * (2 * 4 + 4 * 12))
+
+    def test_rows_stay_consistent_when_nodes_die(self) -> None:
+        body = support.world()
+        burr = body.add_tool("burr", {"kind": "carver", "shape": {"sphere": {"radius": 0.03}}},
+                             incise.Pose([0.12, 0.02, 0.02]))
+        burr.pose = incise.Pose([0.119, 0.02, 0.02])
+        before = body.num_nodes
+        report = body.step()
+        self.assertTrue(report.edits)
+        self.assertLess(body.num_nodes, before)
+        rows = np.unique(body.cells)
+        np.testing.assert_array_equal(rows, np.arange(body.num_nodes))
+        rest = body.rest_positions
+        corners = rest[body.cells]
+        volumes = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0],
+                                                 corners[:, 2] - corners[:, 0]),
+                            corners[:, 3] - corners[:, 0]) / 6
+        self.assertGreater(volumes.min(), 0.0)
+        self.assertAlmostEqual(1000 * volumes.sum(), body.masses.sum())
+        self.assertLess(body.surface.triangles.max(), body.num_nodes)
+        with body.view() as view:
+            np.testing.assert_array_equal(view.positions, body.positions)
+            np.testing.assert_array_equal(view.rest_positions, rest)
+        clamped = np.flatnonzero(rest[:, 0] == 0.0)
+        np.testing.assert_array_equal(body.positions[clamped], rest[clamped])
+
+    def test_surface_is_closed_and_follows_edits(self) -> None:
+        body = support.world()
+        first = body.surface
+        self.assertIs(body.surface, first)
+        self.assertFalse(first.is_cut.any())
+        version = body.topology_version
+        support.cut_through(body)
+        surface = body.surface
+        self.assertNotEqual(body.topology_version, version)
+        self.assertEqual(surface.version, body.topology_version)
+        self.assertTrue(surface.is_cut.any())
+        np.testing.assert_array_equal(np.unique(surface.triangles), surface.vertices)
+        edges = np.concatenate([surface.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+        there = {tuple(edge) for edge in edges.tolist()}
+        self.assertTrue(all((b, a) in there for a, b in there))
+        with self.assertRaises(ValueError):
+            surface.triangles[0, 0] = 1
+
+    def test_triangles_face_outwards(self) -> None:
+        body = support.world()
+        corners = body.rest_positions[body.surface.triangles]
+        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+        volume = np.einsum("ij,ij->", corners.mean(axis=1), areas) / 3
+        self.assertAlmostEqual(volume, 0.12 * 0.04 * 0.04)
+
+
+class Steps(unittest.TestCase):
+    def test_step_advances_by_safety_times_the_stable_step(self) -> None:
+        body = support.world(dynamics={"safety": 0.5, "damping": 5}, damping=None)
+        bound = body.stable_step
+        report = body.step()
+        self.assertEqual((report.start, report.end, report.num_steps), (0.0, 0.5 * bound, 1))
+        self.assertEqual(body.time, 0.5 * bound)
+        report = body.step(dt=1e-5, n=7)
+        self.assertEqual(report.num_steps, 7)
+        self.assertEqual(body.num_steps, 8)
+
+    def test_run_until_ends_exactly(self) -> None:
+        body = support.world()
+        report = body.run_until(0.0123)
+        self.assertEqual(body.time, 0.0123)
+        self.assertEqual(report.num_steps, body.num_steps)
+        self.assertEqual(body.run_until(0.0123).num_steps, 0)
+
+    def test_fixed_step_of_the_scenario_is_taken(self) -> None:
+        body = support.world(dynamics={"time_step": 1e-4})
+        self.assertEqual(body.step().end, 1e-4)
+
+    def test_edits_have_the_names_of_the_file(self) -> None:
+        body = support.world()
+        report = support.cut_through(body)
+        self.assertEqual(report.edits, body.edits())
+        edit = report.edits[0]
+        for key in ("time", "step", "tool", "elements_split", "cut_area", "before", "after"):
+            self.assertIn(key, edit)
+        self.assertEqual(edit["tool"], "knife_0")
+        self.assertEqual(report.edits[-1]["after"]["components"], 2)
+
+    def test_ledger_has_the_names_of_the_history(self) -> None:
+        body = support.world(gravity=[0, 0, -9.81])
+        body.run_until(0.01)
+        ledger = body.ledger()
+        self.assertEqual(ledger["time"], 0.01)
+        self.assertAlmostEqual(ledger["mass"], 0.192)
+        self.assertIn("reaction_clamp_z", ledger)
+        self.assertEqual(ledger["mass_error"], 0.0)
+
+    def test_implicit_and_static_worlds_step(self) -> None:
+        off = {"contact": {"enabled": False}, "damping": None}
+        implicit = support.world(dynamics={"integrator": "implicit-euler", "time_step": 0.01},
+                                 gravity=[0, 0, -1], **off)
+        self.assertEqual(implicit.run_until(0.05).num_steps, 5)
+        static = support.world(dynamics={"mode": "static"}, gravity=[0, 0, -1], **off)
+        static.step()
+        self.assertEqual(static.time, 1.0)
+        self.assertLess(static.positions[:, 2].min(), 0.0)
+
+    def test_numbers_of_threads_give_the_same_bits(self) -> None:
+        one, two = support.world(gravity=[0, 0, -9]), support.world(gravity=[0, 0, -9])
+        two.num_threads = 2
+        self.assertEqual((one.num_threads, two.num_threads), (1, 2))
+        one.run_until(0.01)
+        two.run_until(0.01)
+        np.testing.assert_array_equal(one.positions, two.positions)
+
+
+class Definitions(unittest.TestCase):
+    def test_mesh_may_be_a_dict_a_file_or_a_mesh(self) -> None:
+        mesh = incise.Mesh.box([0.12, 0.04, 0.04], [6, 2, 2])
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "block.vtk"
+            mesh.write(path)
+            worlds = [support.world(mesh=source)
+                      for source in (support.box(), mesh, path, str(path), {"file": path},
+                                     incise.read_mesh(path))]
+        for body in worlds:
+            body.run_until(0.002)
+            self.assertEqual(body.num_cells, 144)
+            np.testing.assert_array_equal(body.positions, worlds[0].positions)
+
+    def test_whole_scenario_may_be_a_dict(self) -> None:
+        body = incise.World({"title": "a block", "mesh": support.box(),
+                             "material": [support.MATERIAL],
+                             "constraint": [support.CLAMP],
+                             "dynamics": {"end_time": 0.5, "gravity": np.array([0, 0, -1.0])}})
+        self.assertEqual((body.end_time, body.name), (0.5, "world"))
+        self.assertIsNone(support.world().end_time)
+        mesh = incise.Mesh.box([1, 1, 1], [1, 1, 1], "hex")
+        body = incise.World({"mesh": mesh, "material": [support.HEX_MATERIAL]})
+        self.assertEqual(body.num_cells, 1)
+
+    def test_regions_of_a_mesh_choose_materials(self) -> None:
+        block = incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        mesh = incise.Mesh(block.points, block.cells, regions=[1, 1, 1, 2, 2, 2])
+        body = incise.World(mesh=mesh, materials=[
+            {**support.MATERIAL, "regions": [1]},
+            {**support.MATERIAL, "regions": [2], "density": 3000}])
+        self.assertAlmostEqual(body.masses.sum(), 2000.0)
+        self.assertEqual(sorted(body.regions.tolist()), [1, 1, 1, 2, 2, 2])
+
+    def test_overrides_change_values(self) -> None:
+        body = incise.World(support.SCENARIOS / "beam.toml", overrides=["dynamics.end_time=0.25"])
+        self.assertEqual((body.end_time, body.name), (0.25, "beam"))
+        self.assertEqual(body.output_interval, 0.01)
+
+    def test_warnings_reach_python(self) -> None:
+        far = {"kind": "blade", "edge": [[0, 0, 0], [0, 1, 0]],
+               "path": [{"time": 0, "at": [9, 0, 0]}, {"time": 1, "at": [9, 0, -1]}]}
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            body = support.world(tools=[far])
+        self.assertEqual([w.category for w in caught], [incise.InciseWarning])
+        self.assertIn("touches nothing where the body rests", str(caught[0].message))
+        self.assertEqual(len(body.warnings), 1)
+
+    def test_loads_have_factors(self) -> None:
+        top = {"box": {"min": [0.119, -1, -1], "max": [1, 1, 1]}}
+        body = support.world(loads=[{"name": "pull", "where": top, "nodal_force": [0, 0, 1e-3]}])
+        self.assertEqual(body.loads["pull"].factor, 1.0)
+        body.loads["pull"].factor = 0.0
+        body.run_until(0.01)
+        self.assertLess(np.abs(body.velocities).max(), 1e-12)
+        body.loads["pull"].factor = 2.0
+        body.run_until(0.02)
+        self.assertEqual(body.loads["pull"].factor, 2.0)
+        self.assertGreater(body.velocities[:, 2].max(), 0.0)
+
+    def test_frame_reads_back_as_the_body(self) -> None:
+        body = support.world()
+        support.cut_through(body)
+        with tempfile.TemporaryDirectory() as folder:
+            body.write_vtu(pathlib.Path(folder) / "frame.vtu")
+            mesh = incise.read_mesh(pathlib.Path(folder) / "frame.vtu")
+        self.assertEqual(mesh.num_cells, body.num_cells)
+        np.testing.assert_array_equal(mesh.points, body.rest_positions)
+
+
+if __name__ == "__main__":
+    unittest.main()
