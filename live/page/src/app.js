@@ -63,7 +63,7 @@ export class App {
     constructor(low) {
         this.scene = new Scene(element('stage'), low);
         this.tissue = new Tissue(low);
-        this.scene.three.add(this.tissue.mesh);
+        this.scene.three.add(this.tissue.mesh, this.tissue.lips.lines);
         this.section = new Section(this.scene.three, this.tissue, this.scene.box, low);
         this.toolsView = new ToolsView(low);
         this.scene.three.add(this.toolsView.group);

@@ -126,9 +126,10 @@ export class Section {
         }
         this.cap.visible = this.on && this.#tissue.mesh.visible;
         const planes = this.on ? [this.plane] : null;
-        if (Boolean(this.#tissue.material.clippingPlanes) !== this.on) {
-            this.#tissue.material.clippingPlanes = planes;
-            this.#tissue.material.needsUpdate = true;
+        for (const material of [this.#tissue.material, this.#tissue.lips.material]) {
+            if (Boolean(material.clippingPlanes) === this.on) continue;
+            material.clippingPlanes = planes;
+            material.needsUpdate = true;
         }
     }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { BufferAttribute, BufferGeometry, Color, Mesh, Sphere, Vector3 } from 'three';
 import { tissueColours } from './colours.js';
+import { Lips } from './lips.js';
 import { computeNormals } from './normals.js';
 import { tissueMaterial, tissueUniforms } from './tissue_material.js';
 
@@ -19,6 +20,7 @@ function mottling(rest, vertex, wave) {
 
 export class Tissue {
     geometry = new BufferGeometry();
+    lips = new Lips();
     uniforms = tissueUniforms();
     /** @type {import('./types.js').Topology|null} */
     topology = null;
@@ -53,7 +55,7 @@ export class Tissue {
     /** Forgets the body, for instance when the connection was lost. */
     clear() {
         this.topology = null;
-        this.mesh.visible = false;
+        this.mesh.visible = this.lips.lines.visible = false;
     }
 
     /**
@@ -68,6 +70,7 @@ export class Tissue {
         computeNormals(this.positions, this.triangles, this.normals);
         this.origin.fromArray(frame.origin);
         this.mesh.position.copy(this.origin);
+        this.lips.setPositions(this.positions, this.origin);
         this.geometry.attributes.position.needsUpdate = true;
         this.geometry.attributes.normal.needsUpdate = true;
         if (frame.values && this.#values) {
@@ -100,6 +103,7 @@ export class Tissue {
             const mottle = cut[vertex] ? 1 : 0.86 + 0.28 * mottling(topology.rest, vertex, wave);
             shade.copy(pair[cut[vertex]]).multiplyScalar(mottle).toArray(colours, 3 * vertex);
         }
+        this.lips.setTopology(topology);
         // The old buffers on the card go; a replaced attribute alone would leave them there.
         this.geometry.dispose();
         this.#values = new BufferAttribute(new Float32Array(numVertices), 1);

@@ -146,6 +146,13 @@ export function tissueMaterial(low, uniforms) {
                     }
                 }`
             );
+        // Colours of a field are read off: they shine a little, so that shades change them less.
+        shader.fragmentShader = shader.fragmentShader.replace(
+            '#include <emissivemap_fragment>',
+            `#include <emissivemap_fragment>
+            totalEmissiveRadiance += 0.35 * uColoured * diffuseColor.rgb;
+            diffuseColor.rgb *= 1.0 - 0.3 * uColoured;`
+        );
         if (low) return;
         shader.fragmentShader = shader.fragmentShader
             .replace(

@@ -14,6 +14,7 @@ import {
     MeshPhongMaterial,
     MeshStandardMaterial,
     Quaternion,
+    Sphere,
     SphereGeometry,
     Vector3,
 } from 'three';
@@ -138,8 +139,9 @@ export class ToolsView {
         const add = (/** @type {import('three').BufferGeometry} */ geometry, /** @type {import('three').Material} */ material, parent = group) => {
             const mesh = new Mesh(geometry, ghost ? this.ghost : material);
             mesh.castShadow = !ghost && !this.#low;
-            // Nothing is worked out from sizes that another page may have sent.
+            // No bounds are worked out from sizes that another page may have sent.
             mesh.frustumCulled = false;
+            geometry.boundingSphere ??= new Sphere(new Vector3(), Infinity);
             parent.add(mesh);
             if (geometry !== this.#rod && geometry !== this.#ball) (group.userData.own ??= []).push(geometry);
             return mesh;
