@@ -74,8 +74,9 @@ export class LivePage {
     async beginAnew() {
         if ((await this.ask(() => window.incise.hello().role)) !== 'operator') await this.send({ do: 'take_over' });
         await this.until(() => window.incise.hello()?.role === 'operator');
+        const greeted = await this.ask(() => window.incise.greetings());
         await this.send({ do: 'reset' });
-        await this.until(() => window.incise.state()?.edits === 0 && window.incise.state().time < 5 && !window.incise.state().can_undo);
+        await this.until((before) => window.incise.greetings() > before && window.incise.state()?.edits === 0 && !window.incise.state().can_undo, greeted);
         await this.send({ do: 'pause', on: false });
         await this.send({ do: 'show', field: 'none' });
         await this.until(() => {

@@ -41,8 +41,9 @@ export class App {
     hello = null;
     /** @type {import('./types.js').State|null} */
     state = null;
-    /** Numbers of frames that came. */
+    /** Numbers of frames and of greetings that came. */
     frames = 0;
+    greetings = 0;
     /** @type {ModeName} */
     modeName = 'look';
     settings = suitable(0.005, 0.1);
@@ -57,6 +58,8 @@ export class App {
     #framed = null;
     /** The newest frame that is not drawn yet. @type {import('./types.js').Frame|null} */
     #frame = null;
+    /** Values of the field in the frame that is drawn. @type {Float32Array|null} */
+    #values = null;
     #stateIsNew = false;
 
     /** @param {boolean} low for slow machines */
@@ -158,27 +161,34 @@ export class App {
         else if (message.type === 'state') {
             this.state = message;
             this.#stateIsNew = true;
-            if (this.hand.tool && !message.tools.some((/** @type {any} */ tool) => tool.mine)) this.#missing();
-            else this.#missed = 0;
+            this.#compareHands(message);
             this.scene.invalidate();
         } else if (message.type === 'message') this.messages.show(message.level, message.text);
     }
 
-    #missed = 0;
+    /** States in a row that disagree with this page on whether a tool is in the hand. */
+    #disagreeing = 0;
 
-    /** The server may not know the tool yet, or it took the tool away: for instance in an undo. */
-    #missing() {
-        // After so many states without the tool, it will not come back.
-        if (++this.#missed < 120) return;
-        this.#missed = 0;
-        this.send({ do: 'drop' });
-        this.#letGo();
+    /**
+     * For a few states the server may not know of an order yet. After many, the tool was taken away,
+     * or its drop was lost.
+     * @param {import('./types.js').State} state
+     */
+    #compareHands(state) {
+        const held = state.tools.some((tool) => tool.mine && tool.present);
+        this.#disagreeing = held === this.hand.isEmpty ? this.#disagreeing + 1 : 0;
+        if (this.#disagreeing < 120) return;
+        this.#disagreeing = 0;
+        if (held) this.send({ do: 'drop' });
+        else this.#letGo();
     }
 
     /** @param {import('./types.js').Hello} hello */
     #greeted(hello) {
-        this.#letGo();
+        // Another page may have come or gone; the tool in the hand of an operator stays there.
+        if (hello.role !== 'operator') this.#letGo();
         this.hello = hello;
+        ++this.greetings;
         this.scene.box.min.fromArray(hello.size[0]);
         this.scene.box.max.fromArray(hello.size[1]);
         if (JSON.stringify(this.#framed) !== JSON.stringify(hello.size)) {
@@ -219,7 +229,7 @@ export class App {
     /** @param {number} seconds @returns {boolean} wants another picture */
     #beforePicture(seconds) {
         let again = this.keyboard.move(seconds);
-        this.#takeFrame();
+        if (this.#takeFrame() || this.#stateIsNew) this.#colourField();
         if (this.mode && !this.hand.isEmpty && this.mode.step(seconds)) again = true;
         this.hand.flush();
         if (this.#stateIsNew && this.state) {
@@ -236,12 +246,18 @@ export class App {
     #takeFrame() {
         const frame = this.#frame;
         this.#frame = null;
-        if (!frame || !this.tissue.setFrame(frame)) return;
+        if (!frame || !this.tissue.setFrame(frame)) return false;
         element('loading').hidden = true;
+        this.#values = frame.values;
+        return true;
+    }
+
+    /** Values come with frames, the name of their field with states: either may be the first. */
+    #colourField() {
         const name = this.state?.field ?? 'none';
-        const coloured = frame.values !== null && name !== 'none';
-        if (frame.values && coloured) {
-            this.#range.follow(name, frame.values, performance.now());
+        const coloured = this.#values !== null && name !== 'none';
+        if (this.#values && coloured) {
+            this.#range.follow(name, this.#values, performance.now());
             this.tissue.uniforms.low.value = this.#range.low;
             this.tissue.uniforms.high.value = this.#range.high;
             const unit = this.hello?.fields.find((field) => field.name === name)?.unit ?? '';
@@ -432,8 +448,10 @@ export class App {
         const now = performance.now();
         const sure = now - this.#resetAsked < resetWithin;
         this.#resetAsked = sure ? 0 : now;
-        if (sure) this.send({ do: 'reset' });
-        else setTimeout(() => this.#showReset(), resetWithin + 50);
+        if (sure) {
+            this.#letGo();
+            this.send({ do: 'reset' });
+        } else setTimeout(() => this.#showReset(), resetWithin + 50);
         this.#showReset();
     }
 

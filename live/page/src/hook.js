@@ -16,6 +16,8 @@ export function exposeForTests(app) {
         state: () => app.state,
         messages: () => app.messages.all,
         framesReceived: () => app.frames,
+        /** Number of hellos, of which one comes after each reset. */
+        greetings: () => app.greetings,
         ordersSent: () => app.connection.sent,
         picturesDrawn: () => scene.pictures,
         mode: () => app.modeName,
