@@ -54,8 +54,8 @@ export class App {
     #cursor = new Cursor();
     #lost = false;
     #resetAsked = 0;
-    /** @type {number[][]|null} the body that the camera was placed for */
-    #framed = null;
+    /** The body that the camera was placed for. */
+    #framed = '';
     /** The newest frame that is not drawn yet. @type {import('./types.js').Frame|null} */
     #frame = null;
     /** Values of the field in the frame that is drawn. @type {Float32Array|null} */
@@ -191,8 +191,10 @@ export class App {
         ++this.greetings;
         this.scene.box.min.fromArray(hello.size[0]);
         this.scene.box.max.fromArray(hello.size[1]);
-        if (JSON.stringify(this.#framed) !== JSON.stringify(hello.size)) {
-            this.#framed = hello.size;
+        // The box is that of the body as it is; a later hello, of another role, leaves the camera alone.
+        const body = `${hello.title} ${hello.element_size}`;
+        if (this.#framed !== body) {
+            this.#framed = body;
             this.scene.frame(hello.size);
             Object.assign(this.settings, suitable(hello.element_size, this.scene.diagonal));
         }
