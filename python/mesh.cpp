@@ -411,8 +411,8 @@ mode: 'split' divides elements, 'separate' opens the faces between them. None: '
     elements are tetrahedra.
 snap: points of edges nearer than this part of the edge to a node are taken as on it, 0 to 0.5.
 
-Tools act in this order, all lengths in the unit of the mesh. Raises InputError for tools that cannot
-be, for elements that cannot be divided, and if nothing is left.
+Tools act in this order, all lengths in the unit of the mesh. Raises InputError for tools that
+cannot be, for elements that cannot be divided, and if nothing is left.
 
 >>> block = incise.Mesh.box([0.1, 0.1, 0.1], [2, 2, 2])
 >>> result = incise.cut(block, planes=[([0.03, 0, 0], [1, 0, 0])])

@@ -495,7 +495,8 @@ Lengths are m, times s, masses kg, forces N. Rows of positions, velocities and m
 of the body; cells, surface and grasp() name nodes by these rows. After an edit of the mesh, which
 topology_version tells, rows are others: node_ids follow a node through edits.
 
-Several threads may step several worlds. A world that one thread steps raises incise.Error in others.
+Several threads may step several worlds. While one thread steps a world, it raises incise.Error in
+others.
 
 >>> world = incise.World(
 ...     mesh={"box": {"size": [0.1, 0.02, 0.02], "cells": [5, 1, 1]}},

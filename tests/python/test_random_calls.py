@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tempfile
 import unittest
 
 NUM_CALLS = 10000
@@ -29,7 +30,9 @@ PLANE = {"kind": "cut", "plane": {"point": [0.05, 0, 0], "normal": [1, 0, 0.2]}}
 class Own:
     def __getattr__(self, name): raise RuntimeError(name)
     def __len__(self): return 3
-    def __getitem__(self, i): return i
+    def __getitem__(self, i):
+        if i > 2: raise IndexError(i)
+        return i
 class Evil(incise.World):
     def __init__(self): pass
 
@@ -157,7 +160,6 @@ calls = ([lambda: steps(source.choice([1, 2, 5]))] * 8 + [tool_call] * 8 + [ente
 raised, done = {}, 0
 for i in range(num_calls):
     call = source.choice(calls)
-    if os.environ.get('INCISE_TRACE'): print(i, call, file=sys.stderr, flush=True)
     try:
         call()
         done += 1
@@ -169,7 +171,7 @@ for i in range(num_calls):
             assert "Own" in str(type(error)) or "__init__" in str(error) or len(str(error)) < 40 \
                 or "Unable to cast" in str(error), error
     if len(kept) > 60: del kept[:50]
-    if len(others) > 60: del others[:50]
+    others[:] = [o for o in others if type(o).__module__ == "incise"][-20:]
     if len(states) > 6: del states[0]
     if i % 500 == 0: gc.collect()
 print(done, raised)
@@ -178,7 +180,6 @@ print(done, raised)
 
 class RandomCalls(unittest.TestCase):
     def run_script(self, seed: int, num_calls: int) -> None:
-        import tempfile
         with tempfile.TemporaryDirectory() as folder:
             paths = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])
             done = subprocess.run(

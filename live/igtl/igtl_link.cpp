@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/live/igtl/igtl_link.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <igtlMessageHeader.h>
+#include <igtlPolyDataMessage.h>
+#include <igtlSensorMessage.h>
+#include <igtlStringMessage.h>
+#include <igtlTransformMessage.h>
+#include <igtlUnit.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "incise/base/error.h"
+
+namespace incise::live {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double mm = 1e-3;  // m
+constexpr auto surface_period = std::chrono::microseconds(33333);
+constexpr auto force_period = std::chrono::milliseconds(1);
+
+template <class Message>
+std::string bytes_of(Message& message) {
+    message->Pack();
+    return {static_cast<const char*>(message->GetPackPointer()),
+            static_cast<std::size_t>(message->GetPackSize())};
+}
+
+/// Returns the pose of a matrix in mm, or nothing if it is no rigid motion.
+std::optional<Pose> pose_of(const igtl::Matrix4x4& matrix) {
+    Eigen::Matrix3d rotation;
+    Pose pose;
+    for (int i = 0; i < 3; ++i) {
+        pose.position[i] = mm * static_cast<double>(matrix[i][3]);
+        for (int j = 0; j < 3; ++j) rotation(i, j) = static_cast<double>(matrix[i][j]);
+    }
+    // Numbers of messages have 24 bits.
+    const bool is_rigid =
+        (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 &&
+        rotation.determinant() > 0.0;
+    if (!is_rigid || !pose.position.allFinite()) return std::nullopt;
+    pose.rotation = Eigen::Quaterniond(rotation).normalized();
+    return pose;
+}
+
+void set_nonblocking(int socket) {
+    ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) | O_NONBLOCK);
+}
+
+}  // namespace
+
+/// The thread of the link. It shares `hands`, `surface` and `wrenches` with the loop.
+class IgtlLink::Parts {
+  public:
+    /// What messages say of a tool.
+    struct Hand {
+        std::optional<Pose> pose;         // since it was taken
+        std::vector<std::string> doings;  // close and open, in their order
+        bool is_to_be_dropped = false;
+    };
+
+    /// What is sent.
+    struct Surface {
+        std::vector<float> points;  // mm
+        std::vector<std::array<std::uint32_t, 3>> triangles;
+    };
+    using Wrench = std::array<double, 6>;  // N, N m
+
+    explicit Parts(IgtlOptions given) : options(std::move(given)) { listen(); }
+    ~Parts() {
+        is_ending = true;
+        if (thread.joinable()) thread.join();
+        for (const auto& connection : connections) ::close(connection->socket);
+        if (listener >= 0) ::close(listener);
+    }
+
+    void start() {
+        thread = std::thread([this] { run(); });
+    }
+
+    IgtlOptions options;
+    std::uint16_t port = 0;
+
+    std::mutex mutex;
+    std::map<std::string, Hand> hands;
+    std::shared_ptr<const Surface> surface;
+    std::map<std::string, Wrench> wrenches;
+
+    // Of the loop.
+    std::map<std::string, std::string> names;  // of the tools in the session, by device
+    std::map<std::string, int> numbers;
+    Clock::time_point next_surface = Clock::now();
+
+  private:
+    struct Connection {
+        int socket;
+        std::string in, out;
+        std::set<std::string> tools;  // that it leads
+        bool is_over = false;
+    };
+
+    void listen() {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(options.port);
+        if (::inet_pton(AF_INET, options.host.c_str(), &address.sin_addr) != 1)
+            throw InputError(options.host + ": is no address to listen on, such as 127.0.0.1");
+        listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        const int yes = 1;
+        ::setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+        if (listener < 0 ||
+            ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+            ::listen(listener, 8) != 0) {
+            const std::string reason = std::strerror(errno);
+            if (listener >= 0) ::close(listener);
+            throw OutputError(options.host + ":" + std::to_string(options.port) +
+                              ": cannot be listened on: " + reason +
+                              "; choose another port with --igtl");
+        }
+        set_nonblocking(listener);
+        socklen_t size = sizeof address;
+        ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+        port = ntohs(address.sin_port);
+    }
+
+    void run() {
+        auto next_force = Clock::now();
+        std::shared_ptr<const Surface> sent;
+        while (!is_ending) {
+            wait_until(next_force);
+            accept();
+            for (const auto& connection : connections) {
+                receive(*connection);
+                send(*connection);
+            }
+            std::erase_if(connections, [&](const auto& connection) {
+                if (connection->is_over) drop(*connection);
+                return connection->is_over;
+            });
+            const auto now = Clock::now();
+            if (now < next_force) continue;
+            next_force = std::max(next_force + force_period, now);
+            send_state(sent);
+        }
+    }
+
+    void wait_until(Clock::time_point time) {
+        std::vector<pollfd> waits = {{listener, POLLIN, 0}};
+        for (const auto& connection : connections)
+            waits.push_back(
+                {connection->socket,
+                 static_cast<short>(connection->out.empty() ? POLLIN : POLLIN | POLLOUT), 0});
+        const auto rest =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(time - Clock::now()).count();
+        // Without a connection there is nothing to send.
+        const timespec timeout = {0, connections.empty() ? 50'000'000 : std::max(rest, 0L)};
+        ::ppoll(waits.data(), waits.size(), &timeout, nullptr);
+    }
+
+    void accept() {
+        const int socket = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+        if (socket < 0) return;
+        if (connections.size() >= most_connections) {
+            ::close(socket);
+            return;
+        }
+        set_nonblocking(socket);
+        const int yes = 1;
+        ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+        connections.push_back(std::make_unique<Connection>());
+        connections.back()->socket = socket;
+    }
+
+    void receive(Connection& connection) {
+        std::array<char, 16384> buffer;
+        // A device that floods is read no faster than the others.
+        const auto n = ::recv(connection.socket, buffer.data(), buffer.size(), 0);
+        if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) connection.is_over = true;
+        if (n <= 0) return;
+        connection.in.append(buffer.data(), static_cast<std::size_t>(n));
+        while (!connection.is_over && take_message(connection)) {
+        }
+    }
+
+    /// Takes one message from what was received, if it is whole.
+    bool take_message(Connection& connection) {
+        auto header = igtl::MessageHeader::New();
+        header->InitPack();
+        const auto head = static_cast<std::size_t>(header->GetPackSize());
+        if (connection.in.size() < head) return false;
+        std::memcpy(header->GetPackPointer(), connection.in.data(), head);
+        header->Unpack();
+        const auto size = static_cast<std::uint64_t>(header->GetBodySizeToRead());
+        const int version = header->GetHeaderVersion();
+        if (size > longest_message || version < 1 || version > 3) {
+            connection.is_over = true;  // there is no way back into step
+            return false;
+        }
+        if (connection.in.size() < head + size) return false;
+        const std::string body = connection.in.substr(head, size);
+        connection.in.erase(0, head + size);
+        read_message(connection, header, body);
+        return true;
+    }
+
+    template <class Message>
+    static bool unpack(Message& message, igtl::MessageHeader::Pointer& header,
+                       const std::string& body) {
+        message->SetMessageHeader(header);
+        message->AllocatePack();
+        if (static_cast<std::size_t>(message->GetPackBodySize()) != body.size()) return false;
+        std::memcpy(message->GetPackBodyPointer(), body.data(), body.size());
+        return (message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;
+    }
+
+    void read_message(Connection& connection, igtl::MessageHeader::Pointer& header,
+                      const std::string& body) {
+        const std::string type = header->GetDeviceType(), device = header->GetDeviceName();
+        if (!options.tools.contains(device)) return;
+        if (type == "TRANSFORM") {
+            auto message = igtl::TransformMessage::New();
+            if (body.size() != 48 || !unpack(message, header, body)) return;
+            igtl::Matrix4x4 matrix;
+            message->GetMatrix(matrix);
+            const auto pose = pose_of(matrix);
+            if (!pose) return;
+            connection.tools.insert(device);
+            const std::scoped_lock lock(mutex);
+            hands[device].pose = pose;
+            hands[device].is_to_be_dropped = false;
+        } else if (type == "STRING") {
+            auto message = igtl::StringMessage::New();
+            if (body.size() < 4 || !unpack(message, header, body)) return;
+            const std::string what = message->GetString();
+            const std::scoped_lock lock(mutex);
+            const auto hand = hands.find(device);
+            if (hand == hands.end()) return;
+            if (what == "drop") hand->second.is_to_be_dropped = true;
+            constexpr std::size_t most_waiting = 16;
+            if ((what == "close" || what == "open") && hand->second.doings.size() < most_waiting)
+                hand->second.doings.push_back(what);
+        }
+    }
+
+    void drop(const Connection& connection) {
+        ::close(connection.socket);
+        const std::scoped_lock lock(mutex);
+        for (const std::string& device : connection.tools)
+            if (const auto hand = hands.find(device); hand != hands.end())
+                hand->second.is_to_be_dropped = true;
+    }
+
+    void send(Connection& connection) {
+        if (connection.out.empty()) return;
+        const auto n =
+            ::send(connection.socket, connection.out.data(), connection.out.size(), MSG_NOSIGNAL);
+        if (n > 0) connection.out.erase(0, static_cast<std::size_t>(n));
+        if (n < 0 && errno != EAGAIN && errno != EINTR) connection.is_over = true;
+    }
+
+    static std::string message_of(const Surface& surface) {
+        auto message = igtl::PolyDataMessage::New();
+        message->SetDeviceName("tissue");
+        auto points = igtl::PolyDataPointArray::New();
+        for (std::size_t i = 0; i + 2 < surface.points.size(); i += 3)
+            points->AddPoint(surface.points[i], surface.points[i + 1], surface.points[i + 2]);
+        auto polygons = igtl::PolyDataCellArray::New();
+        for (auto triangle : surface.triangles) polygons->AddCell(3, triangle.data());
+        message->SetPoints(points);
+        message->SetPolygons(polygons);
+        return bytes_of(message);
+    }
+
+    static std::string message_of(const std::string& tool, const Wrench& wrench) {
+        auto message = igtl::SensorMessage::New();
+        message->SetDeviceName(tool.c_str());
+        message->SetLength(static_cast<unsigned>(wrench.size()));
+        auto unit = igtl::Unit::New();
+        unit->Append(IGTL_UNIT_SI_DERIVED_NEWTON, 1);
+        message->SetUnit(unit);
+        for (unsigned i = 0; i < wrench.size(); ++i) message->SetValue(i, wrench[i]);
+        return bytes_of(message);
+    }
+
+    /// Gives forces, and a surface that is new, to those that have taken what was before.
+    void send_state(std::shared_ptr<const Surface>& sent) {
+        if (connections.empty()) return;
+        std::string bytes;
+        std::shared_ptr<const Surface> now;
+        {
+            const std::scoped_lock lock(mutex);
+            now = surface;
+            for (const auto& [tool, wrench] : wrenches) bytes += message_of(tool, wrench);
+        }
+        if (now && now != sent) bytes += message_of(*now);
+        sent = now;
+        for (const auto& connection : connections)
+            if (connection->out.empty()) connection->out = bytes;
+    }
+
+    int listener = -1;
+    std::vector<std::unique_ptr<Connection>> connections;
+    std::atomic<bool> is_ending = false;
+    std::thread thread;
+};
+
+IgtlLink::IgtlLink(IgtlOptions options) : parts_(std::make_unique<Parts>(std::move(options))) {
+    parts_->start();
+}
+
+IgtlLink::~IgtlLink() = default;
+
+std::uint16_t IgtlLink::port() const { return parts_->port; }
+
+std::vector<Order> IgtlLink::orders(const Session& session) {
+    std::vector<Order> orders;
+    const std::scoped_lock lock(parts_->mutex);
+    for (auto hand = parts_->hands.begin(); hand != parts_->hands.end();) {
+        auto& [device, wish] = *hand;
+        auto name = parts_->names.find(device);
+        const LedTool* tool = name == parts_->names.end() ? nullptr : session.find(name->second);
+        const bool is_in_hand = tool && tool->is_in_hand && !tool->is_to_be_withdrawn;
+        if (wish.is_to_be_dropped) {
+            if (is_in_hand) orders.push_back(WithdrawTool{name->second});
+            parts_->wrenches.erase(device);
+            hand = parts_->hands.erase(hand);
+            continue;
+        }
+        if (!is_in_hand && wish.pose) {
+            const int number = ++parts_->numbers[device];
+            std::string added = number == 1 ? device : device + "_" + std::to_string(number);
+            orders.push_back(AddTool{added, parts_->options.tools.at(device), *wish.pose});
+            name = parts_->names.insert_or_assign(device, std::move(added)).first;
+        } else if (wish.pose) {
+            orders.push_back(MoveTool{name->second, *wish.pose});
+        }
+        for (const std::string& what : wish.doings) {
+            if (name == parts_->names.end()) break;
+            if (what == "close") orders.push_back(CloseGrasper{name->second});
+            if (what == "open") orders.push_back(OpenGrasper{name->second});
+        }
+        wish.doings.clear();
+        ++hand;
+    }
+    return orders;
+}
+
+void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
+    std::shared_ptr<const Parts::Surface> shown;
+    if (const auto now = Clock::now(); now >= parts_->next_surface) {
+        parts_->next_surface = std::max(parts_->next_surface + surface_period, now);
+        auto made = std::make_shared<Parts::Surface>();
+        const auto positions = session.world().positions();
+        made->points.reserve(mesh.nodes().size() * 3);
+        for (const NodeId n : mesh.nodes())
+            for (int i = 0; i < 3; ++i)
+                made->points.push_back(static_cast<float>(positions[n.index()][i] / mm));
+        made->triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
+        shown = std::move(made);
+    }
+    const std::scoped_lock lock(parts_->mutex);
+    if (shown) parts_->surface = std::move(shown);
+    for (const auto& [device, name] : parts_->names) {
+        const LedTool* tool = session.find(name);
+        if (!tool || !tool->is_in_hand) continue;
+        Parts::Wrench& wrench = parts_->wrenches[device];
+        for (std::size_t i = 0; i < 3; ++i) {
+            wrench[i] = tool->force[static_cast<Eigen::Index>(i)];
+            wrench[i + 3] = tool->torque[static_cast<Eigen::Index>(i)];
+        }
+    }
+}
+
+}  // namespace incise::live
