@@ -124,6 +124,21 @@ void declare_live(CLI::App& app, Action& action) {
                      "How many threads compute (default: one a core); results are the same bits")
         ->type_name("N")
         ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
+    verb->add_option("--tick", options->tick,
+                     "Simulated time between two looks at the hands, in seconds")
+        ->type_name("SECONDS")
+        ->capture_default_str();
+    verb->add_option("--igtl", options->igtl,
+                     "Let OpenIGTLink lead tools: listen on this port, usually 18944")
+        ->type_name("PORT")
+        ->check(CLI::Range(0, 65535).description(""));
+    verb->add_option(
+            "--tool", options->tools,
+            "A tool for OpenIGTLink, with the keys of a [[tool]]; repeatable. NAME is that "
+            "of the device")
+        ->type_name("NAME={...}")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     verb->add_flag_callback(
         "--no-open", [options] { options->open = false; },
         "Do not open the page, only print its address");
@@ -134,7 +149,9 @@ void declare_live(CLI::App& app, Action& action) {
         "Examples:\n"
         "  incise live liver.toml\n"
         "  incise live liver.toml --record hands.jsonl\n"
-        "  incise run liver.toml --replay hands.jsonl        the same again, with frames to keep");
+        "  incise run liver.toml --replay hands.jsonl        the same again, with frames to keep\n"
+        "  incise live liver.toml --igtl 18944 \\\n"
+        "      --tool 'scalpel={kind=\"blade\", edge=[[0,0,0.01],[0,0,-0.02]]}'");
     verb->callback([options, &action] { action = [options] { return live(*options); }; });
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -15,11 +16,15 @@
 #include "incise/app/stop_signals.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
+#ifdef INCISE_HAS_IGTL
+#include "incise/live/igtl/igtl_link.h"
+#endif
 #include "incise/live/loop/live_loop.h"
 #include "incise/live/page/page_parts.h"
 #include "incise/live/recording.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/scenario/body_problems.h"
+#include "incise/scenario/document.h"
 
 namespace incise::app {
 
@@ -39,6 +44,47 @@ void open_in_browser(const std::string& address) {
     posix_spawn_file_actions_destroy(&silence);
 }
 
+#ifdef INCISE_HAS_IGTL
+/// Returns the tools that devices lead, by name.
+std::map<std::string, scenario::Value> device_tools(const std::vector<std::string>& texts) {
+    scenario::Value document{.data = scenario::Table(), .location = {}};
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        try {
+            scenario::apply_override(document, texts[i], static_cast<int>(i));
+        } catch (const scenario::DocumentError& error) {
+            throw InputError("--tool " + texts[i] + ": " + error.text);
+        }
+    }
+    std::map<std::string, scenario::Value> tools;
+    for (const scenario::Entry& entry : *document.get<scenario::Table>()) {
+        if (!entry.value.get<scenario::Table>())
+            throw InputError("--tool " + entry.key +
+                             ": must be NAME={...}, as in scalpel={kind=\"blade\", "
+                             "edge=[[0,0,0.01],[0,0,-0.02]]}");
+        tools[entry.key] = entry.value;
+    }
+    return tools;
+}
+
+std::unique_ptr<live::Device> link_of(const LiveOptions& options, const std::string& name) {
+    if (!options.igtl) return nullptr;
+    auto tools = device_tools(options.tools);
+    if (tools.empty()) throw InputError("--igtl: say with --tool which tools OpenIGTLink leads");
+    auto link = std::make_unique<live::IgtlLink>(
+        live::IgtlOptions{options.host, *options.igtl, std::move(tools)});
+    std::cerr << name << ": OpenIGTLink listens on " << options.host << ':' << link->port() << '\n';
+    return link;
+}
+#else
+std::unique_ptr<live::Device> link_of(const LiveOptions& options, const std::string&) {
+    if (options.igtl)
+        throw InputError(
+            "--igtl: this build has no OpenIGTLink; install libopenigtlink-dev, and "
+            "build anew");
+    return nullptr;
+}
+#endif
+
 void require_new(const std::filesystem::path& recording) {
     if (std::filesystem::exists(recording))
         throw InputError(recording.string() +
@@ -51,10 +97,11 @@ std::string message(std::string_view type, const std::string& text) {
 }
 
 /// Builds the session. Pages that are open already see how far it is, or what is wrong.
-std::unique_ptr<live::Session> build(const scenario::Scenario& scenario, live::Server& server) {
+std::unique_ptr<live::Session> build(const scenario::Scenario& scenario, double tick,
+                                     live::Server& server) {
     server.greet_with(message("progress", "building the body"));
     try {
-        auto session = std::make_unique<live::Session>(scenario);
+        auto session = std::make_unique<live::Session>(scenario, tick);
         server.greet_with({});
         return session;
     } catch (const std::exception& error) {
@@ -75,12 +122,13 @@ int live(const LiveOptions& options) {
                          .port = options.port,
                          .files = live::page_files(),
                          .downloads = {"/recording.jsonl", "/frame.vtu"}});
+    const auto link = link_of(options, scenario.name);
     std::cerr << scenario.name << ": open " << server.address() << '\n';
     if (options.open) open_in_browser(server.address());
 
     const auto built = [&] {
         try {
-            return build(scenario, server);
+            return build(scenario, options.tick, server);
         } catch (const scenario::BodyError& error) {
             for (const std::string& warning : error.warnings) print_warning(warning);
             throw;
@@ -96,6 +144,7 @@ int live(const LiveOptions& options) {
     signals.note_only();
 
     live::LiveLoop loop(session, recorder, server);
+    if (link) loop.add_device(*link);
     loop.on_message = [](std::string_view level, const std::string& text) {
         if (level == "error")
             print_error(text);

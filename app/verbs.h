@@ -46,6 +46,9 @@ struct LiveOptions {
     std::optional<std::filesystem::path> record;
     std::vector<std::string> overrides;  ///< KEY.PATH=VALUE; see scenario::read_scenario()
     int num_threads = 0;                 ///< 0: one for each core
+    double tick = 1.0 / 60.0;            ///< s
+    std::optional<std::uint16_t> igtl;   ///< port for OpenIGTLink
+    std::vector<std::string> tools;      ///< NAME={...}, the tools that OpenIGTLink leads
     bool open = true;                    ///< open the page in the browser of the desktop
     bool force = false;                  ///< replace the recording if it is there
 };

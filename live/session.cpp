@@ -43,7 +43,10 @@ Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_tic
       simulation_(for_ticks(std::move(scenario), tick, num_ticks), steps_of_tick),
       why_no_contact_(scenario::why_no_contact(simulation_.scenario().dynamics,
                                                simulation_.scenario().contact)),
-      element_size_(topology::mean_element_length(simulation_.mesh())) {}
+      element_size_(topology::mean_element_length(simulation_.mesh())) {
+    for (const NodeId n : simulation_.mesh().nodes())
+        box_.extend(simulation_.mesh().rest_position(n));
+}
 
 const LedTool* Session::find(const std::string& name) const {
     const auto found = std::ranges::find(tools_, name, &LedTool::name);
@@ -61,6 +64,31 @@ LedTool& Session::tool_in_hand(const std::string& name) {
     LedTool& found = tool(name);
     if (!found.is_in_hand) throw InputError("tool '" + name + "' is not in the hand any more");
     return found;
+}
+
+// What is larger or farther than so many bodies is a slip, or meant to harm. Cuts are exact only
+// among numbers of like size.
+constexpr double most_bodies = 1000.0;
+
+void Session::require_within_reach(const Pose& pose) const {
+    require_sound(pose);
+    if (!((pose.position - box_.center()).norm() <= most_bodies * box_.diagonal().norm()))
+        throw InputError(
+            "the tool would be more than 1000 times the size of the body away from it");
+}
+
+void Session::require_sensible(const scenario::Value& value) const {
+    const auto require = [&](double number) {
+        if (!(std::abs(number) <= most_bodies * box_.diagonal().norm()))
+            throw InputError(
+                "the tool is more than 1000 times as large as the body, or as far away");
+    };
+    if (const auto* number = value.get<double>()) require(*number);
+    if (const auto* number = value.get<std::int64_t>()) require(static_cast<double>(*number));
+    if (const auto* array = value.get<scenario::Array>())
+        for (const scenario::Value& item : *array) require_sensible(item);
+    if (const auto* table = value.get<scenario::Table>())
+        for (const scenario::Entry& entry : *table) require_sensible(entry.value);
 }
 
 /// Tools that touch pass through nothing. The steps that this takes are limited by the world.
@@ -107,7 +135,11 @@ std::vector<std::string> Session::add(const AddTool& order) {
     for (std::size_t i = 0; i < world.num_tools(); ++i)
         if (world.tool({i}).name == order.name)
             throw InputError("there is a tool '" + order.name + "' already");
-    require_sound(order.pose);
+    require_within_reach(order.pose);
+    if (const auto* definition = order.definition.get<scenario::Table>())
+        for (const char* lengths : {"edge", "shape", "points"})
+            if (const scenario::Value* value = scenario::find(*definition, lengths))
+                require_sensible(*value);
     scenario::HeldTool built = scenario::build_held_tool(
         order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
     LedTool tool{.name = order.name,
@@ -128,7 +160,7 @@ std::vector<std::string> Session::add(const AddTool& order) {
 
 void Session::move(const MoveTool& order) {
     LedTool& moved = tool_in_hand(order.name);
-    require_sound(order.pose);
+    require_within_reach(order.pose);
     if (is_suture(moved)) throw InputError("suture '" + order.name + "' is drawn, not moved");
     const sim::World& world = simulation_.world();
     require_near(world.tool(moved.id).shape, world.tool_pose(moved.id), order.pose);

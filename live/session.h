@@ -91,6 +91,8 @@ class Session {
   private:
     std::vector<std::string> add(const AddTool& order);
     void move(const MoveTool& order);
+    void require_within_reach(const Pose& pose) const;
+    void require_sensible(const scenario::Value& definition) const;
     LedTool& tool(const std::string& name);
     LedTool& tool_in_hand(const std::string& name);
     void require_near(const cutting::ToolShape& shape, const Pose& from, const Pose& to) const;
@@ -102,6 +104,7 @@ class Session {
     runner::Simulation simulation_;
     std::string why_no_contact_;
     double element_size_;
+    Eigen::AlignedBox3d box_;  // of the body at the start
     std::vector<LedTool> tools_;
     std::vector<Pose> poses_before_;           // of the tools, at the beginning of the tick
     std::vector<Order> orders_, last_orders_;  // since the last tick, and those before it

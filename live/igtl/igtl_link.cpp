@@ -64,6 +64,12 @@ std::optional<Pose> pose_of(const igtl::Matrix4x4& matrix) {
     return pose;
 }
 
+std::uint64_t big_endian(const std::string& bytes) {
+    std::uint64_t value = 0;
+    for (const char byte : bytes) value = (value << 8) | static_cast<unsigned char>(byte);
+    return value;
+}
+
 void set_nonblocking(int socket) {
     ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) | O_NONBLOCK);
 }
@@ -205,19 +211,19 @@ class IgtlLink::Parts {
 
     /// Takes one message from what was received, if it is whole.
     bool take_message(Connection& connection) {
-        auto header = igtl::MessageHeader::New();
-        header->InitPack();
-        const auto head = static_cast<std::size_t>(header->GetPackSize());
+        constexpr std::size_t head = 58, begin_of_size = 42;
         if (connection.in.size() < head) return false;
-        std::memcpy(header->GetPackPointer(), connection.in.data(), head);
-        header->Unpack();
-        const auto size = static_cast<std::uint64_t>(header->GetBodySizeToRead());
-        const int version = header->GetHeaderVersion();
+        const auto version = big_endian(connection.in.substr(0, 2));
+        const auto size = big_endian(connection.in.substr(begin_of_size, 8));
         if (size > longest_message || version < 1 || version > 3) {
             connection.is_over = true;  // there is no way back into step
             return false;
         }
         if (connection.in.size() < head + size) return false;
+        auto header = igtl::MessageHeader::New();
+        header->InitPack();
+        std::memcpy(header->GetPackPointer(), connection.in.data(), head);
+        header->Unpack();
         const std::string body = connection.in.substr(head, size);
         connection.in.erase(0, head + size);
         read_message(connection, header, body);
@@ -297,7 +303,7 @@ class IgtlLink::Parts {
         message->SetDeviceName(tool.c_str());
         message->SetLength(static_cast<unsigned>(wrench.size()));
         auto unit = igtl::Unit::New();
-        unit->Append(IGTL_UNIT_SI_DERIVED_NEWTON, 1);
+        unit->Append(igtl::Unit::SI_DERIVED_NEWTON, 1);
         message->SetUnit(unit);
         for (unsigned i = 0; i < wrench.size(); ++i) message->SetValue(i, wrench[i]);
         return bytes_of(message);

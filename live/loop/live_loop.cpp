@@ -38,7 +38,7 @@ LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
       num_warnings_told_(session.simulation().warnings().size()) {}
 
 void LiveLoop::run(const std::function<bool()>& is_to_stop) {
-    bool was_opened = false;
+    bool was_opened = !devices_.empty();
     auto due = Pace::Clock::now();
     while (!is_to_stop()) {
         for (const Request& request : server_.take_requests()) handle(request);
@@ -233,6 +233,7 @@ void LiveLoop::reset() {
 void LiveLoop::tick() {
     constexpr std::uint64_t ticks_between_moments = 60;
     if (session_.num_ticks() % ticks_between_moments == 0) moments_.keep_good(session_.save());
+    obey_devices();
     try {
         session_.tick();
         recorder_.note_tick(session_);
@@ -242,6 +243,22 @@ void LiveLoop::tick() {
         return recover(error.what());
     }
     tell_warnings();
+    for (Device* device : devices_) device->look(session_, pictures_.follow(session_));
+}
+
+/// Executes the orders of devices. They may come a thousand times a second: the same complaint is
+/// told once.
+void LiveLoop::obey_devices() {
+    for (Device* device : devices_) {
+        for (const Order& order : device->orders(session_)) {
+            try {
+                execute(order);
+            } catch (const InputError& error) {
+                if (error.what() != last_complaint_) tell("error", error.what());
+                last_complaint_ = error.what();
+            }
+        }
+    }
 }
 
 /// Goes back to the last state of now and then; if that leads to the same end, farther back.
@@ -291,9 +308,8 @@ void LiveLoop::tell_if_slow() {
 
 void LiveLoop::say_hello(std::uint64_t page) {
     const topology::Mesh& mesh = session_.world().mesh();
-    const auto positions = session_.world().positions();
-    Eigen::AlignedBox3d box;
-    for (const NodeId n : mesh.nodes()) box.extend(positions[n.index()]);
+    Eigen::AlignedBox3d box;  // at rest: pieces may be far away by now
+    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     Json hello = {{"type", "hello"},
                   {"title", session_.simulation().scenario().title},
                   {"tick", session_.tick_length()},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "incise/live/json_values.h"
+#include "incise/live/loop/device.h"
 #include "incise/live/loop/moments.h"
 #include "incise/live/loop/pace.h"
 #include "incise/live/loop/picture_maker.h"
@@ -27,9 +28,14 @@ class LiveLoop {
     /// @lifetime  all must outlive the loop
     LiveLoop(Session& session, Recorder& recorder, Server& server);
 
+    /// Adds a device. With one, the body moves from the start on.
+    /// @lifetime  the device must outlive the loop
+    void add_device(Device& device) { devices_.push_back(&device); }
+
     /// Runs until `is_to_stop` returns true, which is asked at least ten times a second. Nothing
-    /// moves before the first page has opened. Throws OutputError if the recording cannot be
-    /// written, and PhysicsError if the body is lost at the start again and again.
+    /// moves before the first page has opened, unless there is a device. Throws OutputError if the
+    /// recording cannot be written, and PhysicsError if the body is lost at the start again and
+    /// again.
     void run(const std::function<bool()>& is_to_stop);
 
     /// Is called with each message that pages get too: its level (info, warning, error), its text.
@@ -54,6 +60,7 @@ class LiveLoop {
     std::string new_name(const std::string& kind);
 
     void tick();
+    void obey_devices();
     void go_back(const Session::Moment& moment);
     void recover(const std::string& reason);
     void tell(std::string_view level, const std::string& text);
@@ -70,6 +77,8 @@ class LiveLoop {
     PictureMaker pictures_;
     Pace pace_;
     Moments moments_;
+    std::vector<Device*> devices_;
+    std::string last_complaint_;                  // about orders of devices
     std::vector<std::uint64_t> pages_;            // in the order of opening
     std::uint64_t operator_ = 0;                  // 0: none
     std::map<std::uint64_t, std::string> hands_;  // the tool in the hand of a page

@@ -46,11 +46,11 @@ bool PictureMaker::show(std::string_view field) {
     return true;
 }
 
-void PictureMaker::follow(Session& session) {
+const DisplayMesh& PictureMaker::follow(Session& session) {
     sim::World& world = session.world();
     const topology::BoundarySurface& surface = world.surface();
     const bool is_changed = !world.take_surface_changes().empty();
-    if (has_surface_ && !is_changed) return;
+    if (has_surface_ && !is_changed) return mesh_;
     has_surface_ = true;
     ++version_;
     mesh_.take(surface, world.mesh());
@@ -62,6 +62,7 @@ void PictureMaker::follow(Session& session) {
     for (const NodeId n : mesh_.nodes()) append(bytes, world.mesh().rest_position(n));
     bytes.append(reinterpret_cast<const char*>(mesh_.tags().data()), mesh_.tags().size_bytes());
     topology_ = std::make_shared<const std::string>(std::move(bytes));
+    return mesh_;
 }
 
 /// Adds the values of the field. Those of elements are costly: of these, a part is computed anew

@@ -37,8 +37,10 @@ class PictureMaker {
     /// Makes a picture, without its state. Cost: O(#vertices), and O(#triangles) after edits.
     std::shared_ptr<Picture> make(Session& session);
 
+    /// Takes over the surface after edits. Cost: O(#triangles) then, otherwise nothing.
+    const DisplayMesh& follow(Session& session);
+
   private:
-    void follow(Session& session);
     void add_values(const Session& session, std::string& bytes);
 
     DisplayMesh mesh_;

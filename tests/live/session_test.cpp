@@ -114,6 +114,10 @@ TEST(Session, RefusesOrdersAndChangesNothing) {
                 HasSubstr("not sound"));
     EXPECT_THAT(refusal_of(session, order(R"({"add":"x","tool":{"kind":"blade"},"at":[0,0,0]})")),
                 HasSubstr("edge"));
+    EXPECT_THAT(refusal_of(session, move("knife", 0, 0, 1e30)), HasSubstr("1000 times the size"));
+    EXPECT_THAT(refusal_of(session, order(R"({"add":"x","at":[0,0,0],
+                    "tool":{"kind":"blade","edge":[[0,0,1e300],[0,0,-1e300]]}})")),
+                HasSubstr("1000 times as large"));
     session.tick();
     other.tick();
     EXPECT_EQ(session.checksum(), other.checksum());
