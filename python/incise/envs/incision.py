@@ -1,0 +1,263 @@
+"""A blade that is to cut along a line: the base of two environments."""
+# SPDX-License-Identifier: LGPL-3.0-or-later
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+import incise
+
+from . import gym, line, renderer
+from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
+
+TIP_TO_HANDLE = 0.03  # m, length of the blade in pictures
+NUM_AHEAD = 5         # points of the line in an observation
+FAR = 0.002           # m from the block at rest: the blade cuts nothing there
+
+
+class LineEnv(CuttingEnv):
+    """A block, a line on its top, and a blade whose edge is upright.
+
+    The blade moves where it points, as a scalpel does: forwards, and by turning about its edge.
+    """
+
+    density = 1000.0
+    _tool = "blade"
+    _option_names = ("stiffness", "randomize", "line", "start")
+    _num_samples = 41
+    _num_actions = 2
+    _num_values = 0
+
+    def __init__(self, *, size: tuple[float, float, float], cells: tuple[int, int, int],
+                 max_speed: float, max_turn: float, tolerance: float, toughness: float,
+                 damping: float, **common: Any) -> None:
+        super().__init__(**common)
+        self.size = tuple(float(x) for x in size)
+        self.cells = tuple(int(n) for n in cells)
+        self.max_speed = float(max_speed)
+        self.max_turn = float(max_turn)
+        self.tolerance = float(tolerance)
+        self.toughness = float(toughness)
+        self.damping = float(damping)
+        self._stride = self.max_speed * self.time_step
+        self._turn = self.max_turn * self.time_step
+        self._heading = 0.0
+        self._cos, self._sin = 1.0, 0.0
+        self._blade: Any = None
+        self._tip = [0.0, 0.0, 0.0]
+        self._line: Floats = np.zeros((2, 2))
+        self._points: list[list[float]] = []
+        self._num_points = 0
+        self._next = 0
+        x, y = self.size[0], self.size[1]
+        self._limits = (-0.1 * x, -0.2 * y, 1.1 * x, 1.1 * y)  # of the tip: low x, y, high x, y
+        self._gap = 0.0
+        self._is_in_tissue = False
+        self.action_space = gym.Box(-1.0, 1.0, (self._num_actions,), np.float32)
+        self.observation_space = (
+            gym.Box(-10.0, 10.0, (self._num_values,), np.float32)
+            if self.observation_type == "state" else image_space(self.image_shape))
+
+    # --- The body
+
+    def _constraints(self) -> list[dict[str, Any]]:
+        raise NotImplementedError
+
+    def _edge(self) -> list[list[float]]:
+        raise NotImplementedError
+
+    def _make_world(self, young: float) -> World:
+        world = incise.World(
+            mesh={"box": {"size": list(self.size), "cells": list(self.cells)}},
+            materials=[{"law": "stable-neo-hookean", "density": self.density, "young": young,
+                        "poisson": 0.4}],
+            constraints=self._constraints(),
+            dynamics={"damping": self.damping, "safety": 0.9},
+            num_threads=self.num_threads)
+        blade = world.add_tool(
+            "blade", {"kind": "blade", "edge": self._edge(), "snap": 0.1,
+                      "toughness": self.toughness})
+        # The blade appears far away; each episode places it.
+        blade.pose = incise.Pose([0.0, 0.0, 10.0 * max(self.size)])
+        world.run_until(self.time_step)
+        ready = World(world, young)
+        ready.extra["blade"] = blade
+        return ready
+
+    # --- An episode
+
+    def _random_line(self, random: np.random.Generator, is_random: bool) -> Floats:
+        raise NotImplementedError
+
+    def _random_start(self, random: np.random.Generator, is_random: bool) -> list[float]:
+        """Return x, y and z of the tip, m, and the angle of the blade to the line there, rad."""
+        raise NotImplementedError
+
+    def _begin(self, options: dict[str, Any], is_random: bool) -> None:
+        assert self._ready is not None
+        self._line = self._random_line(self.np_random, is_random)
+        if options.get("line") is not None:
+            self._line = line.resampled(options["line"], self._num_samples)
+        points = self._line.tolist()
+        self._num_points = len(points)
+        # The last point again, for what looks ahead of it.
+        self._points = points + [points[-1]] * (2 * NUM_AHEAD)
+        *self._tip, angle = self._random_start(self.np_random, is_random)
+        (x0, y0), (x1, y1) = points[0], points[1]
+        self._heading = math.atan2(y1 - y0, x1 - x0) + angle
+        if options.get("start") is not None:
+            start = np.asarray(options["start"], float)
+            if start.shape != (4,) or not np.isfinite(start).all():
+                raise ValueError("start is x, y and z of the tip, m, and the heading, rad")
+            *self._tip, self._heading = start.tolist()
+        self._cos, self._sin = math.cos(self._heading), math.sin(self._heading)
+        self._blade = self._ready.extra["blade"]
+        self._blade.place(incise.Pose(self._tip))
+        self._next = 0
+        self._is_in_tissue = False
+        self._gap = self._distance_to_next()
+
+    def _distance_to_next(self) -> float:
+        """Return the distance to the next point of the line, m."""
+        x, y = self._points[self._next]
+        return math.hypot(self._tip[0] - x, self._tip[1] - y)
+
+    def _move(self, action: list[float]) -> None:
+        size = self.size
+        x, y, z = self._tip
+        self._heading += self._turn * action[1]
+        self._cos, self._sin = math.cos(self._heading), math.sin(self._heading)
+        stride = 0.5 * self._stride * (action[0] + 1.0)
+        x += stride * self._cos
+        y += stride * self._sin
+        low_x, low_y, high_x, high_y = self._limits
+        x = low_x if x < low_x else high_x if x > high_x else x
+        y = low_y if y < low_y else high_y if y > high_y else y
+        if len(action) > 2:
+            z += self._stride * action[2]
+            top, bottom = size[2] + 0.01, 0.1 * size[2]
+            z = bottom if z < bottom else top if z > top else z
+        self._tip = [x, y, z]
+        pose = incise.Pose(self._tip)
+        # Far from the tissue the blade sweeps nothing, which spares the world to keep its way.
+        if (x < -FAR or y < -FAR or x > size[0] + FAR or y > size[1] + FAR
+                or z > size[2] + FAR) and not self._blade.is_in_tissue:
+            self._blade.place(pose)
+        else:
+            self._blade.pose = pose
+
+    def _follow(self, is_deep_enough: bool) -> tuple[int, float]:
+        """Pass the points of the line that the tip has reached, in their order.
+
+        Return how many, and how much nearer the tip has come to the one after them, m.
+        """
+        passed = 0
+        x, y = self._tip[0], self._tip[1]
+        if is_deep_enough:
+            while self._next < self._num_points:
+                px, py = self._points[self._next]
+                if (px - x) ** 2 + (py - y) ** 2 > self.tolerance ** 2:
+                    break
+                self._next += 1
+                passed += 1
+        before, self._gap = self._gap, self._distance_to_next()
+        return passed, 0.0 if passed else before - self._gap
+
+    def _off_line(self) -> float:
+        """Return the distance of the tip from the points of the line near the next one, m."""
+        x, y = self._tip[0], self._tip[1]
+        near = self._points[max(0, self._next - 6):self._next + 4]
+        return math.sqrt(min([(px - x) ** 2 + (py - y) ** 2 for px, py in near]))
+
+    def _ahead(self) -> list[float]:
+        """Return the next points of the line in the frame of the blade: (forwards, left) of each.
+
+        In units of 10 mm, cut off at -10 and 10.
+        """
+        x, y, _ = self._tip
+        c, s = 100.0 * self._cos, 100.0 * self._sin
+        values: list[float] = []
+        for px, py in self._points[self._next:self._next + 2 * NUM_AHEAD:2]:
+            dx, dy = px - x, py - y
+            along, left = c * dx + s * dy, c * dy - s * dx
+            values.append(along if -10.0 < along < 10.0 else math.copysign(10.0, along))
+            values.append(left if -10.0 < left < 10.0 else math.copysign(10.0, left))
+        return values
+
+    def _felt(self) -> tuple[float, float, float]:
+        """Return the force on the blade forwards, to the left and up, N, at most 10 each way."""
+        x, y, z = self._force
+        c, s = self._cos, self._sin
+        along, left = c * x + s * y, c * y - s * x
+        if abs(along) > 10.0 or abs(left) > 10.0 or abs(z) > 10.0:
+            along, left, z = (min(10.0, max(-10.0, f)) for f in (along, left, z))
+        return along, left, z
+
+    def _below(self, z: Floats) -> Floats:
+        """Return how far heights at rest are beyond the target surface, shape (N,), m."""
+        return np.zeros_like(z)
+
+    def _on_edit(self, report: incise.StepReport) -> None:
+        world = self.world
+        edits = report.edits
+        for edit in edits:
+            self._area += edit["cut_area"]
+        surface = world.surface
+        cut = surface.triangles[surface.is_cut]
+        rest = world.rest_positions
+        if len(cut):
+            corners = rest[cut]
+            middle = corners.mean(axis=1)
+            area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0],
+                                                 corners[:, 2] - corners[:, 0]), axis=1)
+            away = np.hypot(line.distances(middle[:, :2], self._line), self._below(middle[:, 2]))
+            self._mean_distance = float((away * area).sum() / max(area.sum(), 1e-30))
+            self._max_distance = float(away.max())
+        if edits and edits[-1]["after"]["components"] > 1:
+            self._on_parts(rest)
+
+    def _on_parts(self, rest: Floats) -> None:
+        """Measure what has come off the held part."""
+        cells = self.world.cells
+        labels = part_labels(cells, len(rest))
+        is_off = ~np.isin(labels[cells[:, 0]], labels[self._held(rest)])
+        mass = masses_of(cells, rest, self.density)
+        self._weigh(rest[cells].mean(axis=1), mass, is_off)
+
+    def _held(self, rest: Floats) -> npt.NDArray[np.bool_]:
+        raise NotImplementedError
+
+    def _weigh(self, middle: Floats, mass: Floats, is_off: npt.NDArray[np.bool_]) -> None:
+        self._lost = float(mass[is_off].sum() / mass.sum())
+
+    # --- Pictures
+
+    skin, cut_color = (226.0, 178.0, 150.0), (178.0, 40.0, 44.0)
+
+    def _line_on_top(self, positions: Floats) -> Floats:
+        fine = line.resampled(self._line, 400)
+        height = np.full(len(fine), self.size[2] + 0.0003)
+        return np.column_stack([fine, height])
+
+    def _scene(self) -> Any:
+        world = self.world
+        positions = world.positions
+        surface = world.surface
+        colors = np.where(surface.is_cut[:, None], np.array(self.cut_color), np.array(self.skin))
+        top = np.array(self._tip) + [0.0, 0.0, TIP_TO_HANDLE]
+        points, triangles = renderer.rod(np.array(self._tip), top, 0.0012)
+        marks = ((self._line_on_top(positions), (30, 60, 160)),)
+        return (np.concatenate([positions, points]),
+                np.concatenate([surface.triangles, triangles + len(positions)]),
+                np.concatenate([colors, np.full((len(triangles), 3), 120.0)]), marks)
+
+    def _camera(self, shape: tuple[int, int]) -> renderer.Camera:
+        x, y, z = self.size
+        reach = 1.15 * max(x, y)
+        return renderer.Camera([0.5 * x, 0.5 * y - 0.95 * reach, z + 1.15 * reach],
+                               [0.5 * x, 0.5 * y, 0.5 * z], shape)
+
+
