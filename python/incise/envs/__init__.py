@@ -5,9 +5,10 @@
 >>> observation, info = env.reset(seed=1)
 >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
 
-They need numpy only. Where gymnasium is installed, they are environments of gymnasium, and importing
-this module registers them for gymnasium.make(): Incise/Dissection-v0, Incise/PathIncision-v0 and
-Incise/WedgeResection-v0. docs/robot-learning.md of the sources is the guide.
+They need numpy only. Where gymnasium is installed, they are environments of gymnasium, and
+importing this module registers them for gymnasium.make(): Incise/Dissection-v0,
+Incise/PathIncision-v0 and Incise/WedgeResection-v0. docs/robot-learning.md of the sources is the
+guide.
 """
 # SPDX-License-Identifier: LGPL-3.0-or-later
 from .check import check_env

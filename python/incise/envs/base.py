@@ -39,14 +39,16 @@ def part_labels(cells: npt.NDArray[np.int64], num_nodes: int) -> npt.NDArray[np.
 class World:
     """A world that is ready for episodes, with the state that each of them begins from."""
 
-    def __init__(self, world: incise.World, young: float) -> None:
+    def __init__(self, world: incise.World, young: float,
+                 extra: Optional[dict[str, Any]] = None) -> None:
+        """extra: tools and loads that the task leads."""
         self.world = world
         self.young = young
         self.state = world.save()
-        self.extra: dict[str, Any] = {}
+        self.extra = extra or {}
 
 
-class CuttingEnv(gym.Env):  # type: ignore[misc]
+class CuttingEnv(gym.Env):
     """A soft body and a tool that an agent moves. The base of the environments.
 
     One call of step() is time_step times frame_skip of simulated time. Worlds are made at the first
@@ -182,7 +184,7 @@ class CuttingEnv(gym.Env):  # type: ignore[misc]
         return self._observation(), self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Act for time_step * frame_skip. Return (observation, reward, terminated, truncated, info).
+        """Act. Return (observation, reward, terminated, truncated, info).
 
         Raises ResetNeeded before reset() and after the end of an episode.
         """
@@ -212,7 +214,7 @@ class CuttingEnv(gym.Env):  # type: ignore[misc]
         return self._observation(), float(reward), terminated, truncated, self._info()
 
     def render(self) -> Any:
-        """Return a picture, uint8, shape image_shape + (3,), or a line of text; None without mode."""
+        """Return what render_mode says: a picture as picture(), a line of text, or None."""
         if self.render_mode is None:
             return None
         if self._ready is None:

@@ -21,8 +21,8 @@ def same(a: Any, b: Any) -> bool:
     if isinstance(a, (list, tuple)):
         return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
     if isinstance(a, np.ndarray):
-        return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
-    return bool(a == b) or (isinstance(a, float) and math.isnan(a) and math.isnan(b))
+        return bool(a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes())
+    return bool(a == b or (isinstance(a, float) and math.isnan(a) and math.isnan(b)))
 
 
 def _require(holds: bool, what: str) -> None:

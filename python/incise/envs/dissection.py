@@ -133,8 +133,8 @@ class DissectionEnv(CuttingEnv):
 
     def __init__(self, *, cells: tuple[int, int, int] = (4, 10, 1), rows_to_cut: int = 2,
                  thickness: float = 0.004, connective_thickness: float = 0.003,
-                 cutting_radius: float = 0.004, with_shaft: bool = False,
-                 retraction_force: float = 0.004,
+                 cutting_radius: float = 0.004, with_shaft: bool = True,
+                 retraction_force: float = 0.04,
                  action_type: str = "continuous", control_retraction_force: bool = False,
                  maximum_state_velocity: tuple[float, ...] = (20.0, 20.0, 30.0, 20.0),
                  discrete_action_magnitude: tuple[float, ...] = (15.0, 15.0, 15.0, 10.0),
@@ -143,7 +143,7 @@ class DissectionEnv(CuttingEnv):
                  reward_amounts: Optional[dict[str, float]] = None,
                  observation_type: str = "state", image_shape: tuple[int, int] = (124, 124),
                  render_mode: Optional[str] = None, time_step: float = 0.01, frame_skip: int = 1,
-                 settle_steps: int = 50, max_episode_steps: int = 500,
+                 settle_steps: int = 50, max_episode_steps: int = 3000,
                  young: Optional[float] = None, stiffness_range: float = 1.25,
                  num_stiffness_levels: int = 3, damping: float = 20.0, randomize: bool = True,
                  num_threads: int = 1) -> None:
@@ -213,6 +213,8 @@ class DissectionEnv(CuttingEnv):
         self._retraction = list(FORCE_START)
         self._border = (0.0, 0.0, 0.0)
         self._distance = 0.0
+        # Elements of connective tissue and of tissue after an edit in this step.
+        self._num_left: Optional[tuple[int, int]] = None
 
     # --- The body
 
@@ -264,30 +266,28 @@ class DissectionEnv(CuttingEnv):
             dynamics={"damping": self.damping, "safety": 0.9},
             contact={"self": False} if self.with_shaft else {"enabled": False},
             num_threads=self.num_threads)
-        ready = World.__new__(World)
         low, high = WIRE
-        ready.extra = {
+        extra: dict[str, Any] = {
             "cauter": world.add_tool("cauter", {"kind": "carver", "shape": {"capsule": {
                 "from": [0.0, low, TIP_LENGTH], "to": [0.0, high, TIP_LENGTH],
                 "radius": self.cutting_radius}}}),
             "loads": [world.loads[f"retraction_{axis}"] for axis in "xyz"]}
-        for load, value in zip(ready.extra["loads"], FORCE_START):
+        for load, value in zip(extra["loads"], FORCE_START):
             load.factor = value / FORCE_LIMIT
         if self.with_shaft:
-            ready.extra["shaft"] = world.add_tool("shaft", {"kind": "probe", "shape": {"capsule": {
+            extra["shaft"] = world.add_tool("shaft", {"kind": "probe", "shape": {"capsule": {
                 "from": [0.0, 0.0, -0.15], "to": [0.0, 0.0, 0.004], "radius": 0.0015}}}, PARKED)
-        ready.extra["cauter"].pose = PARKED
+        extra["cauter"].pose = PARKED
         for k in range(max(1, self.settle_steps)):
             world.run_until((k + 1) * self.time_step)
-        ready.world, ready.young, ready.state = world, young, world.save()
-        return ready
+        return World(world, young, extra)
 
     # --- An episode
 
     def _begin(self, options: dict[str, Any], is_random: bool) -> None:
         assert self._ready is not None
         self._cauter = self._ready.extra["cauter"]
-        state = START
+        state: tuple[float, ...] = START
         while is_random:
             noise = self.np_random.uniform(-1.0, 1.0, 4).tolist()
             state = tuple(s + n * d for s, n, d in zip(START, NOISE, noise))
@@ -309,12 +309,11 @@ class DissectionEnv(CuttingEnv):
         mass = masses_of(cells, rest, self.density)
         self._mass = [float(mass[regions == region].sum()) for region in (TISSUE, CONNECTIVE)]
         self._count = [0, 0]
-        self._distance_sum, self._distance_mass = 0.0, 0.0
+        self._num_left = None
         self._known = (rest[cells].mean(axis=1), mass, regions)
         self._full_area = WIDTH * LENGTH * self.rows_to_cut / NUM_ROWS
         self._total_connective = int((regions == CONNECTIVE).sum())
         self._total_tissue = int((regions == TISSUE).sum())
-        self._removed_tissue = 0
         self._flags = [0.0, 0.0]
         self._look_at_mesh(rest, cells, regions)
         self._positions = self.world.positions
@@ -441,14 +440,16 @@ class DissectionEnv(CuttingEnv):
         first, _, regions = self._known
         there = {tuple(p) for p in np.rint(middle * 1e7).astype(np.int64).tolist()}
         known = np.rint(first * 1e7).astype(np.int64).tolist()
-        return np.array([tuple(p) not in there for p in known]) & (regions == TISSUE)
+        gone: npt.NDArray[np.bool_] = np.array([tuple(p) not in there for p in known])
+        gone &= regions == TISSUE
+        return gone
 
     def _judge(self) -> tuple[float, bool]:
         self._positions = self.world.positions
         before = self._distance
         self._find_border()
         features = self._features
-        edited = self.__dict__.pop("_num_left", None)
+        edited, self._num_left = self._num_left, None
         features["cut_connective_tissue"] = features["cut_tissue"] = 0.0
         if edited is not None:
             connective, tissue = edited
@@ -523,7 +524,7 @@ class DissectionEnv(CuttingEnv):
             paint.append(np.broadcast_to(np.asarray(c, float), (len(t), 3)))
             offset += len(p)
         spot = np.array(self._border) * MM
-        marks = ()
+        marks: tuple[tuple[Floats, tuple[int, int, int]], ...] = ()
         if len(self._border_nodes):
             cross = np.array([[i, j, 0.0] for i in range(-3, 4) for j in range(-3, 4)]) * 0.0004
             marks = ((spot + cross, (250, 230, 20)),)

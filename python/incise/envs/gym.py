@@ -88,7 +88,7 @@ class Box(Space):
         return {"both": below and above, "below": below, "above": above}[manner]
 
     def sample(self) -> npt.NDArray[Any]:
-        """Return a random array: uniform between two bounds, exponential beyond one, else normal."""
+        """Return a random array: uniform between bounds, exponential beyond one, else normal."""
         random = self.np_random
         assert self.dtype is not None
         value = np.empty(self._shape or ())
@@ -132,7 +132,7 @@ class Discrete(Space):
 
     def sample(self) -> np.int64:
         """Return a random number of the space."""
-        return self.start + self.np_random.integers(self.n)
+        return np.int64(self.start + self.np_random.integers(self.n))
 
     def contains(self, x: Any) -> bool:
         """Return whether x is one of the numbers."""
@@ -148,7 +148,8 @@ class Discrete(Space):
         return isinstance(other, Discrete) and (self.n, self.start) == (other.n, other.start)
 
     def __repr__(self) -> str:
-        return f"Discrete({self.n})" if self.start == 0 else f"Discrete({self.n}, start={self.start})"
+        start = f", start={self.start}" if self.start else ""
+        return f"Discrete({self.n}{start})"
 
 
 class Dict(Space):
@@ -248,7 +249,7 @@ class Env:
         """The seed of np_random; -1 if the generator was set from outside."""
         if self._np_random_seed is None:
             self._np_random, self._np_random_seed = make_generator()
-        return self._np_random_seed  # type: ignore[return-value]
+        return self._np_random_seed
 
     def get_wrapper_attr(self, name: str) -> Any:
         """Return an attribute of the environment."""
@@ -258,9 +259,8 @@ class Env:
         return self
 
     def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
-                 traceback: Optional[TracebackType]) -> bool:
+                 traceback: Optional[TracebackType]) -> None:
         self.close()
-        return False
 
     def __str__(self) -> str:
         return f"<{type(self).__name__} instance>" if self.spec is None else \

@@ -26,7 +26,7 @@ class LineEnv(CuttingEnv):
 
     density = 1000.0
     _tool = "blade"
-    _option_names = ("stiffness", "randomize", "line", "start")
+    _option_names: tuple[str, ...] = ("stiffness", "randomize", "line", "start")
     _num_samples = 41
     _num_actions = 2
     _num_values = 0
@@ -51,6 +51,7 @@ class LineEnv(CuttingEnv):
         self._line: Floats = np.zeros((2, 2))
         self._points: list[list[float]] = []
         self._num_points = 0
+        self._num_done = 0
         self._next = 0
         x, y = self.size[0], self.size[1]
         self._limits = (-0.1 * x, -0.2 * y, 1.1 * x, 1.1 * y)  # of the tip: low x, y, high x, y
@@ -83,9 +84,7 @@ class LineEnv(CuttingEnv):
         # The blade appears far away; each episode places it.
         blade.pose = incise.Pose([0.0, 0.0, 10.0 * max(self.size)])
         world.run_until(self.time_step)
-        ready = World(world, young)
-        ready.extra["blade"] = blade
-        return ready
+        return World(world, young, {"blade": blade})
 
     # --- An episode
 
@@ -116,7 +115,7 @@ class LineEnv(CuttingEnv):
         self._cos, self._sin = math.cos(self._heading), math.sin(self._heading)
         self._blade = self._ready.extra["blade"]
         self._blade.place(incise.Pose(self._tip))
-        self._next = 0
+        self._next = self._num_done = 0
         self._is_in_tissue = False
         self._gap = self._distance_to_next()
 
@@ -150,19 +149,23 @@ class LineEnv(CuttingEnv):
             self._blade.pose = pose
 
     def _follow(self, is_deep_enough: bool) -> tuple[int, float]:
-        """Pass the points of the line that the tip has reached, in their order.
+        """Do the points of the line that the tip has reached, in their order.
 
-        Return how many, and how much nearer the tip has come to the one after them, m.
+        Up to four points in a row may be left out; they stay undone. Return how many were done, and
+        how much nearer the tip has come to the next one, m.
         """
         passed = 0
         x, y = self._tip[0], self._tip[1]
         if is_deep_enough:
-            while self._next < self._num_points:
-                px, py = self._points[self._next]
-                if (px - x) ** 2 + (py - y) ** 2 > self.tolerance ** 2:
-                    break
-                self._next += 1
-                passed += 1
+            limit = self.tolerance ** 2
+            k = self._next
+            while k < min(self._next + 5, self._num_points):
+                px, py = self._points[k]
+                if (px - x) ** 2 + (py - y) ** 2 <= limit:
+                    self._next = k + 1
+                    passed += 1
+                k += 1
+            self._num_done += passed
         before, self._gap = self._gap, self._distance_to_next()
         return passed, 0.0 if passed else before - self._gap
 
@@ -221,7 +224,7 @@ class LineEnv(CuttingEnv):
 
     def _on_parts(self, rest: Floats) -> None:
         """Measure what has come off the held part."""
-        cells = self.world.cells
+        cells = np.asarray(self.world.cells)
         labels = part_labels(cells, len(rest))
         is_off = ~np.isin(labels[cells[:, 0]], labels[self._held(rest)])
         mass = masses_of(cells, rest, self.density)
@@ -237,7 +240,7 @@ class LineEnv(CuttingEnv):
 
     skin, cut_color = (226.0, 178.0, 150.0), (178.0, 40.0, 44.0)
 
-    def _line_on_top(self, positions: Floats) -> Floats:
+    def _line_on_top(self) -> Floats:
         fine = line.resampled(self._line, 400)
         height = np.full(len(fine), self.size[2] + 0.0003)
         return np.column_stack([fine, height])
@@ -249,7 +252,12 @@ class LineEnv(CuttingEnv):
         colors = np.where(surface.is_cut[:, None], np.array(self.cut_color), np.array(self.skin))
         top = np.array(self._tip) + [0.0, 0.0, TIP_TO_HANDLE]
         points, triangles = renderer.rod(np.array(self._tip), top, 0.0012)
-        marks = ((self._line_on_top(positions), (30, 60, 160)),)
+        # A closed wound is a line on the surface: the edges of the cut faces that are seen.
+        corners = positions[surface.triangles[surface.is_cut]]
+        share = np.linspace(0.0, 1.0, 12)[:, None, None, None]
+        wound = (corners + share * (np.roll(corners, 1, axis=1) - corners)).reshape(-1, 3)
+        marks = ((self._line_on_top(), (30, 60, 160)),
+                 (wound + [0.0, 0.0, 0.0002], (190, 20, 24)))
         return (np.concatenate([positions, points]),
                 np.concatenate([surface.triangles, triangles + len(positions)]),
                 np.concatenate([colors, np.full((len(triangles), 3), 120.0)]), marks)

@@ -61,7 +61,8 @@ def draw(camera: Camera, points: Floats, triangles: Integers, colors: npt.NDArra
     counts = size[:, 0] * size[:, 1]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     # Twice the area of the triangle in the picture; a triangle that is seen edge-on has no pixels.
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    ab, ac = b - a, c - a
+    area: Floats = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
     counts[np.abs(area) < 1e-9] = 0
     used = np.flatnonzero(counts)
     depth = np.full(height * width, np.inf)
@@ -134,7 +135,8 @@ def rod(start: npt.ArrayLike, end: npt.ArrayLike, radius: float,
     points = np.concatenate([start + ring, end + ring, [start], [end]])
     i = np.arange(sides)
     j = (i + 1) % sides
-    triangles = np.concatenate([np.stack([i, j, i + sides], 1), np.stack([j, j + sides, i + sides], 1),
+    triangles = np.concatenate([np.stack([i, j, i + sides], 1),
+                                np.stack([j, j + sides, i + sides], 1),
                                 np.stack([i, j, np.full(sides, 2 * sides)], 1),
                                 np.stack([i + sides, j + sides, np.full(sides, 2 * sides + 1)], 1)])
     return points, triangles

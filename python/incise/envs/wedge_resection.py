@@ -53,21 +53,20 @@ class WedgeResectionEnv(LineEnv):
                  observation_type: str = "state", image_shape: tuple[int, int] = (96, 96),
                  render_mode: Optional[str] = None, time_step: float = 0.01, frame_skip: int = 1,
                  max_episode_steps: int = 250, max_speed: float = 0.1, max_turn: float = 10.0,
-                 tolerance: float = 0.002, young: Optional[float] = None,
+                 tolerance: float = 0.003, young: Optional[float] = None,
                  stiffness_range: float = 1.25, num_stiffness_levels: int = 3,
-                 toughness: float = 30.0, damping: float = 20.0,
-                 randomize: bool = True, num_threads: int = 1) -> None:
+                 toughness: float = 30.0, damping: float = 20.0, randomize: bool = True,
+                 num_threads: int = 1) -> None:
         """size: of the slab, m.  cells: bricks along x, y and z, each of six tetrahedra.
 
         width, depth: of the wedge at the front and from there to its apex, m.
         curvature: largest rise of each side over its chord; 0: plane cuts.
-        max_speed, max_turn, tolerance, young, stiffness_range, num_stiffness_levels, toughness, damping: as
-            of PathIncisionEnv.
+        The others are those of PathIncisionEnv.
         """
         super().__init__(
-            size=size, cells=cells, max_speed=max_speed, max_turn=max_turn,
-            tolerance=tolerance, toughness=toughness, damping=damping,
-            observation_type=observation_type, image_shape=image_shape,
+            size=size, cells=cells, max_speed=max_speed, max_turn=max_turn, tolerance=tolerance,
+            toughness=toughness, damping=damping, observation_type=observation_type,
+            image_shape=image_shape,
             render_mode=render_mode, time_step=time_step, frame_skip=frame_skip,
             max_episode_steps=max_episode_steps, young=young, stiffness_range=stiffness_range,
             num_stiffness_levels=num_stiffness_levels, randomize=randomize,
@@ -91,7 +90,8 @@ class WedgeResectionEnv(LineEnv):
         return [[0.0, 0.0, -0.5 * z], [0.0, 0.0, 2.0 * z]]
 
     def _random_line(self, random: np.random.Generator, is_random: bool) -> Floats:
-        shift, lean, bend, grow = random.uniform(-1.0, 1.0, 4) if is_random else (0.0,) * 4
+        drawn = random.uniform(-1.0, 1.0, 4) if is_random else np.array([0.0, 0.0, 1.0, 0.0])
+        shift, lean, bend, grow = drawn.tolist()
         x = self.size[0] * (0.5 + 0.08 * shift)
         width, depth = self.width * (1 + 0.1 * grow), self.depth * (1 + 0.1 * grow)
         apex = np.array([x + 0.15 * width * lean, depth])
@@ -147,13 +147,13 @@ class WedgeResectionEnv(LineEnv):
         x, y = self._tip[0], self._tip[1]
         along, left, _ = self._felt()
         values = [2 * x / self.size[0] - 1, 2 * y / self.size[1] - 1, along, left,
-                  self._next / self._num_points, float(self._is_in_tissue),
+                  self._num_done / self._num_points, float(self._is_in_tissue),
                   self._removed, self._lost, min(10.0, self._area / self._target_area),
                   self._cos, self._sin]
         return np.array(values + self._ahead(), np.float32)
 
     def _task_info(self) -> dict[str, Any]:
-        return {"progress": self._next / self._num_points, "wedge_removed": self._removed}
+        return {"progress": self._num_done / self._num_points, "wedge_removed": self._removed}
 
     def _scene(self) -> Any:
         # The upright edge is longer than the slab is high; the picture shows all of it.
