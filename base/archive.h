@@ -56,14 +56,24 @@ class ArchiveWriter {
         (put(values), ...);
     }
 
-    const std::string& bytes() const { return bytes_; }
+    /// Returns what was written so far.
+    const std::string& bytes() const {
+        flush();
+        return bytes_;
+    }
 
   private:
     template <Number T>
     void put(T value) {
         const auto bytes =
             detail::little_endian<T>(std::bit_cast<std::array<char, sizeof(T)>>(value));
-        bytes_.append(bytes.data(), bytes.size());
+        if (num_latest_ + sizeof(T) > latest_.size()) flush();
+        std::memcpy(latest_.data() + num_latest_, bytes.data(), sizeof(T));
+        num_latest_ += sizeof(T);
+    }
+    void flush() const {
+        bytes_.append(latest_.data(), num_latest_);
+        num_latest_ = 0;
     }
     template <class Tag>
     void put(Id<Tag> id) {
@@ -73,6 +83,7 @@ class ArchiveWriter {
     void put(const Eigen::AlignedBox3d& box) { (*this)(box.min(), box.max()); }
     void put(const std::string& text) {
         put(std::uint64_t{text.size()});
+        flush();
         bytes_ += text;
     }
     template <class T, std::size_t size>
@@ -123,7 +134,11 @@ class ArchiveWriter {
         T::archive(*this, value);
     }
 
-    std::string bytes_;
+    // To append each number to the bytes would take longer than the number itself: the latest ones
+    // are collected.
+    mutable std::string bytes_;
+    mutable std::array<char, 1024> latest_;
+    mutable std::size_t num_latest_ = 0;
 };
 
 /// Reader of the bytes of an ArchiveWriter. The types and their order must be those of the writer.

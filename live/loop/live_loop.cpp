@@ -231,8 +231,7 @@ void LiveLoop::reset() {
 }
 
 void LiveLoop::tick() {
-    constexpr std::uint64_t ticks_between_moments = 60;
-    if (session_.num_ticks() % ticks_between_moments == 0) moments_.keep_good(session_.save());
+    keep_good_moment();
     obey_devices();
     try {
         session_.tick();
@@ -244,6 +243,17 @@ void LiveLoop::tick() {
     }
     tell_warnings();
     for (Device* device : devices_) device->look(session_, pictures_.follow(session_));
+}
+
+/// Keeps the state now and then: each second, or less often if that would take more than a
+/// hundredth of the time.
+void LiveLoop::keep_good_moment() {
+    const auto begin = Pace::Clock::now();
+    if (begin < next_moment_) return;
+    moments_.keep_good(session_.save());
+    const auto end = Pace::Clock::now();
+    next_moment_ =
+        end + std::max<Pace::Clock::duration>(std::chrono::seconds(1), 100 * (end - begin));
 }
 
 /// Executes the orders of devices. They may come a thousand times a second: the same complaint is

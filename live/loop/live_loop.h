@@ -61,6 +61,7 @@ class LiveLoop {
 
     void tick();
     void obey_devices();
+    void keep_good_moment();
     void go_back(const Session::Moment& moment);
     void recover(const std::string& reason);
     void tell(std::string_view level, const std::string& text);
@@ -77,6 +78,7 @@ class LiveLoop {
     PictureMaker pictures_;
     Pace pace_;
     Moments moments_;
+    Pace::Clock::time_point next_moment_ = {};
     std::vector<Device*> devices_;
     std::string last_complaint_;                  // about orders of devices
     std::vector<std::uint64_t> pages_;            // in the order of opening

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <span>
 
 #include "incise/topology/fragment_mesh.h"
 
@@ -20,8 +20,13 @@ void append(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-void append(std::string& bytes, const Vec3& v) {
-    for (int i = 0; i < 3; ++i) append(bytes, static_cast<float>(v[i]));
+template <class T>
+void append(std::string& bytes, std::span<const T> values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+void append(std::vector<float>& numbers, const Vec3& v) {
+    for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(v[i]));
 }
 
 double von_mises(const Eigen::Matrix3d& stress) {
@@ -55,12 +60,13 @@ const DisplayMesh& PictureMaker::follow(Session& session) {
     ++version_;
     mesh_.take(surface, world.mesh());
     values_.clear();
+    rest_.clear();
+    for (const NodeId n : mesh_.nodes()) append(rest_, world.mesh().rest_position(n));
     std::string bytes;
-    bytes.reserve(mesh_.triangles().size() * 12 + mesh_.nodes().size() * 16);
-    bytes.append(reinterpret_cast<const char*>(mesh_.triangles().data()),
-                 mesh_.triangles().size_bytes());
-    for (const NodeId n : mesh_.nodes()) append(bytes, world.mesh().rest_position(n));
-    bytes.append(reinterpret_cast<const char*>(mesh_.tags().data()), mesh_.tags().size_bytes());
+    bytes.reserve(mesh_.triangles().size_bytes() + rest_.size() * 4 + mesh_.tags().size_bytes());
+    append(bytes, mesh_.triangles());
+    append(bytes, std::span<const float>(rest_));
+    append(bytes, mesh_.tags());
     topology_ = std::make_shared<const std::string>(std::move(bytes));
     return mesh_;
 }
@@ -92,7 +98,7 @@ void PictureMaker::add_values(const Session& session, std::string& bytes) {
         values_[next_value_] = static_cast<float>(value(next_value_));
         ++next_value_;
     }
-    bytes.append(reinterpret_cast<const char*>(values_.data()), values_.size() * sizeof(float));
+    append(bytes, std::span<const float>(values_));
 }
 
 std::shared_ptr<Picture> PictureMaker::make(Session& session) {
@@ -102,7 +108,9 @@ std::shared_ptr<Picture> PictureMaker::make(Session& session) {
     picture->topology = topology_;
     const auto positions = session.world().positions();
     const auto nodes = mesh_.nodes();
-    const Vec3 origin = nodes.empty() ? Vec3(Vec3::Zero()) : positions[nodes.front().index()];
+    std::vector<float> shown;
+    append(shown, nodes.empty() ? Vec3(Vec3::Zero()) : positions[nodes.front().index()]);
+    const Vec3 origin(shown[0], shown[1], shown[2]);
 
     const auto header = [&](std::uint32_t flags, std::size_t num_triangles) {
         std::string bytes;
@@ -112,16 +120,17 @@ std::shared_ptr<Picture> PictureMaker::make(Session& session) {
         append(bytes, static_cast<std::uint32_t>(session.num_ticks()));
         append(bytes, static_cast<std::uint32_t>(nodes.size()));
         append(bytes, static_cast<std::uint32_t>(num_triangles));
-        append(bytes, origin);
+        append(bytes, std::span<const float>(shown));
         append(bytes, std::uint32_t{0});
         return bytes;
     };
     picture->head_with_topology = header(has_topology, mesh_.triangles().size());
     picture->head_without_topology = header(0, 0);
-    const Vec3 shown = origin.cast<float>().cast<double>();  // as the page reads it
+    moving_.clear();
+    for (const NodeId n : nodes) append(moving_, positions[n.index()] - origin);
     std::string& moving = picture->moving;
     moving.reserve(nodes.size() * 16);
-    for (const NodeId n : nodes) append(moving, Vec3(positions[n.index()] - shown));
+    append(moving, std::span<const float>(moving_));
     if (field_ > 0) add_values(session, moving);
     return picture;
 }

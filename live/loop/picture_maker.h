@@ -47,6 +47,7 @@ class PictureMaker {
     bool has_surface_ = false;
     std::uint64_t version_ = 0;
     std::shared_ptr<const std::string> topology_;
+    std::vector<float> rest_, moving_;  // scratch
     std::size_t field_ = 0;
     std::vector<float> values_;   // of the field, by vertex
     std::size_t next_value_ = 0;  // the vertex whose value is computed next
