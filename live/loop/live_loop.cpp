@@ -327,7 +327,7 @@ void LiveLoop::say_hello(std::uint64_t page) {
                   {"size", {json_of(Vec3(box.min())), json_of(Vec3(box.max()))}},
                   {"element_size", session_.element_size()},
                   {"has_contact", session_.has_contact()},
-                  {"recording", recorder_.file() ? recorder_.file()->string() : ""},
+                  {"recording", session_.simulation().scenario().name + ".jsonl"},
                   {"regions", Json::array()},
                   {"fields", Json::array()},
                   {"kinds", {"blade", "carver"}}};
