@@ -52,7 +52,7 @@ class Client {
         }
     }
     /// Reads until the end, or until `is_enough`.
-    std::string read(const std::function<bool(const std::string&)>& is_enough = {}) {
+    const std::string& read(const std::function<bool(const std::string&)>& is_enough = {}) {
         const auto until = Clock::now() + seconds(20);
         while (!(is_enough && is_enough(received_)) && Clock::now() < until) {
             pollfd waits{socket_, POLLIN, 0};
