@@ -54,6 +54,20 @@ std::string written_formats() {
     return text;
 }
 
+void declare_overrides(CLI::App* verb, std::vector<std::string>& overrides) {
+    verb->add_option("--set", overrides, "Change a value of the scenario; repeatable")
+        ->type_name("KEY.PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void declare_threads(CLI::App* verb, int& num_threads) {
+    verb->add_option("--threads", num_threads,
+                     "How many threads compute (default: one a core); results are the same bits")
+        ->type_name("N")
+        ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
+}
+
 void declare_run(CLI::App& app, Action& action) {
     auto options = std::make_shared<RunOptions>();
     auto* verb = app.add_subcommand("run", "Simulate a scenario and write its frames and figures");
@@ -64,14 +78,8 @@ void declare_run(CLI::App& app, Action& action) {
         ->type_name("PATH");
     auto* end_time = verb->add_option("--end-time", options->end_time,
                                       "Stop at this simulated time, in seconds");
-    verb->add_option("--set", options->overrides, "Change a value of the scenario; repeatable")
-        ->type_name("KEY.PATH=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    verb->add_option("--threads", options->num_threads,
-                     "How many threads compute (default: one a core); results are the same bits")
-        ->type_name("N")
-        ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
+    declare_overrides(verb, options->overrides);
+    declare_threads(verb, options->num_threads);
     auto* resume = verb->add_flag(
         "--resume", options->resume,
         "Go on with a run that was stopped, from its last checkpoint, to the same files as if it "
@@ -116,17 +124,12 @@ void declare_live(CLI::App& app, Action& action) {
                      "Write what hands do to this file, for incise run --replay")
         ->type_name("FILE.jsonl");
     verb->add_flag("--force", options->force, "Replace a recording that is there");
-    verb->add_option("--set", options->overrides, "Change a value of the scenario; repeatable")
-        ->type_name("KEY.PATH=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    verb->add_option("--threads", options->num_threads,
-                     "How many threads compute (default: one a core); results are the same bits")
-        ->type_name("N")
-        ->check(CLI::Range(1, physics::Workers::max_threads).description(""));
+    declare_overrides(verb, options->overrides);
+    declare_threads(verb, options->num_threads);
     verb->add_option("--tick", options->tick,
                      "Simulated time between two looks at the hands, in seconds")
         ->type_name("SECONDS")
+        ->check(CLI::Range(1e-5, 1.0).description(""))
         ->capture_default_str();
     verb->add_option("--igtl", options->igtl,
                      "Let OpenIGTLink lead tools: listen on this port, usually 18944")

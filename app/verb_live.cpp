@@ -92,20 +92,21 @@ void require_new(const std::filesystem::path& recording) {
                          "--force");
 }
 
-std::string message(std::string_view type, const std::string& text) {
-    return nlohmann::json{{"type", type}, {"level", "error"}, {"text", text}}.dump();
+std::string json_text(const nlohmann::json& json) {
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// Builds the session. Pages that are open already see how far it is, or what is wrong.
 std::unique_ptr<live::Session> build(const scenario::Scenario& scenario, double tick,
                                      live::Server& server) {
-    server.greet_with(message("progress", "building the body"));
+    server.greet_with(json_text({{"type", "progress"}, {"text", "building the body"}}));
     try {
         auto session = std::make_unique<live::Session>(scenario, tick);
         server.greet_with({});
         return session;
     } catch (const std::exception& error) {
-        server.send_to_all(message("message", error.what()));
+        server.send_to_all(
+            json_text({{"type", "message"}, {"level", "error"}, {"text", error.what()}}));
         // Long enough for a page on this machine to show it.
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
         throw;

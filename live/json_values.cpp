@@ -81,6 +81,10 @@ Json json_of_order(const UntieSuture& order) { return named("untie", order.name)
 
 }  // namespace
 
+std::string text_of(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Json parse_object(std::string_view text) {
     Json json = Json::parse(text, nullptr, false);
     if (!json.is_object()) throw InputError("this is no JSON object");
@@ -181,7 +185,7 @@ Order order_of(const Json& json) {
     throw InputError("this is no order: must be add, move, withdraw, close, open, draw or untie");
 }
 
-std::string to_json(const Order& order) { return json_of(order).dump(); }
+std::string to_json(const Order& order) { return text_of(json_of(order)); }
 
 Order order_from_json(std::string_view text) { return order_of(parse_object(text)); }
 

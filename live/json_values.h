@@ -15,6 +15,8 @@ namespace incise::live {
 
 using Json = nlohmann::json;
 
+/// Returns JSON as text. Bytes that are no UTF-8, as names of files may have, are replaced.
+std::string text_of(const Json& json);
 /// Parses one JSON object. Throws InputError.
 Json parse_object(std::string_view text);
 

@@ -121,19 +121,24 @@ Recorder::Recorder(const Session& session, const std::vector<std::string>& overr
     : path_(std::move(file)) {
     if (path_) file_.emplace(*path_);
     const scenario::Scenario& scenario = session.simulation().scenario();
-    append(Json{{"incise_recording", format},
-                {"scenario", scenario.name},
-                {"hash", scenario.hash},
-                {"set", overrides},
-                {"body", hex(session.simulation().fingerprint())},
-                {"version", version},
-                {"tick_length", session.tick_length()}}
-               .dump());
+    append(text_of(Json{{"incise_recording", format},
+                        {"scenario", scenario.name},
+                        {"hash", scenario.hash},
+                        {"set", overrides},
+                        {"body", hex(session.simulation().fingerprint())},
+                        {"version", version},
+                        {"tick_length", session.tick_length()}}));
 }
 
 void Recorder::append(const std::string& line) {
     text_ += line + '\n';
-    if (file_) file_->append(line);
+    if (!file_) return;
+    try {
+        file_->append(line);
+    } catch (const OutputError&) {
+        file_.reset();  // it is whole up to here, and would have a gap
+        throw;
+    }
 }
 
 void Recorder::note_tick(const Session& session) {
@@ -154,6 +159,8 @@ void Recorder::note_return(const Session& session) {
 Replay::Replay(const scenario::Scenario& scenario, Recording recording, bool may_differ)
     : recording_(std::move(recording)),
       session_(scenario, recording_.scenario.tick, recording_.num_ticks) {
+    if (recording_.num_ticks == 0)
+        throw InputError("the recording has no tick: the session ended before anything moved");
     if (may_differ) return;
     const auto require = [&](const std::string& recorded, const std::string& now,
                              const char* what) {

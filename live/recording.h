@@ -54,7 +54,8 @@ class Recorder {
     Recorder(const Session& session, const std::vector<std::string>& overrides,
              const std::string& version, std::optional<std::filesystem::path> file);
 
-    /// Notes a tick of the session, with the orders before it. Throws OutputError.
+    /// Notes a tick of the session, with the orders before it. Throws OutputError if the file
+    /// cannot be written: from then on the lines are kept in memory only.
     void note_tick(const Session& session);
     /// Notes that the session went back. Throws OutputError.
     void note_return(const Session& session);
@@ -75,7 +76,7 @@ class Recorder {
 class Replay {
   public:
     /// Builds the body. Throws as Session, and InputError if the body or the scenario is another
-    /// than that of the recording, unless `may_differ`.
+    /// than that of the recording, unless `may_differ`, or if nothing was recorded.
     Replay(const scenario::Scenario& scenario, Recording recording, bool may_differ);
 
     /// Makes the next tick. Throws as Session::tick(), and InputError with the number of the tick

@@ -8,7 +8,8 @@
 
 #include "incise/base/archive.h"
 #include "incise/base/error.h"
-#include "incise/scenario/held_tool.h"
+#include "incise/cutting/tools/probe_shape.h"
+#include "incise/io/files/number_format.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::live {
@@ -91,14 +92,21 @@ void Session::require_sensible(const scenario::Value& value) const {
         for (const scenario::Entry& entry : *table) require_sensible(entry.value);
 }
 
-/// Tools that touch pass through nothing. The steps that this takes are limited by the world.
+/// Tools that touch pass through nothing, and the world divides a step for that: more than 1000
+/// parts it refuses. A tick has at least one step.
 void Session::require_near(const cutting::ToolShape& shape, const Pose& from,
                            const Pose& to) const {
     if (cutting::cuts(shape)) return;
-    constexpr double farthest = 200.0;  // elements
-    if ((to.position - from.position).norm() > farthest * element_size_)
-        throw InputError(
-            "a tool that touches tissue may not go farther than 200 elements in a tick");
+    constexpr double part = 0.25, most_parts = 900.0;  // of an element, or of the probe
+    double move = (to.position - from.position).norm(), size = element_size_;
+    if (const auto* probe = std::get_if<cutting::Probe>(&shape)) {
+        move += cutting::reach_of(probe->shape) * from.rotation.angularDistance(to.rotation);
+        size = std::min(size, cutting::half_width_of(probe->shape));
+    }
+    if (!(move <= most_parts * part * size))
+        throw InputError("a tool that touches tissue goes at most " +
+                         io::format_number(most_parts * part * size) + " m in a tick, and not " +
+                         io::format_number(move) + " m: move it more slowly");
 }
 
 std::vector<std::string> Session::execute(const Order& order) {
@@ -112,14 +120,20 @@ std::vector<std::string> Session::execute(const Order& order) {
             } else if constexpr (std::is_same_v<T, MoveTool>) {
                 move(it);
             } else if constexpr (std::is_same_v<T, WithdrawTool>) {
-                tool_in_hand(it.name).is_to_be_withdrawn = true;
+                LedTool& withdrawn = tool_in_hand(it.name);
+                if (is_suture(withdrawn))
+                    throw InputError("suture '" + it.name + "' is untied, not withdrawn");
+                withdrawn.is_to_be_withdrawn = true;
             } else if constexpr (std::is_same_v<T, CloseGrasper>) {
                 if (world.close_grasper(tool_in_hand(it.name).id) == 0)
                     warnings.push_back("grasper '" + it.name + "' closes on nothing");
             } else if constexpr (std::is_same_v<T, OpenGrasper>) {
                 world.open_grasper(tool_in_hand(it.name).id);
             } else if constexpr (std::is_same_v<T, DrawSuture>) {
-                world.set_suture_length(tool(it.name).id, it.length);
+                LedTool& thread = tool(it.name);
+                world.set_suture_length(thread.id, it.length);  // refuses what cannot be
+                world.set_suture_length(thread.id, world.suture_length(thread.id));
+                thread.length = it.length;
             } else {
                 world.untie_suture(tool(it.name).id);
             }
@@ -129,8 +143,8 @@ std::vector<std::string> Session::execute(const Order& order) {
     return warnings;
 }
 
-std::vector<std::string> Session::add(const AddTool& order) {
-    sim::World& world = simulation_.world();
+scenario::HeldTool Session::checked(const AddTool& order) const {
+    const sim::World& world = simulation_.world();
     if (order.name.empty()) throw InputError("a tool needs a name");
     for (std::size_t i = 0; i < world.num_tools(); ++i)
         if (world.tool({i}).name == order.name)
@@ -142,6 +156,13 @@ std::vector<std::string> Session::add(const AddTool& order) {
                 require_sensible(*value);
     scenario::HeldTool built = scenario::build_held_tool(
         order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
+    if (built.kind == "cut") throw InputError("a cut is not led by hand: take a blade");
+    return built;
+}
+
+std::vector<std::string> Session::add(const AddTool& order) {
+    scenario::HeldTool built = checked(order);
+    sim::World& world = simulation_.world();
     LedTool tool{.name = order.name,
                  .kind = std::move(built.kind),
                  .definition = order.definition,
@@ -154,6 +175,7 @@ std::vector<std::string> Session::add(const AddTool& order) {
                                  "' meets tissue at less than two of its "
                                  "points: it holds nothing");
     }
+    if (is_suture(tool)) tool.length = world.suture_length(tool.id);
     tools_.push_back(std::move(tool));
     return std::move(built.warnings);
 }
@@ -167,7 +189,7 @@ void Session::move(const MoveTool& order) {
     moved.pose = order.pose;
 }
 
-void Session::tick() {
+bool Session::tick(const std::function<bool()>& is_to_stop) {
     const double begin = world().time(), end = static_cast<double>(num_ticks_ + 1) * tick_;
     poses_before_.clear();
     for (LedTool& tool : tools_) {
@@ -179,17 +201,28 @@ void Session::tick() {
         lead_tools(step, begin, end);
         simulation_.step(step);
         add_forces(world().report().tools, (step.to - step.from) / tick_);
+        if (is_to_stop && world().time() < end && is_to_stop()) return false;
     }
     ++num_ticks_;
     last_orders_ = std::exchange(orders_, {});
+    return true;
 }
 
 void Session::lead_tools(runner::Simulation::Interval step, double begin, double end) {
     const bool is_last = step.to >= end;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
         LedTool& tool = tools_[i];
-        if (!tool.is_in_hand || is_suture(tool)) continue;
+        if (!tool.is_in_hand) continue;
         const double part = (step.to - begin) / (end - begin);
+        if (is_suture(tool)) {
+            if (!world().is_suture_tied(tool.id)) continue;
+            const double now = world().suture_length(tool.id), rest = end - step.from;
+            if (now != tool.length)
+                simulation_.world().set_suture_length(
+                    tool.id, is_last ? tool.length
+                                     : std::lerp(now, tool.length, (step.to - step.from) / rest));
+            continue;
+        }
         simulation_.world().set_tool_pose(
             tool.id, is_last ? tool.pose : interpolate(poses_before_[i], tool.pose, part));
         if (!is_last || !tool.is_to_be_withdrawn) continue;

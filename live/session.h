@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "incise/live/order.h"
 #include "incise/runner/simulation.h"
+#include "incise/scenario/held_tool.h"
 #include "incise/scenario/scenario.h"
 #include "incise/sim/world.h"
 
@@ -26,6 +28,7 @@ struct LedTool {
     scenario::Value definition;
     sim::ToolId id;
     Pose pose;               ///< where it is to be at the end of the next tick
+    double length = 0.0;     ///< of a thread at the end of the next tick, m
     bool is_in_hand = true;  ///< until it has been withdrawn
     bool is_to_be_withdrawn = false;
     /// What the tissue exerts on it, mean over the last tick: N, and N m about its origin.
@@ -51,9 +54,13 @@ class Session {
     /// Executes an order at the present time. Returns warnings. Throws InputError, and changes
     /// nothing, if it is refused: a name that is taken or not known, an invalid definition or pose.
     std::vector<std::string> execute(const Order& order);
+    /// Throws InputError if execute() would refuse to add the tool. Changes nothing.
+    void check(const AddTool& order) const { checked(order); }
     /// Advances by one tick. Throws as runner::Simulation::step(). The session must then be
     /// restored.
-    void tick();
+    /// @param is_to_stop  asked after each step: if it returns true, the tick is given up
+    /// Returns false if the tick was given up. The session must then be restored too.
+    bool tick(const std::function<bool()>& is_to_stop = {});
 
     std::uint64_t num_ticks() const { return num_ticks_; }
     double tick_length() const { return tick_; }  ///< s
@@ -89,6 +96,7 @@ class Session {
     std::uint64_t checksum() const;
 
   private:
+    scenario::HeldTool checked(const AddTool& order) const;
     std::vector<std::string> add(const AddTool& order);
     void move(const MoveTool& order);
     void require_within_reach(const Pose& pose) const;

@@ -134,6 +134,7 @@ Array frozen(Array array) {
 /// Returns the path that a str or an os.PathLike names.
 std::filesystem::path path_from(const py::handle& object);
 
+void register_cut(py::module_& module);
 void register_errors(py::module_& module);
 void register_pose(py::module_& module);
 void register_mesh(py::module_& module);

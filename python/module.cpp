@@ -11,6 +11,7 @@ PYBIND11_MODULE(_incise, module) {
     python::register_errors(module);
     python::register_pose(module);
     python::register_mesh(module);
+    python::register_cut(module);
     python::register_report(module);
     python::register_tools(module);
     python::register_world(module);

@@ -227,6 +227,14 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
     if (n == 0) throw InputError("a call of 0 steps: n must be at least 1");
     if (dt && !(*dt > 0.0 && std::isfinite(*dt)))
         throw InputError("a step of " + io::format_number(*dt) + " s: it must be above 0");
+    // The world would refuse it too, but only after tools were placed for it.
+    const scenario::DynamicsSpec& dynamics = scenario_.dynamics;
+    const bool is_explicit = dynamics.mode == scenario::Mode::dynamic &&
+                             dynamics.integrator == scenario::TimeIntegrator::semi_implicit_euler;
+    constexpr double rounding = 1e-9;
+    if (dt && is_explicit && !(*dt <= (1.0 + rounding) * world_.rest_stable_step()))
+        throw InputError("a step of " + io::format_number(*dt) + " s is above the stable step of " +
+                         io::format_number(world_.rest_stable_step()) + " s");
     return call(
         [&](std::uint64_t i) {
             const double length = dt ? *dt : next_step();

@@ -6,7 +6,6 @@
 #include <igtlMessageHeader.h>
 #include <igtlPolyDataMessage.h>
 #include <igtlSensorMessage.h>
-#include <igtlStringMessage.h>
 #include <igtlTransformMessage.h>
 #include <igtlUnit.h>
 #include <netinet/in.h>
@@ -76,14 +75,13 @@ void set_nonblocking(int socket) {
 
 }  // namespace
 
-/// The thread of the link. It shares `hands`, `surface` and `wrenches` with the loop.
+/// The thread of the link. It shares `events`, `surface` and `wrenches` with the loop.
 class IgtlLink::Parts {
   public:
-    /// What messages say of a tool.
-    struct Hand {
-        std::optional<Pose> pose;         // since it was taken
-        std::vector<std::string> doings;  // close and open, in their order
-        bool is_to_be_dropped = false;
+    /// What messages say of a tool since the last tick, in their order.
+    struct Event {
+        enum class Kind { pose, close, open, drop } kind;
+        Pose pose = {};
     };
 
     /// What is sent.
@@ -109,7 +107,7 @@ class IgtlLink::Parts {
     std::uint16_t port = 0;
 
     std::mutex mutex;
-    std::map<std::string, Hand> hands;
+    std::map<std::string, std::vector<Event>> events;  // by device
     std::shared_ptr<const Surface> surface;
     std::map<std::string, Wrench> wrenches;
 
@@ -215,7 +213,7 @@ class IgtlLink::Parts {
         if (connection.in.size() < head) return false;
         const auto version = big_endian(connection.in.substr(0, 2));
         const auto size = big_endian(connection.in.substr(begin_of_size, 8));
-        if (size > longest_message || version < 1 || version > 3) {
+        if (size > longest_message || version != 1) {
             connection.is_over = true;  // there is no way back into step
             return false;
         }
@@ -252,29 +250,31 @@ class IgtlLink::Parts {
             const auto pose = pose_of(matrix);
             if (!pose) return;
             connection.tools.insert(device);
-            const std::scoped_lock lock(mutex);
-            hands[device].pose = pose;
-            hands[device].is_to_be_dropped = false;
+            note(device, {Event::Kind::pose, *pose});
         } else if (type == "STRING") {
-            auto message = igtl::StringMessage::New();
-            if (body.size() < 4 || !unpack(message, header, body)) return;
-            const std::string what = message->GetString();
-            const std::scoped_lock lock(mutex);
-            const auto hand = hands.find(device);
-            if (hand == hands.end()) return;
-            if (what == "drop") hand->second.is_to_be_dropped = true;
-            constexpr std::size_t most_waiting = 16;
-            if ((what == "close" || what == "open") && hand->second.doings.size() < most_waiting)
-                hand->second.doings.push_back(what);
+            // Encoding, length, text: the library would trust the length.
+            if (body.size() < 4 || big_endian(body.substr(2, 2)) > body.size() - 4) return;
+            const std::string what = body.substr(4, big_endian(body.substr(2, 2)));
+            if (what == "close") note(device, {Event::Kind::close});
+            if (what == "open") note(device, {Event::Kind::open});
+            if (what == "drop") note(device, {Event::Kind::drop});
         }
+    }
+
+    /// Of several poses in a row only the last one counts.
+    void note(const std::string& device, const Event& event) {
+        const std::scoped_lock lock(mutex);
+        auto& all = events[device];
+        constexpr std::size_t most = 64;  // in a tick, or in a pause
+        if (!all.empty() && all.back().kind == event.kind)
+            all.back() = event;
+        else if (all.size() < most)
+            all.push_back(event);
     }
 
     void drop(const Connection& connection) {
         ::close(connection.socket);
-        const std::scoped_lock lock(mutex);
-        for (const std::string& device : connection.tools)
-            if (const auto hand = hands.find(device); hand != hands.end())
-                hand->second.is_to_be_dropped = true;
+        for (const std::string& device : connection.tools) note(device, {Event::Kind::drop});
     }
 
     void send(Connection& connection) {
@@ -340,34 +340,36 @@ IgtlLink::~IgtlLink() = default;
 std::uint16_t IgtlLink::port() const { return parts_->port; }
 
 std::vector<Order> IgtlLink::orders(const Session& session) {
+    std::map<std::string, std::vector<Parts::Event>> events;
+    {
+        const std::scoped_lock lock(parts_->mutex);
+        events.swap(parts_->events);
+    }
+    using Kind = Parts::Event::Kind;
     std::vector<Order> orders;
-    const std::scoped_lock lock(parts_->mutex);
-    for (auto hand = parts_->hands.begin(); hand != parts_->hands.end();) {
-        auto& [device, wish] = *hand;
-        auto name = parts_->names.find(device);
-        const LedTool* tool = name == parts_->names.end() ? nullptr : session.find(name->second);
-        const bool is_in_hand = tool && tool->is_in_hand && !tool->is_to_be_withdrawn;
-        if (wish.is_to_be_dropped) {
-            if (is_in_hand) orders.push_back(WithdrawTool{name->second});
-            parts_->wrenches.erase(device);
-            hand = parts_->hands.erase(hand);
-            continue;
+    for (const auto& [device, all] : events) {
+        std::string& name = parts_->names[device];
+        const LedTool* tool = session.find(name);
+        bool is_in_hand = tool && tool->is_in_hand && !tool->is_to_be_withdrawn;
+        for (const Parts::Event& event : all) {
+            if (event.kind == Kind::pose && !is_in_hand) {
+                const int number = ++parts_->numbers[device];
+                name = number == 1 ? device : device + "_" + std::to_string(number);
+                orders.push_back(AddTool{name, parts_->options.tools.at(device), event.pose});
+                is_in_hand = true;
+            } else if (!is_in_hand) {
+                continue;
+            } else if (event.kind == Kind::pose) {
+                orders.push_back(MoveTool{name, event.pose});
+            } else if (event.kind == Kind::close) {
+                orders.push_back(CloseGrasper{name});
+            } else if (event.kind == Kind::open) {
+                orders.push_back(OpenGrasper{name});
+            } else {
+                orders.push_back(WithdrawTool{name});
+                is_in_hand = false;
+            }
         }
-        if (!is_in_hand && wish.pose) {
-            const int number = ++parts_->numbers[device];
-            std::string added = number == 1 ? device : device + "_" + std::to_string(number);
-            orders.push_back(AddTool{added, parts_->options.tools.at(device), *wish.pose});
-            name = parts_->names.insert_or_assign(device, std::move(added)).first;
-        } else if (wish.pose) {
-            orders.push_back(MoveTool{name->second, *wish.pose});
-        }
-        for (const std::string& what : wish.doings) {
-            if (name == parts_->names.end()) break;
-            if (what == "close") orders.push_back(CloseGrasper{name->second});
-            if (what == "open") orders.push_back(OpenGrasper{name->second});
-        }
-        wish.doings.clear();
-        ++hand;
     }
     return orders;
 }
@@ -387,6 +389,7 @@ void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
     }
     const std::scoped_lock lock(parts_->mutex);
     if (shown) parts_->surface = std::move(shown);
+    parts_->wrenches.clear();
     for (const auto& [device, name] : parts_->names) {
         const LedTool* tool = session.find(name);
         if (!tool || !tool->is_in_hand) continue;

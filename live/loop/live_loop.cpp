@@ -21,7 +21,17 @@ using std::chrono::milliseconds;
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::string message_text(std::string_view level, const std::string& text) {
-    return Json{{"type", "message"}, {"level", level}, {"text", text}}.dump();
+    return text_of(Json{{"type", "message"}, {"level", level}, {"text", text}});
+}
+
+/// A page may name no files of this machine.
+void refuse_files(const Json& definition) {
+    for (const auto& [key, value] : definition.items()) {
+        if (key == "surface")
+            throw InputError(
+                "'surface': a page takes tools without files; put it into the scenario");
+        if (value.is_structured()) refuse_files(value);
+    }
 }
 
 constexpr int most_failures = 3;
@@ -52,7 +62,7 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
                                            : std::min(due, now + milliseconds(100)));
             continue;
         }
-        tick();
+        if (!tick(is_to_stop)) return;
         if (is_paused_ && steps_wanted_ > 0) --steps_wanted_;
         due = pace_.note_tick(Pace::Clock::now());
         tell_if_slow();
@@ -62,19 +72,18 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
 
 void LiveLoop::handle(const Request& request) {
     is_changed_ = true;
-    switch (request.kind) {
-        case Request::Kind::opened:
-            return open(request.page);
-        case Request::Kind::closed:
-            return close(request.page);
-        case Request::Kind::download:
-            return answer(request);
-        case Request::Kind::text:
-            break;
-    }
     try {
-        obey(request.page, parse_object(request.text));
-    } catch (const InputError& error) {
+        switch (request.kind) {
+            case Request::Kind::opened:
+                return open(request.page);
+            case Request::Kind::closed:
+                return close(request.page);
+            case Request::Kind::download:
+                return answer(request);
+            case Request::Kind::text:
+                return obey(request.page, parse_object(request.text));
+        }
+    } catch (const std::exception& error) {  // whatever a page wants, the session goes on
         server_.send(request.page, message_text("error", error.what()));
     }
 }
@@ -172,21 +181,27 @@ void LiveLoop::take(std::uint64_t page, const Json& wish) {
     const Json& definition = member(wish, "tool");
     if (!definition.is_object()) throw InputError("'tool': must be an object");
     const std::string kind = text_in(definition, "kind");
-    if (kind == "suture" || kind == "cut") throw InputError("a " + kind + " is not led by hand");
+    if (kind == "suture") throw InputError("a suture is sewn, not led by hand");
+    refuse_files(definition);
+    AddTool order{"new", value_of(definition), pose_in(member(wish, "pose"))};
+    session_.check(order);  // a state is costly
+    order.name = new_name(kind);
     Session::Moment before = session_.save();
-    drop(page);
-    const std::string name = new_name(kind);
-    execute(AddTool{name, value_of(definition), pose_in(member(wish, "pose"))});
+    execute(order);
+    drop(page);  // what was in the hand
     moments_.keep_stroke(std::move(before));
-    hands_[page] = name;
+    hands_[page] = order.name;
 }
 
 void LiveLoop::sew(const Json& wish) {
     Json definition = {{"kind", "suture"},
                        {"points", member(wish, "points")},
                        {"stiffness", number_in(wish, "stiffness")}};
+    AddTool order{"new", value_of(definition), {}};
+    session_.check(order);
+    order.name = new_name("suture");
     Session::Moment before = session_.save();
-    execute(AddTool{new_name("suture"), value_of(definition), {}});
+    execute(order);
     moments_.keep_stroke(std::move(before));
 }
 
@@ -210,7 +225,7 @@ void LiveLoop::drop(std::uint64_t page) {
 
 void LiveLoop::go_back(const Session::Moment& moment) {
     session_.restore(moment);
-    recorder_.note_return(session_);
+    note([&] { recorder_.note_return(session_); });
     moments_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
     num_warnings_told_ = session_.simulation().warnings().size();
@@ -230,19 +245,29 @@ void LiveLoop::reset() {
     say_hello_to_all();
 }
 
-void LiveLoop::tick() {
+bool LiveLoop::tick(const std::function<bool()>& is_to_stop) {
     keep_good_moment();
     obey_devices();
     try {
-        session_.tick();
-        recorder_.note_tick(session_);
-    } catch (const PhysicsError& error) {
-        return recover(error.what());
-    } catch (const InputError& error) {  // a tool has met what it cannot cut
-        return recover(error.what());
+        if (!session_.tick(is_to_stop)) return false;
+    } catch (const std::exception& error) {  // a motion is lost, or a tool meets what it cannot cut
+        recover(error.what());
+        return true;
     }
+    note([&] { recorder_.note_tick(session_); });
     tell_warnings();
     for (Device* device : devices_) device->look(session_, pictures_.follow(session_));
+    return true;
+}
+
+/// Notes something in the recording. A session outlives a disk that is full.
+void LiveLoop::note(const std::function<void()>& in_recording) {
+    try {
+        in_recording();
+    } catch (const OutputError& error) {
+        tell("error", std::string(error.what()) +
+                          ". The recording goes on in memory: save it from the page");
+    }
 }
 
 /// Keeps the state now and then: each second, or less often if that would take more than a
@@ -337,7 +362,7 @@ void LiveLoop::say_hello(std::uint64_t page) {
         hello["regions"].push_back({{"id", region}, {"name", "region " + std::to_string(region)}});
     for (const ShownField& field : PictureMaker::fields())
         hello["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
-    server_.send(page, hello.dump());
+    server_.send(page, text_of(hello));
 }
 
 void LiveLoop::say_hello_to_all() {
@@ -397,7 +422,7 @@ std::string LiveLoop::state() const {
         }
         state["tools"].push_back(std::move(entry));
     }
-    return state.dump();
+    return text_of(state);
 }
 
 }  // namespace incise::live

@@ -32,10 +32,9 @@ class LiveLoop {
     /// @lifetime  the device must outlive the loop
     void add_device(Device& device) { devices_.push_back(&device); }
 
-    /// Runs until `is_to_stop` returns true, which is asked at least ten times a second. Nothing
-    /// moves before the first page has opened, unless there is a device. Throws OutputError if the
-    /// recording cannot be written, and PhysicsError if the body is lost at the start again and
-    /// again.
+    /// Runs until `is_to_stop` returns true, which is asked after each step. The tick that it falls
+    /// in is given up. Nothing moves before the first page has opened, unless there is a device.
+    /// Failures of the motion, of a page's wishes and of the recording are told, and it goes on.
     void run(const std::function<bool()>& is_to_stop);
 
     /// Is called with each message that pages get too: its level (info, warning, error), its text.
@@ -59,7 +58,8 @@ class LiveLoop {
     const std::string& in_hand(std::uint64_t page) const;
     std::string new_name(const std::string& kind);
 
-    void tick();
+    bool tick(const std::function<bool()>& is_to_stop);
+    void note(const std::function<void()>& in_recording);
     void obey_devices();
     void keep_good_moment();
     void go_back(const Session::Moment& moment);

@@ -397,7 +397,8 @@ std::uint16_t Server::port() const { return parts_->port; }
 
 std::string Server::address() const {
     const std::string& host = parts_->options.host;
-    const std::string name = parts_->is_open_to_all ? host : "127.0.0.1";
+    const bool is_ipv6 = host.find(':') != std::string::npos;
+    const std::string name = is_ipv6 ? "[" + host + "]" : host;
     return "http://" + name + ":" + std::to_string(port()) + "/?token=" + parts_->token;
 }
 

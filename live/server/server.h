@@ -49,7 +49,7 @@ struct ServerOptions {
 /// wait.
 ///
 /// Only requests to a loopback name are answered, unless the server listens on another address:
-/// the header Host must be that of the server, and the header Origin of a WebSocket too. A secret
+/// the header Origin of a WebSocket must then name the same host as the header Host. A secret
 /// token in the address keeps other users of the machine out. Messages of pages are at most 64 KiB
 /// long. A page that sends faster than its messages are taken has to wait; one that reads too
 /// slowly misses pictures; one that does not read at all is disconnected.

@@ -147,6 +147,18 @@ class Link(unittest.TestCase):
         edits = pathlib.Path(self.folder.name, "out", "edits.jsonl").read_text().splitlines()
         self.assertGreater(len(edits), 0)
 
+    def test_knife_that_was_dropped_does_not_sweep_to_where_it_is_next(self):
+        client = self.client()
+        client.send(transform("knife", (50.0, -60.0, 50.0)))
+        client.until("SENSOR", "knife")
+        client.send(text("knife", "drop") + transform("knife", (50.0, 160.0, 50.0)))
+        time.sleep(0.5)
+        self.stop()
+        recorded = self.recording.read_text()
+        self.assertIn('"withdraw":"knife"', recorded)
+        self.assertIn('"add":"knife_2"', recorded)
+        self.assertEqual(recorded.count('"move":"knife"'), 0)
+
     def test_jaws_feel_what_they_pull_and_let_go_at_the_end(self):
         client = self.client()
         client.send(transform("jaws", (20.0, 20.0, 50.0)))

@@ -187,6 +187,22 @@ TEST_F(RecordedStroke, IsRefusedWithFileLineAndProblem) {
     EXPECT_THAT(refusal_of(header + "{\"tick\":0,\"state\":\"what\"}\n"), HasSubstr("no checksum"));
 }
 
+TEST_F(RecordedStroke, OfNothingIsRefusedInWords) {
+    try {
+        Replay(folder.scenario(), read(text.substr(0, text.find('\n') + 1)), false);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("no tick"));
+    }
+}
+
+TEST_F(RecordedStroke, SaysAtTheStartIfTheDiskIsFull) {
+    Session session(folder.scenario());
+    const auto full = std::filesystem::path("/dev/full");
+    if (!std::filesystem::exists(full)) GTEST_SKIP();
+    EXPECT_THROW(Recorder(session, {}, "test", full), OutputError);
+}
+
 TEST_F(RecordedStroke, NamesTheTickOfAnOrderThatIsRefused) {
     std::string changed = text;
     changed.replace(changed.find("\"move\":\"knife\""), 14, "\"move\":\"spoon\"");

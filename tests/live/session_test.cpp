@@ -127,9 +127,63 @@ TEST(Session, RefusesOrdersAndChangesNothing) {
 TEST(Session, RefusesTouchingToolsThatJump) {
     Session session(BlockFolder().scenario());
     session.execute(add_ball("probe", "ball", 0.05, 0.05, 0.2));
-    EXPECT_THAT(refusal_of(session, move("ball", 0.05, 0.05, 100.0)), HasSubstr("200 elements"));
+    EXPECT_THAT(refusal_of(session, move("ball", 0.05, 0.05, 100.0)), HasSubstr("more slowly"));
     session.execute(move("ball", 0.05, 0.05, 1.0));
     session.tick();
+}
+
+TEST(Session, MakesEveryMoveThatItHasNotRefused) {
+    // Thin, long and turning probes, as far as they may go in a tick.
+    for (const double angle : {0.0, 1.0, 3.0})
+        for (const double step : {0.02, 0.2, 2.0, 20.0}) {
+            Session session(BlockFolder().scenario());
+            session.execute(order(R"({"add":"rod","tool":{"kind":"probe","shape":{"capsule":
+                {"from":[0,0,0],"to":[0.4,0,0],"radius":0.002}}},"at":[0,0,0.3]})"));
+            const MoveTool moved{"rod",
+                                 {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ())),
+                                  {0.0, 0.0, 0.3 + step}}};
+            if (refusal_of(session, moved) != "none") continue;
+            EXPECT_NO_THROW(session.tick());
+        }
+}
+
+TEST(Session, DrawsAThreadEvenlyWithinATick) {
+    Session session(BlockFolder().scenario());
+    session.execute(order(R"({"add":"thread","tool":{"kind":"suture","stiffness":5,
+        "points":[[0.03,0.05,0.05],[0.07,0.05,0.05]]},"at":[0,0,0]})"));
+    const LedTool& thread = *session.find("thread");
+    const double before = session.world().suture_length(thread.id);
+    session.execute(order(R"({"draw":"thread","length":0.02})"));
+    EXPECT_EQ(session.world().suture_length(thread.id), before);
+    class Watch : public runner::Observer {
+      public:
+        std::vector<double> lengths;
+        void on_step(const runner::Simulation& simulation) override {
+            lengths.push_back(simulation.world().suture_length({1}));
+        }
+    } watch;
+    session.simulation().add_observer(watch);
+    session.tick();
+    ASSERT_GT(watch.lengths.size(), 2u);
+    const auto n = static_cast<double>(watch.lengths.size());
+    for (std::size_t i = 0; i < watch.lengths.size(); ++i)
+        EXPECT_NEAR(watch.lengths[i], before + (0.02 - before) * static_cast<double>(i + 1) / n,
+                    1e-12);
+    EXPECT_EQ(watch.lengths.back(), 0.02);
+    EXPECT_THAT(refusal_of(session, order(R"({"draw":"thread","length":-1})")),
+                HasSubstr("0 or more"));
+    EXPECT_THAT(refusal_of(session, order(R"({"withdraw":"thread"})")), HasSubstr("untied"));
+}
+
+TEST(Session, GivesUpATickWhenAskedTo) {
+    Session session(BlockFolder().scenario());
+    session.tick();
+    const Session::Moment moment = session.save();
+    int num_steps = 0;
+    EXPECT_FALSE(session.tick([&] { return ++num_steps == 2; }));
+    EXPECT_EQ(session.num_ticks(), 1u);
+    session.restore(moment);
+    EXPECT_TRUE(session.tick());
 }
 
 TEST(Session, GoesOnInTheSameBitsAfterItWentBack) {

@@ -10,21 +10,9 @@
 
 namespace incise::live {
 
-/// 0.1 m wide, held below; a carver of the scenario passes from 0.02 to 0.1 s.
-inline const std::string soft_block = R"([mesh]
-box = { size = [0.1, 0.1, 0.05], cells = [5, 5, 3], element = "tet" }
-[[material]]
-law = "stable-neo-hookean"
-density = 1000
-young = 3000
-poisson = 0.4
-[dynamics]
-end_time = 0.2
-damping = 8
-[[constraint]]
-where = { half_space = { point = [0, 0, 0.001], normal = [0, 0, -1] } }
-fix = "xyz"
-[[tool]]
+/// soft_block.toml, with a carver that passes from 0.02 to 0.1 s.
+inline const std::string soft_block =
+    support::read_text(INCISE_DATA_DIR "/../tests/live/soft_block.toml") + R"([[tool]]
 kind = "carver"
 shape = { sphere = { radius = 0.02 } }
 path = [{ time = 0.02, at = [0.1, 0.1, 0.08] }, { time = 0.1, at = [0.1, 0.1, 0.04] }]

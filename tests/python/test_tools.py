@@ -32,6 +32,19 @@ class Tools(unittest.TestCase):
         self.assertEqual(body.ledger()["components"], 2)
         self.assertFalse(body.tools["knife_0"].is_present)
 
+    def test_refused_step_moves_no_tool(self) -> None:
+        body = incise.World(
+            mesh={"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}},
+            materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}],
+            tools=[{"kind": "blade", "edge": [[0, -1, 0], [0, 1, 0]],
+                    "path": [{"time": 0.2, "at": [0.03, 0, 0.2]},
+                             {"time": 0.8, "at": [0.03, 0, -0.1]}]}])
+        before = body.save()
+        with self.assertRaises(incise.InputError):
+            body.step(dt=10.0)
+        self.assertEqual(body.save(), before)
+        self.assertEqual(body.step().edits, [])
+
     def test_tool_goes_evenly_during_a_call(self) -> None:
         """One call of many steps cuts as many calls of one step each."""
         one, many = support.world(), support.world()

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/python/world_arrays.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "incise/python/cell_arrays.h"
+
+namespace incise::python {
+
+namespace {
+
+/// Returns an object that is made anew if the mesh has changed.
+template <class Make>
+py::object kept(const World& world, Handle::Kept& kept, Make make_anew) {
+    const std::uint64_t version = driver_of(world).topology_version();
+    if (kept.version != version) {
+        kept.value = make_anew();
+        kept.version = version;
+    }
+    return kept.value;
+}
+
+struct Surface {
+    py::array_t<std::int64_t> vertices, triangles;
+    py::array_t<bool> is_cut;
+    std::uint64_t version;
+};
+
+/// Arrays that show the memory of a world.
+class View {
+  public:
+    explicit View(World world) : world_(std::move(world)) {}
+    View(View&&) = delete;
+    ~View() {
+        if (is_open_) --world_->num_exports;
+    }
+
+    void enter() {
+        driver_of(world_);
+        if (is_open_) throw UsageError("this view is open already");
+        ++world_->num_exports;
+        is_open_ = true;
+    }
+    void exit() {
+        if (!is_open_) return;
+        is_open_ = false;
+        --world_->num_exports;
+    }
+    py::object show(std::span<const Vec3> (*values_of)(const sim::World&)) const {
+        if (!is_open_)
+            throw UsageError(
+                "this view is not open: use it in a with statement, as in "
+                "with world.view() as v");
+        const std::span<const Vec3> values = values_of(driver_of(world_).world());
+        if (!world_->rows().are_ids) return frozen(at_nodes(world_, values));
+        struct Export {
+            World world;
+            explicit Export(World w) : world(std::move(w)) { ++world->num_exports; }
+            ~Export() { --world->num_exports; }
+            Export(const Export&) = delete;
+            Export& operator=(const Export&) = delete;
+        };
+        auto owner = std::make_unique<Export>(world_);
+        const py::capsule base(owner.get(),
+                               [](void* pointer) { delete static_cast<Export*>(pointer); });
+        owner.release();
+        return frozen(py::array_t<double>({static_cast<py::ssize_t>(values.size()), py::ssize_t{3}},
+                                          values.empty() ? nullptr : values.front().data(), base));
+    }
+
+  private:
+    World world_;
+    bool is_open_ = false;
+};
+
+}  // namespace
+
+/// Returns values at the living nodes, in the rows of Python.
+py::array_t<double> at_nodes(const World& world, std::span<const Vec3> values) {
+    const Handle::Rows& rows = world->rows();
+    if (rows.are_ids) return matrix_of(values);
+    py::array_t<double> array({static_cast<py::ssize_t>(rows.nodes.size()), py::ssize_t{3}});
+    double* out = array.mutable_data();
+    for (const NodeId n : rows.nodes)
+        for (int c = 0; c < 3; ++c) *out++ = values[n.index()][c];
+    return array;
+}
+
+py::array_t<double> masses(const World& world) {
+    const std::vector<double> all = driver_of(world).world().masses();
+    const Handle::Rows& rows = world->rows();
+    py::array_t<double> array(
+        static_cast<py::ssize_t>(rows.are_ids ? all.size() : rows.nodes.size()));
+    double* out = array.mutable_data();
+    if (rows.are_ids)
+        std::ranges::copy(all, out);
+    else
+        for (const NodeId n : rows.nodes) *out++ = all[n.index()];
+    return array;
+}
+
+py::array_t<double> contact_forces(const World& world) {
+    const auto forces = driver_of(world).world().contact_forces();
+    const Handle::Rows& rows = world->rows();
+    py::array_t<double> array(
+        {static_cast<py::ssize_t>(world->driver.world().mesh().num_nodes()), py::ssize_t{3}});
+    std::fill_n(array.mutable_data(), array.size(), 0.0);
+    if (forces)
+        for (const auto& [node, force] : *forces)
+            if (const std::int64_t row = rows.row(node); row >= 0)
+                for (int c = 0; c < 3; ++c) array.mutable_at(row, c) = force[c];
+    return array;
+}
+
+py::array_t<std::int64_t> node_ids(const World& world) {
+    const topology::Mesh& mesh = driver_of(world).world().mesh();
+    py::array_t<std::int64_t> array(static_cast<py::ssize_t>(mesh.num_nodes()));
+    std::int64_t* out = array.mutable_data();
+    for (const NodeId n : mesh.nodes()) *out++ = mesh.label(n);
+    return array;
+}
+
+py::object cells(const World& world) {
+    driver_of(world);
+    return kept(world, world->cells, [&] {
+        const Handle::Rows& rows = world->rows();
+        const topology::Mesh& mesh = world->driver.world().mesh();
+        CellArrays arrays(true);
+        for (const ElementId e : mesh.elements())
+            for (const NodeId n : mesh.corners(e)) arrays.of(mesh.kind(e)).push_back(rows.row(n));
+        return arrays.object(true);
+    });
+}
+
+py::object regions(const World& world) {
+    driver_of(world);
+    return kept(world, world->regions, [&] {
+        const topology::Mesh& mesh = world->driver.world().mesh();
+        CellArrays arrays(false);
+        for (const ElementId e : mesh.elements()) arrays.of(mesh.kind(e)).push_back(mesh.region(e));
+        return arrays.object(true);
+    });
+}
+
+py::object surface(const World& world) {
+    driver_of(world);
+    return kept(world, world->surface, [&] {
+        const Handle::Rows& rows = world->rows();
+        sim::World& body = world->driver.world();
+        const topology::BoundarySurface& boundary = body.surface();
+        const auto size = static_cast<py::ssize_t>(boundary.triangles().size());
+        Surface made{{},
+                     py::array_t<std::int64_t>({size, py::ssize_t{3}}),
+                     py::array_t<bool>(size),
+                     world->driver.topology_version()};
+        std::vector<bool> is_on(body.mesh().num_nodes(), false);
+        std::int64_t* out = made.triangles.mutable_data();
+        for (const auto& triangle : boundary.triangles())
+            for (const NodeId n : triangle) {
+                *out = rows.row(n);
+                is_on[static_cast<std::size_t>(*out++)] = true;
+            }
+        for (py::ssize_t t = 0; t < size; ++t)
+            made.is_cut.mutable_at(t) = boundary.is_cut()[static_cast<std::size_t>(t)] != 0;
+        std::vector<std::int64_t> vertices;
+        for (std::size_t i = 0; i < is_on.size(); ++i)
+            if (is_on[i]) vertices.push_back(static_cast<std::int64_t>(i));
+        made.vertices =
+            py::array_t<std::int64_t>(static_cast<py::ssize_t>(vertices.size()), vertices.data());
+        frozen(made.vertices);
+        frozen(made.triangles);
+        frozen(made.is_cut);
+        return py::cast(std::move(made));
+    });
+}
+
+py::object view(const World& world) {
+    driver_of(world);
+    return py::cast(std::make_shared<View>(world));
+}
+
+void register_surface(py::module_& module) {
+    py::class_<Surface, std::shared_ptr<Surface>> type(module, "Surface",
+                                                       R"(The surface of a body: see World.surface.
+
+The arrays are read-only copies: they are valid for ever, and belong to one topology_version.)");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "copy its arrays");
+    type.def_property_readonly("vertices", held(&Surface::vertices),
+                               "Rows of positions that are on the surface, ascending. Shape (V,).")
+        .def_property_readonly(
+            "triangles", held(&Surface::triangles),
+            "Rows of positions, anticlockwise as seen from outside. Shape (T, 3).")
+        .def_property_readonly(
+            "is_cut", held(&Surface::is_cut),
+            "True for the triangles of cuts, which lay inside at first. Shape (T,).")
+        .def_property_readonly("version", held(&Surface::version),
+                               "The topology_version that the arrays are for.");
+}
+
+void register_view(py::module_& module) {
+    py::class_<View, std::shared_ptr<View>> type(
+        module, "View",
+        R"(Arrays that show the memory of a world: see World.view().
+
+They are valid inside the with statement. An array that is kept longer still never dangles: it keeps
+the world alive, and step(), run_until() and restore() raise BufferError until it is gone.)");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "copy its arrays");
+    type.def(
+            "__enter__",
+            [](const py::object& self) {
+                const auto view = self.cast<std::shared_ptr<View>>();
+                if (!view) throw py::type_error("None is no view");
+                view->enter();
+                return self;
+            },
+            "Open the view.")
+        .def(
+            "__exit__",
+            [](const std::shared_ptr<View>& view, const py::args&) {
+                if (view) view->exit();
+            },
+            "Close the view.")
+        .def_property_readonly(
+            "positions", held(+[](const View& view) {
+                return view.show([](const sim::World& world) { return world.positions(); });
+            }),
+            "As World.positions, read-only and without a copy. Shape (N, 3), m.")
+        .def_property_readonly(
+            "velocities", held(+[](const View& view) {
+                return view.show([](const sim::World& world) { return world.velocities(); });
+            }),
+            "As World.velocities, read-only and without a copy. Shape (N, 3), m/s.")
+        .def_property_readonly(
+            "rest_positions", held(+[](const View& view) {
+                return view.show(
+                    [](const sim::World& world) { return world.mesh().rest_positions(); });
+            }),
+            "As World.rest_positions, read-only and without a copy. Shape (N, 3), m.");
+}
+
+}  // namespace incise::python
