@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,7 +32,8 @@ namespace incise::app {
 
 namespace {
 
-/// Opens an address in the browser of the desktop, if there is one.
+/// Opens an address in the browser of the desktop, if there is one. All users of the machine can
+/// read the address.
 void open_in_browser(const std::string& address) {
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
     std::string program = "xdg-open", argument = address;
@@ -40,7 +43,8 @@ void open_in_browser(const std::string& address) {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&silence, stream, "/dev/null", O_RDWR, 0);
     pid_t child = 0;
-    posix_spawnp(&child, program.c_str(), &silence, nullptr, arguments, environ);
+    if (posix_spawnp(&child, program.c_str(), &silence, nullptr, arguments, environ) == 0)
+        std::thread([child] { waitpid(child, nullptr, 0); }).detach();
     posix_spawn_file_actions_destroy(&silence);
 }
 
@@ -99,9 +103,14 @@ std::string json_text(const nlohmann::json& json) {
 /// Builds the session. Pages that are open already see how far it is, or what is wrong.
 std::unique_ptr<live::Session> build(const scenario::Scenario& scenario, double tick,
                                      live::Server& server) {
-    server.greet_with(json_text({{"type", "progress"}, {"text", "building the body"}}));
+    const auto tell = [&](const std::string& stage) {
+        const std::string message = json_text({{"type", "progress"}, {"text", stage}});
+        server.greet_with(message);
+        server.send_to_all(message);
+    };
     try {
-        auto session = std::make_unique<live::Session>(scenario, tick);
+        constexpr auto no_end = std::numeric_limits<std::uint64_t>::max();
+        auto session = std::make_unique<live::Session>(scenario, tick, no_end, tell);
         server.greet_with({});
         return session;
     } catch (const std::exception& error) {
@@ -125,7 +134,7 @@ int live(const LiveOptions& options) {
                          .downloads = {"/recording.jsonl", "/frame.vtu"}});
     const auto link = link_of(options, scenario.name);
     std::cerr << scenario.name << ": open " << server.address() << '\n';
-    if (options.open) open_in_browser(server.address());
+    if (options.open) open_in_browser(server.address_for_once());
 
     const auto built = [&] {
         try {

@@ -61,6 +61,11 @@ class ArchiveWriter {
         flush();
         return bytes_;
     }
+    /// Returns what was written so far, without a copy of it. The writer is then empty.
+    std::string take() {
+        flush();
+        return std::exchange(bytes_, {});
+    }
 
   private:
     template <Number T>

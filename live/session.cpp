@@ -4,27 +4,27 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "incise/base/archive.h"
 #include "incise/base/error.h"
 #include "incise/cutting/tools/probe_shape.h"
 #include "incise/io/files/number_format.h"
+#include "incise/scenario/body.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::live {
 
 namespace {
 
-// A session has no end of its own. More steps than a run may have take longer than this, s.
-constexpr double endless = 1e5;
-
 scenario::Scenario for_ticks(scenario::Scenario scenario, double tick, std::uint64_t num_ticks) {
-    if (!(tick > 0.0 && tick < endless))
+    if (!(tick > 0.0 && tick < std::numeric_limits<double>::infinity()))
         throw InputError("a tick of " + std::to_string(tick) +
                          " s is not allowed: must be above 0");
-    const bool has_end = num_ticks < static_cast<std::uint64_t>(endless / tick);
-    scenario.dynamics.end_time = has_end ? static_cast<double>(num_ticks) * tick : endless;
+    const bool has_end = num_ticks < std::numeric_limits<std::uint64_t>::max();
+    scenario.dynamics.end_time =
+        has_end ? static_cast<double>(num_ticks) * tick : std::numeric_limits<double>::infinity();
     return scenario;
 }
 
@@ -34,14 +34,24 @@ double steps_of_tick(const runner::StepSituation& situation) {
     return runner::even_steps(situation);
 }
 
+runner::Simulation build(const scenario::Scenario& scenario,
+                         const std::function<void(const std::string&)>& tell) {
+    if (tell) tell("Reading the mesh, and choosing what is held and loaded");
+    scenario::Body body = scenario::build_body(scenario);
+    if (tell)
+        tell("Building the body of " + std::to_string(body.mesh.num_elements()) + " elements");
+    return {scenario, std::move(body), steps_of_tick};
+}
+
 bool is_suture(const LedTool& tool) { return tool.kind == "suture"; }
 
 }  // namespace
 
-Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_ticks)
+Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_ticks,
+                 const std::function<void(const std::string&)>& tell)
     : tick_(tick),
       last_tick_(num_ticks),
-      simulation_(for_ticks(std::move(scenario), tick, num_ticks), steps_of_tick),
+      simulation_(build(for_ticks(std::move(scenario), tick, num_ticks), tell)),
       why_no_contact_(scenario::why_no_contact(simulation_.scenario().dynamics,
                                                simulation_.scenario().contact)),
       element_size_(topology::mean_element_length(simulation_.mesh())) {
@@ -244,7 +254,7 @@ void Session::add_forces(std::span<const sim::ToolState> states, double weight) 
 Session::Moment Session::save() const {
     ArchiveWriter state;
     simulation_.save(state);
-    return {num_ticks_, state.bytes(), tools_, orders_};
+    return {num_ticks_, state.take(), tools_, orders_};
 }
 
 void Session::restore(const Moment& moment) {

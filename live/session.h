@@ -48,8 +48,10 @@ class Session {
     /// @param scenario   its end time does not count, nor do load steps of statics
     /// @param tick       s, above 0
     /// @param num_ticks  after so many the session is finished
+    /// @param tell       is called with what is done next while the body is built
     explicit Session(scenario::Scenario scenario, double tick = usual_tick,
-                     std::uint64_t num_ticks = std::numeric_limits<std::uint64_t>::max());
+                     std::uint64_t num_ticks = std::numeric_limits<std::uint64_t>::max(),
+                     const std::function<void(const std::string&)>& tell = {});
 
     /// Executes an order at the present time. Returns warnings. Throws InputError, and changes
     /// nothing, if it is refused: a name that is taken or not known, an invalid definition or pose.

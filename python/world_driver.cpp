@@ -99,6 +99,7 @@ void WorldDriver::begin_call() {
         led.length_from.reset();
         if (led.length_target) led.length_from = world_.suture_length({i});
     }
+    for (NamedConstraint& grasp : constraints_) grasp.from = grasp.pose;
 }
 
 /// Sets where the tools and grasps are at the end of the next step.
@@ -117,19 +118,16 @@ void WorldDriver::lead(double part, bool is_last) {
                              : std::lerp(*led.length_from, *led.length_target, part));
         if (led.leaves && is_last && world_.is_tool_present({i})) world_.withdraw_tool({i});
     }
-    for (const NamedConstraint& grasp : constraints_)
-        if (grasp.target)
-            world_.set_grasp_pose(
-                grasp.id, is_last ? *grasp.target : interpolate(*grasp.pose, *grasp.target, part));
+    for (NamedConstraint& grasp : constraints_)
+        if (grasp.target) {
+            grasp.pose = is_last ? *grasp.target : interpolate(*grasp.from, *grasp.target, part);
+            world_.set_grasp_pose(grasp.id, *grasp.pose);
+        }
 }
 
 void WorldDriver::end_call() {
     for (Led& led : led_) led = {};
-    for (NamedConstraint& grasp : constraints_)
-        if (grasp.target) {
-            grasp.pose = grasp.target;
-            grasp.target.reset();
-        }
+    for (NamedConstraint& grasp : constraints_) grasp.target.reset();
 }
 
 void WorldDriver::make_step(double end, double part, bool is_last, Report& report) {
@@ -455,7 +453,7 @@ std::string WorldDriver::save() const {
     const std::string& bytes = ar.bytes();
     ArchiveWriter head;
     head(std::string(mark), sim::World::state_format, io::checksum(bytes));
-    return head.bytes() + bytes;
+    return head.take() + bytes;
 }
 
 void WorldDriver::restore(std::string_view bytes) {

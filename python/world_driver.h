@@ -43,8 +43,9 @@ struct Report {
 struct NamedConstraint {
     std::string name;
     sim::ConstraintId id;
-    std::optional<Pose> pose;    ///< of a grasp, after the last step
-    std::optional<Pose> target;  ///< of a grasp, at the end of the next call
+    std::optional<Pose> pose;       ///< of a grasp, after the last step
+    std::optional<Pose> target;     ///< of a grasp, at the end of the next call
+    std::optional<Pose> from = {};  ///< of a grasp with a target, at the beginning of the call
     static void archive(auto& ar, auto& self) {
         ar(self.name, self.id.index, self.pose, self.target);
     }

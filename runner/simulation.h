@@ -46,6 +46,8 @@ class Simulation {
     /// @param scenario  the scenario
     /// @param policy    the choice of steps
     explicit Simulation(const scenario::Scenario& scenario, StepPolicy policy = even_steps);
+    /// The same, with what scenario::build_body() has made of the scenario.
+    Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy);
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
@@ -104,8 +106,6 @@ class Simulation {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:
-    Simulation(const scenario::Scenario& scenario, scenario::Body body, StepPolicy policy);
-
     double next_stop() const;
     void report_edits();
     void warn_of_short_steps(const sim::EditRecord& edit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/scenario/step_limit.h"
 
+#include <cmath>
 #include <sstream>
 
 #include "incise/base/error.h"
@@ -23,12 +24,15 @@ namespace {
 [[noreturn]] void refuse_endless(const DynamicsSpec& dynamics, double limit,
                                  const physics::Model& model, std::uint64_t num_steps) {
     std::ostringstream text;
-    text << "steps of " << limit << " s would take more than 1e10 of them to the end at "
-         << dynamics.end_time << " s: lower dynamics.end_time";
-    if (dynamics.time_step)
-        text << " or raise dynamics.time_step";
+    text << "steps of " << limit << " s would take more than 1e10 of them ";
+    if (std::isfinite(dynamics.end_time))
+        text << "to the end at " << dynamics.end_time << " s: lower dynamics.end_time, or ";
     else
-        text << ", or check shape and material of element "
+        text << "for a second: ";
+    if (dynamics.time_step)
+        text << "raise dynamics.time_step";
+    else
+        text << "check shape and material of element "
              << model.mesh().label(model.limiting_element())
              << ", which is the smallest or stiffest for its mass";
     if (num_steps > 0) throw PhysicsError(text.str());  // the cause is an edit, not the scenario
@@ -52,8 +56,8 @@ double step_limit(const Scenario& scenario, const physics::Model& model, double 
         refuse_unstable(dynamics, at_rest, num_steps);
     // More steps would take years. In the end, rounding would keep the time from increasing.
     constexpr double max_steps = 1e10;
-    if (!(limit * max_steps >= dynamics.end_time))
-        refuse_endless(dynamics, limit, model, num_steps);
+    const double duration = std::isfinite(dynamics.end_time) ? dynamics.end_time : 1.0;
+    if (!(limit * max_steps >= duration)) refuse_endless(dynamics, limit, model, num_steps);
     return limit;
 }
 

@@ -138,7 +138,7 @@ std::string World::save() const {
     ArchiveWriter ar;
     ar(state_mark, state_format, parts_->solver, fingerprint_of(parts_->model));
     parts_->save(ar);
-    return ar.bytes();
+    return ar.take();
 }
 
 void World::restore(std::string_view bytes) {

@@ -170,7 +170,8 @@ class IgtlLink::Parts {
     }
 
     void wait_until(Clock::time_point time) {
-        std::vector<pollfd> waits = {{listener, POLLIN, 0}};
+        const bool may_accept = Clock::now() >= next_accept;
+        std::vector<pollfd> waits = {{may_accept ? listener : -1, POLLIN, 0}};
         for (const auto& connection : connections)
             waits.push_back(
                 {connection->socket,
@@ -184,6 +185,9 @@ class IgtlLink::Parts {
 
     void accept() {
         const int socket = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+        // As without a free file descriptor: then ppoll() would return at once for ever.
+        if (socket < 0 && errno != EAGAIN && errno != EINTR && errno != ECONNABORTED)
+            next_accept = Clock::now() + std::chrono::milliseconds(100);
         if (socket < 0) return;
         if (connections.size() >= most_connections) {
             ::close(socket);
@@ -302,8 +306,9 @@ class IgtlLink::Parts {
         auto message = igtl::SensorMessage::New();
         message->SetDeviceName(tool.c_str());
         message->SetLength(static_cast<unsigned>(wrench.size()));
+        // A message has one unit, and these are newtons and newton metres: none is claimed.
         auto unit = igtl::Unit::New();
-        unit->Append(igtl::Unit::SI_DERIVED_NEWTON, 1);
+        unit->Init();
         message->SetUnit(unit);
         for (unsigned i = 0; i < wrench.size(); ++i) message->SetValue(i, wrench[i]);
         return bytes_of(message);
@@ -326,6 +331,7 @@ class IgtlLink::Parts {
     }
 
     int listener = -1;
+    Clock::time_point next_accept = {};
     std::vector<std::unique_ptr<Connection>> connections;
     std::atomic<bool> is_ending = false;
     std::thread thread;
@@ -399,6 +405,12 @@ void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
             wrench[i + 3] = tool->torque[static_cast<Eigen::Index>(i)];
         }
     }
+}
+
+// Else a haptic device would go on pushing the hand, whatever that does.
+void IgtlLink::rest() {
+    const std::scoped_lock lock(parts_->mutex);
+    for (auto& [device, wrench] : parts_->wrenches) wrench = {};
 }
 
 }  // namespace incise::live

@@ -29,7 +29,7 @@ struct IgtlOptions {
 /// each tool, 1000 times a second.
 ///
 /// Lengths in messages are mm, in the frame RAS, which is that of the scenario times 1000. Forces
-/// are N and N m in the same frame.
+/// are N and N m in the same frame, and zero while nothing moves.
 class IgtlLink : public Device {
   public:
     static constexpr std::size_t longest_message = 64 * 1024;  ///< bytes
@@ -43,6 +43,7 @@ class IgtlLink : public Device {
     std::uint16_t port() const;
     std::vector<Order> orders(const Session& session) override;
     void look(const Session& session, const DisplayMesh& surface) override;
+    void rest() override;
 
   private:
     class Parts;

@@ -10,7 +10,7 @@
 
 namespace incise::live {
 
-/// The loop calls both functions on its own thread. They must not wait for anything.
+/// The loop calls all functions on its own thread. They must not wait for anything.
 class Device {
   public:
     virtual ~Device() = default;
@@ -18,6 +18,8 @@ class Device {
     virtual std::vector<Order> orders(const Session& session) = 0;
     /// Is called after each tick.
     virtual void look(const Session& session, const DisplayMesh& surface) = 0;
+    /// Is called again and again while nothing moves, as in a pause.
+    virtual void rest() = 0;
 };
 
 }  // namespace incise::live

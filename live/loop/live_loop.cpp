@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
@@ -52,11 +52,16 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     auto due = Pace::Clock::now();
     while (!is_to_stop()) {
         for (const Request& request : server_.take_requests()) handle(request);
+        try {
+            answer_downloads();
+        } catch (const std::exception& error) {
+            tell("error", std::string("a file could not be made: ") + error.what());
+        }
         was_opened = was_opened || !pages_.empty();
         const auto now = Pace::Clock::now();
         const bool rests = !was_opened || (is_paused_ && steps_wanted_ == 0);
         if (rests || now < due) {
-            if (rests) pace_.rest(now);
+            if (rests) rest(now);
             if (rests && is_changed_) show();
             server_.wait_for_request(rests ? now + milliseconds(100)
                                            : std::min(due, now + milliseconds(100)));
@@ -70,6 +75,11 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     }
 }
 
+void LiveLoop::rest(Pace::Clock::time_point now) {
+    pace_.rest(now);
+    for (Device* device : devices_) device->rest();
+}
+
 void LiveLoop::handle(const Request& request) {
     is_changed_ = true;
     try {
@@ -79,7 +89,8 @@ void LiveLoop::handle(const Request& request) {
             case Request::Kind::closed:
                 return close(request.page);
             case Request::Kind::download:
-                return answer(request);
+                downloads_.push_back(request);
+                return;
             case Request::Kind::text:
                 return obey(request.page, parse_object(request.text));
         }
@@ -104,17 +115,32 @@ void LiveLoop::close(std::uint64_t page) {
     if (operator_ != 0) say_hello(operator_);
 }
 
-void LiveLoop::answer(const Request& request) {
+/// Answers the downloads that wait: those of one kind with the same file. After that, others wait
+/// until files have taken no more than a twentieth of the time.
+void LiveLoop::answer_downloads() {
+    const auto begin = Pace::Clock::now();
+    if (downloads_.empty() || begin < next_download_) return;
+    std::map<std::string, Download> files;
+    for (const Request& request : std::exchange(downloads_, {})) {
+        const auto [file, is_new] = files.try_emplace(request.text);
+        if (is_new) file->second = download(request.text);
+        server_.answer(request.page, file->second.content, file->second.type, file->second.name);
+    }
+    const auto end = Pace::Clock::now();
+    next_download_ = end + 20 * (end - begin);
+}
+
+LiveLoop::Download LiveLoop::download(const std::string& target) const {
     const std::string name = session_.simulation().scenario().name;
-    if (request.text == "/recording.jsonl")
-        return server_.answer(request.page, recorder_.text(), "application/jsonl", name + ".jsonl");
+    if (target == "/recording.jsonl")
+        return {recorder_.text(), "application/jsonl", name + ".jsonl"};
     const sim::World& world = session_.world();
     const auto forces = world.contact_forces();
     runner::FrameBuilder builder(world.model(), world.time(),
                                  session_.simulation().scenario().output.fields,
                                  forces ? &*forces : nullptr);
-    server_.answer(request.page, io::vtu_text(builder.finish(), io::Compression::zlib),
-                   "application/octet-stream", name + ".vtu");
+    return {io::vtu_text(builder.finish(), io::Compression::zlib), "application/octet-stream",
+            name + ".vtu"};
 }
 
 void LiveLoop::obey(std::uint64_t page, const Json& wish) {
@@ -186,10 +212,10 @@ void LiveLoop::take(std::uint64_t page, const Json& wish) {
     AddTool order{"new", value_of(definition), pose_in(member(wish, "pose"))};
     session_.check(order);  // a state is costly
     order.name = new_name(kind);
-    Session::Moment before = session_.save();
+    auto before = moment_before_stroke();
     execute(order);
     drop(page);  // what was in the hand
-    moments_.keep_stroke(std::move(before));
+    if (before) moments_.keep_stroke(std::move(*before));
     hands_[page] = order.name;
 }
 
@@ -200,9 +226,16 @@ void LiveLoop::sew(const Json& wish) {
     AddTool order{"new", value_of(definition), {}};
     session_.check(order);
     order.name = new_name("suture");
-    Session::Moment before = session_.save();
+    auto before = moment_before_stroke();
     execute(order);
-    moments_.keep_stroke(std::move(before));
+    if (before) moments_.keep_stroke(std::move(*before));
+}
+
+/// Returns the present state, if undo does not lead to it already: nothing has moved since the
+/// last stroke began.
+std::optional<Session::Moment> LiveLoop::moment_before_stroke() const {
+    if (moments_.is_stroke_at(session_.num_ticks())) return std::nullopt;
+    return session_.save();
 }
 
 void LiveLoop::tighten(const Json& wish) {
@@ -228,6 +261,8 @@ void LiveLoop::go_back(const Session::Moment& moment) {
     note([&] { recorder_.note_return(session_); });
     moments_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
+    cut_area_ = 0.0;
+    num_edits_counted_ = 0;
     num_warnings_told_ = session_.simulation().warnings().size();
     hands_.clear();
     for (const LedTool& tool : session_.tools())
@@ -373,16 +408,20 @@ void LiveLoop::show() {
     is_changed_ = false;
     if (pages_.empty()) return;
     auto picture = pictures_.make(session_);
+    count_cut_area();
     picture->state = state();
     server_.show(std::move(picture));
 }
 
+/// Adds the areas of the edits since the last picture.
+void LiveLoop::count_cut_area() {
+    const auto& edits = session_.simulation().edits();
+    for (; num_edits_counted_ < edits.size(); ++num_edits_counted_)
+        cut_area_ += edits[num_edits_counted_].cut_area;
+}
+
 std::string LiveLoop::state() const {
     const sim::World& world = session_.world();
-    const auto& edits = session_.simulation().edits();
-    const double cut_area = std::accumulate(
-        edits.begin(), edits.end(), 0.0,
-        [](double sum, const sim::EditRecord& edit) { return sum + edit.cut_area; });
     const sim::BodyTotals& last = world.ledger().last();
     Json state = {{"type", "state"},
                   {"tick", session_.num_ticks()},
@@ -394,8 +433,8 @@ std::string LiveLoop::state() const {
                   {"nodes", last.nodes},
                   {"elements", last.elements},
                   {"components", last.components},
-                  {"edits", edits.size()},
-                  {"cut_area", cut_area},
+                  {"edits", session_.simulation().edits().size()},
+                  {"cut_area", cut_area_},
                   {"mass", last.totals.mass},
                   {"field", pictures_.field()},
                   {"can_undo", moments_.has_stroke()},

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,16 +43,24 @@ class LiveLoop {
     std::function<void(std::string_view, const std::string&)> on_message;
 
   private:
+    /// A file that a page loads down.
+    struct Download {
+        std::string content, type, name;
+    };
+
+    void rest(Pace::Clock::time_point now);
     void handle(const Request& request);
     void open(std::uint64_t page);
     void close(std::uint64_t page);
-    void answer(const Request& request);
+    void answer_downloads();
+    Download download(const std::string& target) const;
     void obey(std::uint64_t page, const Json& wish);
 
     void take(std::uint64_t page, const Json& wish);
     void sew(const Json& wish);
     void tighten(const Json& wish);
     void drop(std::uint64_t page);
+    std::optional<Session::Moment> moment_before_stroke() const;
     void undo();
     void reset();
     void execute(const Order& order);
@@ -70,6 +79,7 @@ class LiveLoop {
     void say_hello(std::uint64_t page);
     void say_hello_to_all();
     void show();
+    void count_cut_area();
     std::string state() const;
 
     Session& session_;
@@ -78,7 +88,8 @@ class LiveLoop {
     PictureMaker pictures_;
     Pace pace_;
     Moments moments_;
-    Pace::Clock::time_point next_moment_ = {};
+    Pace::Clock::time_point next_moment_ = {}, next_download_ = {};
+    std::vector<Request> downloads_;  // that wait
     std::vector<Device*> devices_;
     std::string last_complaint_;                  // about orders of devices
     std::vector<std::uint64_t> pages_;            // in the order of opening
@@ -89,6 +100,8 @@ class LiveLoop {
     int steps_wanted_ = 0;  // while paused
     std::size_t num_warnings_told_;
     bool has_told_pace_ = false;
+    double cut_area_ = 0.0;  // of the first edits, m2
+    std::size_t num_edits_counted_ = 0;
     std::uint64_t last_failure_ = 0;  // tick
     int num_failures_ = 0;            // that got no farther than the last one
 };

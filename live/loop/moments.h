@@ -23,6 +23,10 @@ class Moments {
     /// Keeps the state before a stroke.
     void keep_stroke(Session::Moment moment) { keep(strokes_, std::move(moment), 64, 512u << 20); }
     bool has_stroke() const { return !strokes_.empty(); }
+    /// True if the last stroke began after so many ticks.
+    bool is_stroke_at(std::uint64_t num_ticks) const {
+        return has_stroke() && strokes_.back().num_ticks == num_ticks;
+    }
     /// Returns the state before the last stroke, and forgets it.
     Session::Moment take_stroke() { return take(strokes_); }
 

@@ -7,6 +7,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -51,14 +52,15 @@ std::string make_token() {
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// The target of a request: its path, and the value of its parameter `token`.
+/// The target of a request: its path, and the values of its parameters `token` and `once`.
 struct Target {
-    std::string_view path, token;
+    std::string_view path, token, once;
     explicit Target(std::string_view target) : path(target.substr(0, target.find('?'))) {
         std::string_view query = target.substr(std::min(path.size() + 1, target.size()));
         while (!query.empty()) {
             const std::string_view parameter = query.substr(0, query.find('&'));
             if (parameter.starts_with("token=")) token = parameter.substr(6);
+            if (parameter.starts_with("once=")) once = parameter.substr(5);
             query.remove_prefix(std::min(parameter.size() + 1, query.size()));
         }
     }
@@ -100,12 +102,14 @@ class Server::Parts {
         pages.clear();
         downloads.clear();
         acceptor.reset();
+        pause_of_accept.reset();
         io.reset();
     }
 
     void listen();
     void accept();
     void stop();
+    std::string root() const;
     void note(Request request) {
         {
             const std::scoped_lock lock(mutex);
@@ -124,9 +128,11 @@ class Server::Parts {
 
     ServerOptions options;
     std::string token;
+    std::string key_for_once;     // leads to the token, and is forgotten then; empty: none
     bool is_open_to_all = false;  // listens on an address that is no loopback
     std::unique_ptr<asio::io_context> io = std::make_unique<asio::io_context>(1);
     std::optional<tcp::acceptor> acceptor{*io};
+    std::optional<asio::steady_timer> pause_of_accept{*io};
     std::uint16_t port = 0;
 
     std::map<std::uint64_t, std::shared_ptr<Page>> pages;
@@ -282,6 +288,7 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
         response_.set("Content-Security-Policy",
                       "default-src 'self'; frame-ancestors 'none'; base-uri 'none'");
         response_.set(http::field::cache_control, "no-store");
+        if (status == http::status::see_other) response_.set(http::field::location, content);
         if (!file_name.empty())
             response_.set(http::field::content_disposition,
                           "attachment; filename=\"" + std::string(file_name) + "\"");
@@ -330,6 +337,11 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
             socket_.expires_never();  // until the simulation is between two ticks
             return parts_.note({Request::Kind::download, number, path});
         }
+        if (target.path == "/" && !parts_.key_for_once.empty() &&
+            is_equal_in_constant_time(target.once, parts_.key_for_once)) {
+            if (request.method() == http::verb::get) parts_.key_for_once.clear();
+            return respond(http::status::see_other, "text/plain", "/?token=" + parts_.token);
+        }
         for (const PageFile& file : parts_.options.files) {
             if (file.path != target.path) continue;
             if (file.path == "/" && !knows_token)
@@ -371,7 +383,12 @@ void Server::Parts::accept() {
         constexpr std::size_t most_connections = 64;
         if (!error && num_connections < most_connections)
             std::make_shared<Connection>(std::move(socket), *this)->read();
-        accept();
+        if (!error) return accept();
+        // As without a free file descriptor: the next try would fail as well.
+        pause_of_accept->expires_after(std::chrono::milliseconds(100));
+        pause_of_accept->async_wait([this](error_code ended) {
+            if (!ended) accept();
+        });
     });
 }
 
@@ -395,11 +412,18 @@ Server::~Server() {
 
 std::uint16_t Server::port() const { return parts_->port; }
 
-std::string Server::address() const {
-    const std::string& host = parts_->options.host;
-    const bool is_ipv6 = host.find(':') != std::string::npos;
-    const std::string name = is_ipv6 ? "[" + host + "]" : host;
-    return "http://" + name + ":" + std::to_string(port()) + "/?token=" + parts_->token;
+std::string Server::Parts::root() const {
+    const bool is_ipv6 = options.host.find(':') != std::string::npos;
+    const std::string name = is_ipv6 ? "[" + options.host + "]" : options.host;
+    return "http://" + name + ":" + std::to_string(port) + "/";
+}
+
+std::string Server::address() const { return parts_->root() + "?token=" + parts_->token; }
+
+std::string Server::address_for_once() {
+    const std::string key = make_token();
+    parts_->later([parts = parts_.get(), key] { parts->key_for_once = key; });
+    return parts_->root() + "?once=" + key;
 }
 
 std::vector<Request> Server::take_requests() {

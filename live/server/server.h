@@ -70,6 +70,9 @@ class Server {
     std::uint16_t port() const;
     /// Returns the address to open in a browser, with the token.
     std::string address() const;
+    /// Returns an address that leads to address() one time: for where others may read it, such as
+    /// the arguments of a program. It takes the place of the last one.
+    std::string address_for_once();
 
     /// Returns the requests since the last call, in their order.
     std::vector<Request> take_requests();

@@ -32,6 +32,7 @@ class Hand : public Device {
         ++num_looks;
         EXPECT_FALSE(surface.triangles().empty());
     }
+    void rest() override {}
 };
 
 class LiveLoopTest : public testing::Test {

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/live/server/server.h"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 
 #include "incise/base/error.h"
+#include "tests/live/web_client.h"
 
 namespace incise::live {
 namespace {
@@ -28,66 +22,6 @@ using testing::StartsWith;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-/// A client that knows nothing of HTTP but bytes.
-class Client {
-  public:
-    explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(port);
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-            throw std::runtime_error("cannot connect");
-    }
-    ~Client() { ::close(socket_); }
-    Client(const Client&) = delete;
-    Client& operator=(const Client&) = delete;
-
-    void send(const std::string& bytes) {
-        for (std::size_t sent = 0; sent < bytes.size();) {
-            const auto n = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-            if (n <= 0) return;  // the server has closed
-            sent += static_cast<std::size_t>(n);
-        }
-    }
-    /// Reads until the end, or until `is_enough`.
-    const std::string& read(const std::function<bool(const std::string&)>& is_enough = {}) {
-        const auto until = Clock::now() + seconds(20);
-        while (!(is_enough && is_enough(received_)) && Clock::now() < until) {
-            pollfd waits{socket_, POLLIN, 0};
-            if (::poll(&waits, 1, 100) <= 0) continue;
-            std::array<char, 65536> buffer;
-            const auto n = ::recv(socket_, buffer.data(), buffer.size(), 0);
-            if (n <= 0) break;
-            received_.append(buffer.data(), static_cast<std::size_t>(n));
-        }
-        return received_;
-    }
-
-  private:
-    int socket_;
-    std::string received_;
-};
-
-std::string frame(std::string_view text, unsigned char kind = 0x81) {
-    std::string bytes(1, static_cast<char>(kind));
-    if (text.size() < 126) {
-        bytes += static_cast<char>(0x80u | text.size());
-    } else if (text.size() < 65536) {
-        bytes += static_cast<char>(0x80u | 126u);
-        bytes += static_cast<char>(text.size() >> 8);
-        bytes += static_cast<char>(text.size() & 0xff);
-    } else {
-        bytes += static_cast<char>(0x80u | 127u);
-        for (int i = 7; i >= 0; --i)
-            bytes += static_cast<char>((std::uint64_t{text.size()} >> (8 * i)) & 0xff);
-    }
-    bytes += std::string(4, '\0');  // a mask that changes nothing
-    return bytes.append(text);
-}
-
-bool is_head_complete(const std::string& text) { return text.find("\r\n\r\n") != text.npos; }
 
 class ServerTest : public testing::Test {
   protected:
@@ -107,10 +41,7 @@ class ServerTest : public testing::Test {
         return client.read();
     }
     std::string upgrade(const std::string& target, const std::string& origin) const {
-        return "GET " + target + " HTTP/1.1\r\nHost: " + host +
-               "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
-               (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n";
+        return upgrade_request(target, host, origin);
     }
     /// A page that has connected.
     std::unique_ptr<Client> page() {
@@ -148,6 +79,22 @@ TEST_F(ServerTest, GivesThePageToThoseWithTheToken) {
         EXPECT_THAT(refusal, StartsWith("HTTP/1.1 403")) << wrong;
         EXPECT_THAT(refusal, Not(HasSubstr("the page"))) << wrong;
     }
+}
+
+TEST_F(ServerTest, GivesItsAddressAwayOnceOnly) {
+    const std::string first = server.address_for_once(), whole = server.address_for_once();
+    const auto target = [](const std::string& address) {
+        return address.substr(address.find("/?"));
+    };
+    EXPECT_THAT(whole, Not(HasSubstr(token)));
+    EXPECT_THAT(get(target(first)), StartsWith("HTTP/1.1 403")) << "the second took its place";
+    EXPECT_THAT(get(target(whole), "evil.example"), StartsWith("HTTP/1.1 421"));
+    EXPECT_THAT(get("/?once="), StartsWith("HTTP/1.1 403"));
+    const std::string answer = get(target(whole));
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 303"));
+    EXPECT_THAT(answer, HasSubstr("Location: /?token=" + token + "\r\n"));
+    EXPECT_THAT(get(target(whole)), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(get("/?once="), StartsWith("HTTP/1.1 403"));
 }
 
 TEST_F(ServerTest, RefusesOtherHostsPathsAndMethods) {

@@ -117,6 +117,33 @@ class Threads(unittest.TestCase):
         out, _ = process.communicate(timeout=60)
         self.assertEqual(out, "stopped False\n")
 
+    def test_after_an_interrupt_a_grasp_goes_on_from_where_it_is(self) -> None:
+        script = textwrap.dedent("""
+            import incise, support
+            body = support.world()
+            held = (body.positions[:, 0] > 0.119).nonzero()[0]
+            rest = body.positions[held[0], 2]
+            grasp = body.grasp("hand", held)
+            begin = grasp.pose.position
+            grasp.pose = incise.Pose(begin + [0, 0, 1e3])  # far away, and slowly
+            print("begun", flush=True)
+            try:
+                body.run_until(1e7)
+            except KeyboardInterrupt:
+                z = float(body.positions[held[0], 2] - rest)
+                grasp.pose = incise.Pose(begin + [0, 0, z])  # where it is: so it stays there
+                body.step(n=2)
+                print(0 < z < 1e3, bool(abs(body.velocities[held]).max() < 1e-3), body.has_failed)
+        """)
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
+                                   text=True)
+        assert process.stdout is not None
+        self.assertEqual(process.stdout.readline(), "begun\n")
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(out, "True True False\n")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -107,6 +107,7 @@ export class App {
         this.setMode('look');
         this.scene.beforeEach((seconds) => this.#beforePicture(seconds));
         this.scene.afterEach(() => this.#overlay.update(this.scene));
+        setInterval(() => this.#showStage(), 1000);
         this.connection = new Connection(socketAddress(), {
             opened: () => this.#opened(),
             told: (message) => this.#told(message),
@@ -152,10 +153,20 @@ export class App {
         this.#cursor.hide();
     }
 
+    /** What the program does until the body is there, and since when. */
+    #stage = { text: 'Waiting for the body', since: performance.now() };
+
+    #showStage() {
+        if (this.hello || this.#lost) return;
+        const seconds = Math.floor((performance.now() - this.#stage.since) / 1000);
+        write('loading-text', seconds < 2 ? this.#stage.text : `${this.#stage.text} … ${seconds} s`);
+    }
+
     /** @param {any} message */
     #told(message) {
         if (message.type === 'progress') {
-            write('loading-text', message.text);
+            this.#stage = { text: message.text, since: performance.now() };
+            this.#showStage();
             element('loading').hidden = false;
         } else if (message.type === 'hello') this.#greeted(message);
         else if (message.type === 'state') {
@@ -482,7 +493,7 @@ export class App {
         notice.classList.toggle('lost', this.#lost);
         button('take-over').hidden = this.#lost;
         if (this.#lost) write('loading-text', 'The program does not answer. Trying again …');
-        else if (!this.hello) write('loading-text', 'Waiting for the body');
+        else this.#showStage();
         write('notice-text', this.#lost ? 'Connection lost. Trying again …' : watching ? 'Another page holds the tools' : '');
         for (const one of this.#modeButtons()) one.disabled = !this.isOperator && one.dataset.mode !== 'look';
         const field = /** @type {HTMLSelectElement} */ (element('field'));

@@ -1,0 +1,172 @@
+// What pages say to a session, and what they hear.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+#include "incise/live/loop/live_loop.h"
+#include "tests/live/soft_block.h"
+#include "tests/live/web_client.h"
+
+namespace incise::live {
+namespace {
+
+using testing::HasSubstr;
+
+bool is_state(const Json& message) { return message["type"] == "state"; }
+bool is_error(const Json& message) {
+    return message["type"] == "message" && message["level"] == "error";
+}
+std::string take(const std::string& kind, double z) {
+    const std::string shape = kind == "blade" ? R"("edge":[[0,0,0.03],[0,0,-0.02]])"
+                                              : R"("shape":{"sphere":{"radius":0.012}})";
+    return R"({"do":"take","tool":{"kind":")" + kind + "\"," + shape + R"(},"pose":{)" +
+           at(0.05, 0.05, z) + "}}";
+}
+
+class PageWishes : public testing::Test {
+  protected:
+    PageWishes()
+        : session(folder.scenario(), 0.002),
+          recorder(session, {}, "test", std::nullopt),
+          server({.host = "127.0.0.1", .port = 0, .downloads = {"/frame.vtu"}}),
+          loop(session, recorder, server) {}
+
+    /// Runs the loop until the pages have done their work.
+    void run(const std::function<void()>& pages) {
+        std::atomic<bool> is_done = false;
+        std::jthread thread([&] {
+            try {
+                pages();
+            } catch (const std::exception& error) {
+                ADD_FAILURE() << error.what();
+            }
+            is_done = true;
+        });
+        loop.run([&] { return is_done.load(); });
+    }
+
+    BlockFolder folder;
+    Session session;
+    Recorder recorder;
+    Server server;
+    LiveLoop loop;
+};
+
+TEST_F(PageWishes, UndoLeadsBackToBeforeAStroke) {
+    run([&] {
+        WebPage page(server.address());
+        EXPECT_EQ(page.wait_for("hello")["role"], "operator");
+        page.say(R"({"do":"pause","on":true})");
+        const Json before = page.wait_for([](const Json& m) { return is_state(m) && m["paused"]; });
+        EXPECT_EQ(before["can_undo"], false);
+        // Two strokes within a tick: nothing has moved between them.
+        page.say(take("blade", 0.2));
+        page.say(R"({"do":"drop"})");
+        page.say(take("carver", 0.2));
+        const auto has_carver = [](const Json& m) {
+            return is_state(m) && m["tools"].size() == 2 && m["tools"][1]["kind"] == "carver";
+        };
+        EXPECT_EQ(page.wait_for(has_carver)["can_undo"], true);
+        page.say(R"({"do":"undo"})");
+        const Json undone =
+            page.wait_for([](const Json& m) { return is_state(m) && m["tools"].empty(); });
+        EXPECT_EQ(undone["can_undo"], false);
+        EXPECT_EQ(undone["time"], before["time"]);
+        page.say(R"({"do":"undo"})");
+        EXPECT_THAT(page.wait_for(is_error)["text"], HasSubstr("nothing to undo"));
+    });
+    EXPECT_TRUE(session.tools().empty());
+}
+
+TEST_F(PageWishes, UndoTakesBackWhatACutOpened) {
+    run([&] {
+        WebPage page(server.address());
+        page.wait_for("hello");
+        page.say(take("blade", 0.05));
+        page.wait_for([](const Json& m) { return is_state(m) && m["tools"].size() == 1; });
+        page.say(R"({"do":"move","pose":{"at":[0.05,0.09,0.05]}})");
+        page.say(R"({"do":"pause","on":true})");
+        for (int i = 0; i < 3; ++i) page.say(R"({"do":"step"})");
+        page.wait_for([](const Json& m) { return is_state(m) && m["cut_area"] > 1e-4; });
+        page.say(R"({"do":"undo"})");
+        const Json undone =
+            page.wait_for([](const Json& m) { return is_state(m) && m["tools"].empty(); });
+        EXPECT_EQ(undone["cut_area"], 0.0);
+        EXPECT_EQ(undone["edits"], 0);
+    });
+}
+
+TEST_F(PageWishes, AnotherPageTakesOver) {
+    run([&] {
+        WebPage first(server.address());
+        EXPECT_EQ(first.wait_for("hello")["role"], "operator");
+        WebPage second(server.address());
+        EXPECT_EQ(second.wait_for("hello")["role"], "watcher");
+        first.say(take("carver", 0.2));
+        const auto is_there = [](const Json& m) {
+            return is_state(m) && m["tools"].size() == 1 && m["tools"][0]["present"];
+        };
+        second.wait_for(is_there);
+        second.say(take("blade", 0.2));
+        EXPECT_THAT(second.wait_for(is_error)["text"], HasSubstr("take over from it first"));
+        second.say(R"({"do":"take_over"})");
+        EXPECT_EQ(first.wait_for("hello")["role"], "watcher");
+        EXPECT_EQ(second.wait_for("hello")["role"], "operator");
+        second.wait_for([](const Json& m) { return is_state(m) && m["tools"].empty(); });
+        first.say(R"({"do":"pause","on":true})");
+        EXPECT_THAT(first.wait_for(is_error)["text"], HasSubstr("take over from it first"));
+        second.say(take("blade", 0.2));
+        second.wait_for(is_there);
+    });
+}
+
+TEST_F(PageWishes, AThreadIsSewnTightenedAndUntied) {
+    run([&] {
+        WebPage page(server.address());
+        page.wait_for("hello");
+        page.say(R"({"do":"sew","stiffness":20,"points":[[0.03,0.05,0.05],[0.07,0.05,0.05]]})");
+        const auto thread_of = [](const Json& m) {
+            return is_state(m) && m["tools"].size() == 1 && m["tools"][0]["kind"] == "suture";
+        };
+        const Json state = page.wait_for(thread_of);
+        const Json thread = state["tools"][0];
+        const std::string name = thread["name"];
+        const double length = thread["length"];
+        EXPECT_NEAR(length, 0.04, 0.002);
+        page.say(R"({"do":"tighten","factor":0.5,"name":")" + name + "\"}");
+        page.wait_for(
+            [&](const Json& m) { return thread_of(m) && m["tools"][0]["length"] < 0.51 * length; });
+        page.say(R"({"do":"untie","name":")" + name + "\"}");
+        page.wait_for([](const Json& m) { return is_state(m) && m["tools"].empty(); });
+        page.say(R"({"do":"tighten","factor":0.5,"name":"nothing"})");
+        EXPECT_THAT(page.wait_for(is_error)["text"], HasSubstr("no tool 'nothing'"));
+    });
+}
+
+TEST_F(PageWishes, ManyDownloadsAtOnceAreOneFile) {
+    run([&] {
+        WebPage page(server.address());
+        page.say(R"({"do":"pause","on":true})");
+        page.wait_for([](const Json& m) { return is_state(m) && m["paused"]; });
+        const std::string query = server.address().substr(server.address().find("?token="));
+        std::vector<std::string> answers(12);
+        std::vector<std::jthread> clients;
+        for (std::string& answer : answers)
+            clients.emplace_back([&] {
+                Client client(server.port());
+                client.send("GET /frame.vtu" + query + " HTTP/1.1\r\nHost: localhost:" +
+                            std::to_string(server.port()) + "\r\nConnection: close\r\n\r\n");
+                answer = client.read();
+            });
+        clients.clear();
+        EXPECT_THAT(answers[0], HasSubstr("<UnstructuredGrid"));
+        for (const std::string& answer : answers) EXPECT_EQ(answer, answers[0]);
+    });
+}
+
+}  // namespace
+}  // namespace incise::live
