@@ -8,25 +8,21 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "incise/app/live_devices.h"
 #include "incise/app/messages.h"
 #include "incise/app/shell_word.h"
 #include "incise/app/stop_signals.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#ifdef INCISE_HAS_IGTL
-#include "incise/live/igtl/igtl_link.h"
-#endif
 #include "incise/live/loop/live_loop.h"
 #include "incise/live/page/page_parts.h"
 #include "incise/live/recording.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/scenario/body_problems.h"
-#include "incise/scenario/document.h"
 
 namespace incise::app {
 
@@ -48,49 +44,12 @@ void open_in_browser(const std::string& address) {
     posix_spawn_file_actions_destroy(&silence);
 }
 
-#ifdef INCISE_HAS_IGTL
-/// Returns the tools that devices lead, by name.
-std::map<std::string, scenario::Value> device_tools(const std::vector<std::string>& texts) {
-    scenario::Value document{.data = scenario::Table(), .location = {}};
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-        try {
-            scenario::apply_override(document, texts[i], static_cast<int>(i));
-        } catch (const scenario::DocumentError& error) {
-            throw InputError("--tool " + texts[i] + ": " + error.text);
-        }
-    }
-    std::map<std::string, scenario::Value> tools;
-    for (const scenario::Entry& entry : *document.get<scenario::Table>()) {
-        if (!entry.value.get<scenario::Table>())
-            throw InputError("--tool " + entry.key +
-                             ": must be NAME={...}, as in scalpel={kind=\"blade\", "
-                             "edge=[[0,0,0.01],[0,0,-0.02]]}");
-        tools[entry.key] = entry.value;
-    }
-    return tools;
-}
-
-std::unique_ptr<live::Device> link_of(const LiveOptions& options, const std::string& name) {
-    if (!options.igtl) return nullptr;
-    auto tools = device_tools(options.tools);
-    if (tools.empty()) throw InputError("--igtl: say with --tool which tools OpenIGTLink leads");
-    auto link = std::make_unique<live::IgtlLink>(
-        live::IgtlOptions{options.host, *options.igtl, std::move(tools)});
-    std::cerr << name << ": OpenIGTLink listens on " << options.host << ':' << link->port() << '\n';
-    return link;
-}
-#else
-std::unique_ptr<live::Device> link_of(const LiveOptions& options, const std::string&) {
-    if (options.igtl)
-        throw InputError(
-            "--igtl: this build has no OpenIGTLink; install libopenigtlink-dev, and "
-            "build anew");
-    return nullptr;
-}
-#endif
-
-void require_new(const std::filesystem::path& recording) {
-    if (std::filesystem::exists(recording))
+/// Refuses what the recording could not be written to, before anything else is done.
+void require_writable(const std::filesystem::path& recording, bool may_replace) {
+    const std::filesystem::path folder = recording.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        throw InputError(recording.string() + ": there is no folder " + folder.string());
+    if (!may_replace && std::filesystem::exists(recording))
         throw InputError(recording.string() +
                          ": is there already; give the recording another name, or replace it with "
                          "--force");
@@ -126,13 +85,13 @@ std::unique_ptr<live::Session> build(const scenario::Scenario& scenario, double 
 
 int live(const LiveOptions& options) {
     const StopSignals signals(options.scenario.string() + ": stopped before it began");
-    if (options.record && !options.force) require_new(*options.record);
+    if (options.record) require_writable(*options.record, options.force);
     const scenario::Scenario scenario = load_scenario(options.scenario, options.overrides);
     live::Server server({.host = options.host,
                          .port = options.port,
                          .files = live::page_files(),
                          .downloads = {"/recording.jsonl", "/frame.vtu"}});
-    const auto link = link_of(options, scenario.name);
+    const auto device = open_device(options, scenario.name);
     std::cerr << scenario.name << ": open " << server.address() << '\n';
     if (options.open) open_in_browser(server.address_for_once());
 
@@ -147,6 +106,7 @@ int live(const LiveOptions& options) {
         }
     }();
     live::Session& session = *built;
+    require_tools(options, session);
     session.simulation().set_num_threads(options.num_threads > 0 ? options.num_threads
                                                                  : physics::Workers::num_cores());
     for (const std::string& warning : session.simulation().warnings()) print_warning(warning);
@@ -154,7 +114,7 @@ int live(const LiveOptions& options) {
     signals.note_only();
 
     live::LiveLoop loop(session, recorder, server);
-    if (link) loop.add_device(*link);
+    if (device) loop.add_device(*device);
     loop.on_message = [](std::string_view level, const std::string& text) {
         if (level == "error")
             print_error(text);

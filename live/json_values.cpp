@@ -86,7 +86,15 @@ std::string text_of(const Json& json) {
 }
 
 Json parse_object(std::string_view text) {
-    Json json = Json::parse(text, nullptr, false);
+    // Who reads what was parsed may call itself for each level.
+    constexpr int most_nested = 32;
+    bool is_too_deep = false;
+    const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
+        is_too_deep = is_too_deep || depth > most_nested;
+        return !is_too_deep;
+    };
+    Json json = Json::parse(text, keep, false);
+    if (is_too_deep) throw InputError("the values are nested too deeply");
     if (!json.is_object()) throw InputError("this is no JSON object");
     return json;
 }

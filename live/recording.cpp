@@ -84,7 +84,8 @@ void read_line(const Json& line, Recording& recording) {
         }
     }
     recording.num_ticks = tick + 1;
-    recording.checksums[tick + 1] = number_of_hex(text_in(line, "state"));
+    if (line.contains("state"))  // not in what was written by hand
+        recording.checksums[tick + 1] = number_of_hex(text_in(line, "state"));
 }
 
 }  // namespace
@@ -164,10 +165,13 @@ Replay::Replay(const scenario::Scenario& scenario, Recording recording, bool may
     if (may_differ) return;
     const auto require = [&](const std::string& recorded, const std::string& now,
                              const char* what) {
-        if (recorded != now)
-            throw InputError("the recording is of " + recording_.scenario.name +
-                             " as it was then: since then " + what +
-                             " was changed; change it back, or play it nevertheless with a --set");
+        if (recorded == now) return;
+        if (recording_.scenario.name != scenario.name)
+            throw InputError("the recording is of " + recording_.scenario.name + ", and this is " +
+                             scenario.name);
+        throw InputError("the recording is of " + recording_.scenario.name +
+                         " as it was then: since then " + what +
+                         " was changed; change it back, or play it nevertheless with a --set");
     };
     require(recording_.scenario.hash, scenario.hash, "the scenario");
     require(recording_.scenario.fingerprint, hex(session_.simulation().fingerprint()),

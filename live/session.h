@@ -58,6 +58,8 @@ class Session {
     std::vector<std::string> execute(const Order& order);
     /// Throws InputError if execute() would refuse to add the tool. Changes nothing.
     void check(const AddTool& order) const { checked(order); }
+    /// Returns the kind of a tool. Throws InputError if execute() would refuse to add it.
+    std::string kind_of(const AddTool& order) const { return checked(order).kind; }
     /// Advances by one tick. Throws as runner::Simulation::step(). The session must then be
     /// restored.
     /// @param is_to_stop  asked after each step: if it returns true, the tick is given up

@@ -171,7 +171,7 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
     const PyMesh& mesh = *given;
     CutResult result;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         try {
             topology::BuiltMesh built = topology::Mesh::build(*mesh.data);
             const auto usual = scenario::usual_mode(built.mesh);

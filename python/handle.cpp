@@ -91,12 +91,21 @@ std::vector<Vec3> points_from(const py::handle& object, const std::string& name)
     return points;
 }
 
+Pose given_pose(const py::handle& object) {
+    if (!py::isinstance<Pose>(object))
+        throw py::type_error("a pose must be an incise.Pose, such as incise.Pose([0, 0, 0.1])");
+    return object.cast<Pose>();
+}
+
 std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows) {
     const py::array given = py::array::ensure(rows);
     if (!given || given.ndim() != 1 ||
         (given.size() > 0 && given.dtype().kind() != 'i' && given.dtype().kind() != 'u')) {
         PyErr_Clear();
-        throw py::type_error("nodes must be a list of whole numbers, rows of positions");
+        const bool is_mask = given && given.dtype().kind() == 'b';
+        throw py::type_error(
+            std::string("nodes must be a list of whole numbers, rows of positions") +
+            (is_mask ? ": of a mask, numpy.flatnonzero(mask)" : ""));
     }
     const auto array =
         py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);

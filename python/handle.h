@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "incise/python/unlocked.h"
 #include "incise/python/world_driver.h"
 
 namespace incise::python {
@@ -77,7 +78,7 @@ auto without_gil(const World& world, Function function) {
         Lease(const Lease&) = delete;
         Lease& operator=(const Lease&) = delete;
     } lease(*world);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     return function(driver);
 }
 
@@ -119,6 +120,8 @@ void forbid_copies(Class& type, const char* remedy) {
 /// Returns points as an array of shape (N, 3).
 py::array_t<double> matrix_of(std::span<const Vec3> points);
 py::array_t<double> array_of(const Vec3& v);
+/// Returns the pose that Python passed. Throws TypeError for anything else.
+Pose given_pose(const py::handle& object);
 /// Returns rows of an array of points as nodes of a world. Throws InputError for other rows.
 std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows);
 /// Returns a vector from any three numbers. Throws TypeError or InputError, with the name.

@@ -112,7 +112,7 @@ PyMesh box(const py::object& size, const py::object& cells, const std::string& e
         throw InputError("size must be three lengths above 0, and origin finite");
     if (element != "tet" && element != "hex")
         throw InputError("element is '" + element + "': it must be 'tet' or 'hex'");
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     return checked(topology::box_mesh(
         element == "tet" ? CellKind::tetrahedron : CellKind::hexahedron, low, lengths, bricks));
 }
@@ -121,7 +121,7 @@ PyMesh read_mesh(const py::object& path, const std::string& region_array, bool l
     const std::filesystem::path file = path_from(path);
     PyMesh mesh;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         io::MeshFile read =
             io::read_mesh(file, {.region_array = region_array,
                                  .linear = linear,
@@ -248,7 +248,7 @@ origin: the lowest corner.)")
                                "What is unusual about the mesh: a list of sentences.")
         .def("write", held(+[](const PyMesh& mesh, const py::object& path) {
                  const std::filesystem::path file = path_from(path);
-                 const py::gil_scoped_release release;
+                 const Unlocked unlocked;
                  io::write_mesh(file, *mesh.data);
              }),
              py::arg("path"), R"(Write the mesh to a file.

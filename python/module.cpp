@@ -8,6 +8,7 @@ PYBIND11_MODULE(_incise, module) {
     namespace python = incise::python;
     module.doc() = "The compiled part of incise: use the package incise.";
     module.attr("__version__") = INCISE_VERSION;
+    python::Unlocked::register_end();
     python::register_errors(module);
     python::register_pose(module);
     python::register_mesh(module);

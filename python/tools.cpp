@@ -62,8 +62,8 @@ InputError for a tool of the wrong kind, and incise.Error while another thread u
             "True while the tool acts: from its first pose until it has been withdrawn.")
         .def_property(
             "pose", held(+[](const Tool& tool) { return driver_of(tool).tool_pose(tool.id); }),
-            held(+[](const Tool& tool, const Pose& pose) {
-                driver_of(tool).set_tool_target(tool.id, pose);
+            held(+[](const Tool& tool, const py::object& pose) {
+                driver_of(tool).set_tool_target(tool.id, given_pose(pose));
             }),
             R"(Where the tool is to be at the end of the next call of step() or run_until(), a Pose.
 
@@ -168,9 +168,9 @@ A grasp on moving tissue stops it within one step: leave out that step, or take 
                 const NamedConstraint& found = find(constraint);
                 return found.target ? found.target : found.pose;
             }),
-            held(+[](const Constraint& constraint, const Pose& pose) {
+            held(+[](const Constraint& constraint, const py::object& pose) {
                 find(constraint);
-                driver_of(constraint.world).set_grasp_target(constraint.name, pose);
+                driver_of(constraint.world).set_grasp_target(constraint.name, given_pose(pose));
             }),
             R"(Where the frame of a grasp is to be at the end of the next call of step() or run_until().
 

@@ -21,6 +21,7 @@ namespace {
 
 void poll() {
     const py::gil_scoped_acquire acquire;
+    Unlocked::stop_at_end();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
@@ -44,6 +45,10 @@ py::dict ledger(const World& world) {
 
 void write_vtu(const World& world, const py::object& path) {
     const std::filesystem::path file = path_from(path);
+    if (file.extension() != ".vtu")
+        throw InputError(file.string() +
+                         ": must end in .vtu; for meshes of other formats see "
+                         "incise.Mesh.write()");
     without_gil(world, [&](WorldDriver& driver) {
         const sim::World& body = driver.world();
         const auto forces = body.contact_forces();
@@ -121,7 +126,7 @@ True)");
             py::arg("tools") = py::none(), py::arg("obstacles") = py::none(),
             py::arg("dynamics") = py::none(), py::arg("contact") = py::none(),
             py::arg("output") = py::none(), py::arg("gravity") = py::none(),
-            py::arg("damping") = py::none(), py::arg("overrides") = std::vector<std::string>(),
+            py::arg("damping") = py::none(), py::arg("overrides") = py::tuple(),
             py::arg("folder") = py::none(), py::arg("num_threads") = 1,
             R"(scenario: the name of a TOML file, or a dict with its keys; or the sections one by one:
 mesh: a dict {"file": ...} or {"box": {...}}, the name of a file, or an incise.Mesh.

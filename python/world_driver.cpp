@@ -230,9 +230,16 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
     const bool is_explicit = dynamics.mode == scenario::Mode::dynamic &&
                              dynamics.integrator == scenario::TimeIntegrator::semi_implicit_euler;
     constexpr double rounding = 1e-9;
-    if (dt && is_explicit && !(*dt <= (1.0 + rounding) * world_.rest_stable_step()))
-        throw InputError("a step of " + io::format_number(*dt) + " s is above the stable step of " +
-                         io::format_number(world_.rest_stable_step()) + " s");
+    if (dt && is_explicit && !(*dt <= (1.0 + rounding) * world_.rest_stable_step())) {
+        std::ostringstream text;
+        text.precision(4);
+        text << "a step of " << *dt << " s is above the stable step of "
+             << world_.rest_stable_step() << " s";
+        if (*dt >= 1.0 && *dt == std::floor(*dt))
+            text << "; for " << *dt << (*dt > 1.0 ? " steps" : " step") << " write step(n=" << *dt
+                 << ")";
+        throw InputError(text.str());
+    }
     return call(
         [&](std::uint64_t i) {
             const double length = dt ? *dt : next_step();

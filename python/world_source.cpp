@@ -47,6 +47,19 @@ struct Source {
     bool is_endless = false;
 };
 
+std::vector<std::string> texts_from(const py::object& overrides) {
+    std::vector<std::string> texts;
+    const bool is_list = py::isinstance<py::sequence>(overrides) &&
+                         !py::isinstance<py::str>(overrides) &&
+                         !py::isinstance<py::bytes>(overrides);
+    if (is_list)
+        for (const py::handle text : overrides)
+            if (py::isinstance<py::str>(text)) texts.push_back(text.cast<std::string>());
+    if (!is_list || texts.size() != py::len(overrides))
+        throw py::type_error("overrides must be a list of texts, such as [\"dynamics.damping=3\"]");
+    return texts;
+}
+
 scenario::Entry* find_entry(scenario::Table& table, std::string_view key) {
     const auto found = std::ranges::find(table, key, &scenario::Entry::key);
     return found == table.end() ? nullptr : &*found;
@@ -96,7 +109,7 @@ World make(Source source, int num_threads) {
     std::vector<std::string> warnings;
     World world;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         scenario::Scenario scenario =
             sound(source.document ? scenario::read_scenario(std::move(*source.document),
                                                             source.file, source.overrides)
@@ -128,10 +141,9 @@ World make_world(const py::object& scenario, const py::object& mesh, const py::o
                  const py::object& constraints, const py::object& loads, const py::object& tools,
                  const py::object& obstacles, const py::object& dynamics, const py::object& contact,
                  const py::object& output, const py::object& gravity, const py::object& damping,
-                 const std::vector<std::string>& overrides, const py::object& folder,
-                 int num_threads) {
+                 const py::object& overrides, const py::object& folder, int num_threads) {
     Source source;
-    source.overrides = overrides;
+    source.overrides = texts_from(overrides);
     const std::pair<const char*, const py::object*> sections[] = {
         {"material", &materials}, {"constraint", &constraints}, {"load", &loads},
         {"tool", &tools},         {"obstacle", &obstacles},     {"dynamics", &dynamics},

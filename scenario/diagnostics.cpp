@@ -69,8 +69,10 @@ std::vector<std::string> Diagnostics::formatted(std::vector<Finding> findings) c
 }
 
 std::string Diagnostics::text_of(const SourceLocation& location) const {
-    if (location.override_number >= 0)
-        return "--set " + overrides_[static_cast<std::size_t>(location.override_number)];
+    // A value that was read elsewhere has a number without an override here.
+    const auto number = static_cast<std::size_t>(location.override_number);
+    if (location.override_number >= 0 && number < overrides_.size())
+        return "--set " + overrides_[number];
     if (location.line == 0) return file_;
     return file_ + ":" + std::to_string(location.line) + ":" + std::to_string(location.column);
 }

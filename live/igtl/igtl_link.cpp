@@ -3,11 +3,10 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
-#include <igtlMessageHeader.h>
 #include <igtlPolyDataMessage.h>
 #include <igtlSensorMessage.h>
-#include <igtlTransformMessage.h>
 #include <igtlUnit.h>
+#include <igtl_util.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -17,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -46,13 +46,46 @@ std::string bytes_of(Message& message) {
             static_cast<std::size_t>(message->GetPackSize())};
 }
 
-/// Returns the pose of a matrix in mm, or nothing if it is no rigid motion.
-std::optional<Pose> pose_of(const igtl::Matrix4x4& matrix) {
+std::uint64_t big_endian(const std::string& bytes) {
+    std::uint64_t value = 0;
+    for (const char byte : bytes) value = (value << 8) | static_cast<unsigned char>(byte);
+    return value;
+}
+
+/// Returns a name of a message. Bytes that are no letters, digits or signs of ASCII are shown as
+/// '?'.
+std::string name_in(const std::string& field) {
+    std::string name = field.substr(0, field.find('\0'));
+    for (char& c : name)
+        if (c < ' ' || c > '~') c = '?';
+    return name;
+}
+
+/// Returns the content of a body: in version 2, it stands between an extended header and metadata.
+/// Returns nothing for other versions, and if the sizes do not fit.
+std::optional<std::string> content_of(std::uint64_t version, const std::string& body) {
+    if (version == 1) return body;
+    constexpr std::size_t least_extended_header = 12;
+    if (version != 2 || body.size() < least_extended_header) return std::nullopt;
+    const std::uint64_t extended_header = big_endian(body.substr(0, 2)),
+                        metadata = big_endian(body.substr(2, 2)) + big_endian(body.substr(4, 4));
+    if (extended_header < least_extended_header || extended_header + metadata > body.size())
+        return std::nullopt;
+    return body.substr(extended_header, body.size() - extended_header - metadata);
+}
+
+/// Returns the pose of the twelve numbers of a transform, in mm: the three columns of the rotation,
+/// then the position. Returns nothing if it is no rigid motion.
+std::optional<Pose> pose_of(const std::string& content) {
+    const auto number = [&](int i) {
+        const auto bits = big_endian(content.substr(static_cast<std::size_t>(4 * i), 4));
+        return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    };
     Eigen::Matrix3d rotation;
     Pose pose;
     for (int i = 0; i < 3; ++i) {
-        pose.position[i] = mm * static_cast<double>(matrix[i][3]);
-        for (int j = 0; j < 3; ++j) rotation(i, j) = static_cast<double>(matrix[i][j]);
+        pose.position[i] = mm * number(9 + i);
+        for (int j = 0; j < 3; ++j) rotation(i, j) = number(3 * j + i);
     }
     // Numbers of messages have 24 bits.
     const bool is_rigid =
@@ -63,19 +96,14 @@ std::optional<Pose> pose_of(const igtl::Matrix4x4& matrix) {
     return pose;
 }
 
-std::uint64_t big_endian(const std::string& bytes) {
-    std::uint64_t value = 0;
-    for (const char byte : bytes) value = (value << 8) | static_cast<unsigned char>(byte);
-    return value;
-}
-
 void set_nonblocking(int socket) {
     ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) | O_NONBLOCK);
 }
 
 }  // namespace
 
-/// The thread of the link. It shares `events`, `surface` and `wrenches` with the loop.
+/// The thread of the link. It shares `events`, `surface`, `wrenches` and `complaints` with the
+/// loop.
 class IgtlLink::Parts {
   public:
     /// What messages say of a tool since the last tick, in their order.
@@ -110,6 +138,7 @@ class IgtlLink::Parts {
     std::map<std::string, std::vector<Event>> events;  // by device
     std::shared_ptr<const Surface> surface;
     std::map<std::string, Wrench> wrenches;
+    std::vector<std::string> complaints;
 
     // Of the loop.
     std::map<std::string, std::string> names;  // of the tools in the session, by device
@@ -117,10 +146,16 @@ class IgtlLink::Parts {
     Clock::time_point next_surface = Clock::now();
 
   private:
+    struct Header {
+        std::uint64_t version;
+        std::string type, device;
+        std::uint64_t checksum;  // of the body
+    };
     struct Connection {
         int socket;
         std::string in, out;
-        std::set<std::string> tools;  // that it leads
+        std::set<std::string> tools;       // that it leads
+        std::set<std::string> complaints;  // that were told
         bool is_over = false;
     };
 
@@ -128,8 +163,10 @@ class IgtlLink::Parts {
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_port = htons(options.port);
-        if (::inet_pton(AF_INET, options.host.c_str(), &address.sin_addr) != 1)
-            throw InputError(options.host + ": is no address to listen on, such as 127.0.0.1");
+        const std::string host = options.host == "localhost" ? "127.0.0.1" : options.host;
+        if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
+            throw InputError("--host " + options.host +
+                             ": --igtl needs an IPv4 address, such as 127.0.0.1");
         listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
         const int yes = 1;
         ::setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -213,56 +250,60 @@ class IgtlLink::Parts {
 
     /// Takes one message from what was received, if it is whole.
     bool take_message(Connection& connection) {
-        constexpr std::size_t head = 58, begin_of_size = 42;
+        constexpr std::size_t head = 58;
         if (connection.in.size() < head) return false;
-        const auto version = big_endian(connection.in.substr(0, 2));
-        const auto size = big_endian(connection.in.substr(begin_of_size, 8));
-        if (size > longest_message || version != 1) {
+        const std::uint64_t size = big_endian(connection.in.substr(42, 8));
+        if (size > longest_message) {
             connection.is_over = true;  // there is no way back into step
             return false;
         }
         if (connection.in.size() < head + size) return false;
-        auto header = igtl::MessageHeader::New();
-        header->InitPack();
-        std::memcpy(header->GetPackPointer(), connection.in.data(), head);
-        header->Unpack();
-        const std::string body = connection.in.substr(head, size);
+        std::string body = connection.in.substr(head, size);
+        const Header header = {.version = big_endian(connection.in.substr(0, 2)),
+                               .type = name_in(connection.in.substr(2, 12)),
+                               .device = name_in(connection.in.substr(14, 20)),
+                               .checksum = big_endian(connection.in.substr(50, 8))};
         connection.in.erase(0, head + size);
         read_message(connection, header, body);
         return true;
     }
 
-    template <class Message>
-    static bool unpack(Message& message, igtl::MessageHeader::Pointer& header,
-                       const std::string& body) {
-        message->SetMessageHeader(header);
-        message->AllocatePack();
-        if (static_cast<std::size_t>(message->GetPackBodySize()) != body.size()) return false;
-        std::memcpy(message->GetPackBodyPointer(), body.data(), body.size());
-        return (message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;
-    }
-
-    void read_message(Connection& connection, igtl::MessageHeader::Pointer& header,
-                      const std::string& body) {
-        const std::string type = header->GetDeviceType(), device = header->GetDeviceName();
-        if (!options.tools.contains(device)) return;
-        if (type == "TRANSFORM") {
-            auto message = igtl::TransformMessage::New();
-            if (body.size() != 48 || !unpack(message, header, body)) return;
-            igtl::Matrix4x4 matrix;
-            message->GetMatrix(matrix);
-            const auto pose = pose_of(matrix);
-            if (!pose) return;
-            connection.tools.insert(device);
-            note(device, {Event::Kind::pose, *pose});
-        } else if (type == "STRING") {
-            // Encoding, length, text: the library would trust the length.
-            if (body.size() < 4 || big_endian(body.substr(2, 2)) > body.size() - 4) return;
-            const std::string what = body.substr(4, big_endian(body.substr(2, 2)));
-            if (what == "close") note(device, {Event::Kind::close});
-            if (what == "open") note(device, {Event::Kind::open});
-            if (what == "drop") note(device, {Event::Kind::drop});
+    void read_message(Connection& connection, const Header& header, std::string& body) {
+        if (header.type != "TRANSFORM" && header.type != "STRING") return;
+        const auto complain = [&](const std::string& text) {
+            if (!connection.complaints.insert(text).second) return;
+            const std::scoped_lock lock(mutex);
+            complaints.push_back("OpenIGTLink: device '" + header.device + "': " + text);
+        };
+        const auto bytes = reinterpret_cast<unsigned char*>(body.data());
+        if (crc64(bytes, body.size(), 0) != header.checksum)
+            return complain("the checksum of a message is wrong");
+        const auto content = content_of(header.version, body);
+        if (!content) return complain("its messages are of an unknown version of the protocol");
+        if (!options.tools.contains(header.device)) {
+            std::string known;
+            for (const auto& [name, definition] : options.tools) known += " '" + name + "'";
+            return complain("no --tool has this name, but" + known);
         }
+        if (header.type == "TRANSFORM") {
+            const auto pose = content->size() == 48 ? pose_of(*content) : std::nullopt;
+            if (!pose) return complain("a transform is no rotation and translation, or is scaled");
+            connection.tools.insert(header.device);
+            return note(header.device, {Event::Kind::pose, *pose});
+        }
+        // Encoding, length, text.
+        const bool is_whole =
+            content->size() >= 4 && big_endian(content->substr(2, 2)) <= content->size() - 4;
+        const std::string what =
+            is_whole ? content->substr(4, big_endian(content->substr(2, 2))) : std::string();
+        if (what == "close")
+            note(header.device, {Event::Kind::close});
+        else if (what == "open")
+            note(header.device, {Event::Kind::open});
+        else if (what == "drop")
+            note(header.device, {Event::Kind::drop});
+        else
+            complain("a STRING says neither close, open nor drop");
     }
 
     /// Of several poses in a row only the last one counts.
@@ -405,6 +446,11 @@ void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
             wrench[i + 3] = tool->torque[static_cast<Eigen::Index>(i)];
         }
     }
+}
+
+std::vector<std::string> IgtlLink::complaints() {
+    const std::scoped_lock lock(parts_->mutex);
+    return std::exchange(parts_->complaints, {});
 }
 
 // Else a haptic device would go on pushing the hand, whatever that does.

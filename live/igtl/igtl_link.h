@@ -23,9 +23,10 @@ struct IgtlOptions {
 
 /// An OpenIGTLink server with a thread of its own.
 ///
-/// In: TRANSFORM is where the tool of this device name is to be; the first one takes the tool.
-/// STRING is what it does: "close", "open" or "drop". When a connection ends, its tools are
-/// dropped. Out: POLYDATA, the surface of the body, 30 times a second; SENSOR, force and torque on
+/// In, in versions 1 and 2 of the header: TRANSFORM is where the tool of this device name is to be;
+/// the first one takes the tool. STRING is what it does: "close", "open" or "drop". When a
+/// connection ends, its tools are dropped. What cannot be used is told once for each connection and
+/// cause. Out: POLYDATA, the surface of the body, 30 times a second; SENSOR, force and torque on
 /// each tool, 1000 times a second.
 ///
 /// Lengths in messages are mm, in the frame RAS, which is that of the scenario times 1000. Forces
@@ -44,6 +45,7 @@ class IgtlLink : public Device {
     std::vector<Order> orders(const Session& session) override;
     void look(const Session& session, const DisplayMesh& surface) override;
     void rest() override;
+    std::vector<std::string> complaints() override;
 
   private:
     class Parts;

@@ -20,6 +20,8 @@ class Device {
     virtual void look(const Session& session, const DisplayMesh& surface) = 0;
     /// Is called again and again while nothing moves, as in a pause.
     virtual void rest() = 0;
+    /// Is called now and then. Returns what to tell the user.
+    virtual std::vector<std::string> complaints() = 0;
 };
 
 }  // namespace incise::live

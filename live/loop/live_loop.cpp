@@ -9,6 +9,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/vtk/vtu_writer.h"
+#include "incise/live/loop/tool_json.h"
 #include "incise/runner/frame_builder.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -35,6 +36,7 @@ void refuse_files(const Json& definition) {
 }
 
 constexpr int most_failures = 3;
+constexpr const char* looks_on = "another page holds the tools; take over from it first";
 
 }  // namespace
 
@@ -45,13 +47,19 @@ LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
       pictures_(session),
       pace_(session.tick_length()),
       moments_(session.save()),
-      num_warnings_told_(session.simulation().warnings().size()) {}
+      num_warnings_told_(session.simulation().warnings().size()) {
+    const auto& specs = session.simulation().scenario().tools;
+    for (std::size_t i = 0; i < specs.size(); ++i)
+        if (auto definition = live::json_of(session.world().tool({i}).shape))
+            scripted_tools_.push_back(
+                {{i}, specs[i].name, specs[i].is_obstacle, std::move(*definition)});
+}
 
 void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     bool was_opened = !devices_.empty();
     auto due = Pace::Clock::now();
     while (!is_to_stop()) {
-        for (const Request& request : server_.take_requests()) handle(request);
+        handle_requests(is_to_stop);
         try {
             answer_downloads();
         } catch (const std::exception& error) {
@@ -63,8 +71,9 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
         if (rests || now < due) {
             if (rests) rest(now);
             if (rests && is_changed_) show();
-            server_.wait_for_request(rests ? now + milliseconds(100)
-                                           : std::min(due, now + milliseconds(100)));
+            if (requests_.empty())
+                server_.wait_for_request(rests ? now + milliseconds(100)
+                                               : std::min(due, now + milliseconds(100)));
             continue;
         }
         if (!tick(is_to_stop)) return;
@@ -80,6 +89,20 @@ void LiveLoop::rest(Pace::Clock::time_point now) {
     for (Device* device : devices_) device->rest();
 }
 
+/// Handles what pages want, for a part of a tick at most: the rest waits for the next one.
+/// Meanwhile the server takes no more from pages that flood.
+void LiveLoop::handle_requests(const std::function<bool()>& is_to_stop) {
+    constexpr auto longest = milliseconds(2);
+    const auto begin = Pace::Clock::now();
+    if (requests_.empty())
+        for (Request& request : server_.take_requests()) requests_.push_back(std::move(request));
+    while (!requests_.empty() && Pace::Clock::now() < begin + longest && !is_to_stop()) {
+        const Request request = std::move(requests_.front());
+        requests_.pop_front();
+        handle(request);
+    }
+}
+
 void LiveLoop::handle(const Request& request) {
     is_changed_ = true;
     try {
@@ -92,7 +115,7 @@ void LiveLoop::handle(const Request& request) {
                 downloads_.push_back(request);
                 return;
             case Request::Kind::text:
-                return obey(request.page, parse_object(request.text));
+                return read(request);
         }
     } catch (const std::exception& error) {  // whatever a page wants, the session goes on
         server_.send(request.page, message_text("error", error.what()));
@@ -143,6 +166,14 @@ LiveLoop::Download LiveLoop::download(const std::string& target) const {
             name + ".vtu"};
 }
 
+/// Reads what a page says. Of one that only looks on, no long text is worth the time.
+void LiveLoop::read(const Request& request) {
+    constexpr std::size_t longest_of_watcher = 256;
+    if (request.page != operator_ && request.text.size() > longest_of_watcher)
+        throw InputError(looks_on);
+    obey(request.page, parse_object(request.text));
+}
+
 void LiveLoop::obey(std::uint64_t page, const Json& wish) {
     const std::string what = text_in(wish, "do");
     if (what == "take_over") {
@@ -151,8 +182,7 @@ void LiveLoop::obey(std::uint64_t page, const Json& wish) {
         operator_ = page;
         return say_hello_to_all();
     }
-    if (operator_ != page)
-        throw InputError("another page holds the tools; take over from it first");
+    if (operator_ != page) throw InputError(looks_on);
     if (what == "take") return take(page, wish);
     if (what == "move") return execute(MoveTool{in_hand(page), pose_in(member(wish, "pose"))});
     if (what == "drop") return drop(page);
@@ -328,6 +358,7 @@ void LiveLoop::obey_devices() {
                 last_complaint_ = error.what();
             }
         }
+        for (const std::string& complaint : device->complaints()) tell("warning", complaint);
     }
 }
 
@@ -390,6 +421,7 @@ void LiveLoop::say_hello(std::uint64_t page) {
                   {"recording", session_.simulation().scenario().name + ".jsonl"},
                   {"regions", Json::array()},
                   {"fields", Json::array()},
+                  {"scripted_tools", Json::array()},
                   {"kinds", {"blade", "carver"}}};
     if (session_.has_contact())
         for (const char* kind : {"probe", "grasper", "suture"}) hello["kinds"].push_back(kind);
@@ -397,6 +429,11 @@ void LiveLoop::say_hello(std::uint64_t page) {
         hello["regions"].push_back({{"id", region}, {"name", "region " + std::to_string(region)}});
     for (const ShownField& field : PictureMaker::fields())
         hello["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
+    for (const ScriptedTool& tool : scripted_tools_)
+        hello["scripted_tools"].push_back({{"name", tool.name},
+                                           {"kind", tool.definition["kind"]},
+                                           {"is_obstacle", tool.is_obstacle},
+                                           {"tool", tool.definition}});
     server_.send(page, text_of(hello));
 }
 
@@ -438,7 +475,21 @@ std::string LiveLoop::state() const {
                   {"mass", last.totals.mass},
                   {"field", pictures_.field()},
                   {"can_undo", moments_.has_stroke()},
-                  {"tools", Json::array()}};
+                  {"tools", Json::array()},
+                  {"scripted", Json::array()}};
+    for (const ScriptedTool& tool : scripted_tools_) {
+        Json entry = {{"present", world.is_tool_present(tool.id)}};
+        if (world.is_tool_present(tool.id)) {
+            Json pose;
+            add_pose(pose, world.tool_pose(tool.id));
+            entry["pose"] = std::move(pose);
+            const auto& tools = world.report().tools;
+            const auto found = std::ranges::find_if(
+                tools, [&](const sim::ToolState& row) { return row.tool.index == tool.id.index; });
+            if (found != tools.end()) entry["force"] = json_of(found->force);
+        }
+        state["scripted"].push_back(std::move(entry));
+    }
     for (const LedTool& tool : session_.tools()) {
         const bool is_suture = tool.kind == "suture";
         const bool is_tied = is_suture && world.is_suture_tied(tool.id);

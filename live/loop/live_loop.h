@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -49,11 +50,13 @@ class LiveLoop {
     };
 
     void rest(Pace::Clock::time_point now);
+    void handle_requests(const std::function<bool()>& is_to_stop);
     void handle(const Request& request);
     void open(std::uint64_t page);
     void close(std::uint64_t page);
     void answer_downloads();
     Download download(const std::string& target) const;
+    void read(const Request& request);
     void obey(std::uint64_t page, const Json& wish);
 
     void take(std::uint64_t page, const Json& wish);
@@ -82,6 +85,14 @@ class LiveLoop {
     void count_cut_area();
     std::string state() const;
 
+    /// A tool of the scenario that pages draw.
+    struct ScriptedTool {
+        sim::ToolId id;
+        std::string name;
+        bool is_obstacle;
+        Json definition;
+    };
+
     Session& session_;
     Recorder& recorder_;
     Server& server_;
@@ -89,8 +100,10 @@ class LiveLoop {
     Pace pace_;
     Moments moments_;
     Pace::Clock::time_point next_moment_ = {}, next_download_ = {};
+    std::deque<Request> requests_;    // not handled yet
     std::vector<Request> downloads_;  // that wait
     std::vector<Device*> devices_;
+    std::vector<ScriptedTool> scripted_tools_;
     std::string last_complaint_;                  // about orders of devices
     std::vector<std::uint64_t> pages_;            // in the order of opening
     std::uint64_t operator_ = 0;                  // 0: none

@@ -108,6 +108,7 @@ class Server::Parts {
 
     void listen();
     void accept();
+    bool close_a_stranger();
     void stop();
     std::string root() const;
     void note(Request request) {
@@ -138,7 +139,7 @@ class Server::Parts {
     std::map<std::uint64_t, std::shared_ptr<Page>> pages;
     std::map<std::uint64_t, std::shared_ptr<Connection>> downloads;
     std::uint64_t last_number = 0;
-    std::size_t num_connections = 0;
+    std::map<std::uint64_t, Connection*> connections;  // by their age; those of pages are none
     std::shared_ptr<const Picture> picture;
     std::string greeting;
 
@@ -257,16 +258,21 @@ class Server::Parts::Page : public std::enable_shared_from_this<Page> {
 /// A connection that asks for a file, or to become that of a page.
 class Server::Parts::Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(tcp::socket socket, Parts& parts) : socket_(std::move(socket)), parts_(parts) {
-        ++parts_.num_connections;
+    Connection(tcp::socket socket, Parts& parts)
+        : socket_(std::move(socket)), parts_(parts), number_(++parts.last_number) {
+        parts_.connections[number_] = this;
     }
-    ~Connection() { --parts_.num_connections; }
+    ~Connection() { parts_.connections.erase(number_); }
+
+    /// True if it is of somebody who has shown the token.
+    bool is_known() const { return is_known_; }
+    void close() { socket_.close(); }
 
     void read() {
         parser_.emplace();
         parser_->header_limit(8 * 1024);
         parser_->body_limit(0);
-        socket_.expires_after(seconds(30));
+        socket_.expires_after(seconds(10));
         http::async_read(
             socket_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
                 if (!error) return self->answer();
@@ -315,6 +321,7 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
             return refuse(http::status::misdirected_request, "this host is not served here");
         const Target target(view(request.target()));
         const bool knows_token = is_equal_in_constant_time(target.token, parts_.token);
+        is_known_ = is_known_ || knows_token;
         if (websocket::is_upgrade(request)) {
             const std::string_view origin = view(request[http::field::origin]);
             if (target.path != "/ws") return refuse(http::status::not_found, "not found");
@@ -353,6 +360,8 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
 
     beast::tcp_stream socket_;
     Parts& parts_;
+    std::uint64_t number_;
+    bool is_known_ = false;
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     HttpResponse response_;
@@ -370,6 +379,8 @@ void Server::Parts::listen() {
     if (!error) acceptor->set_option(asio::socket_base::reuse_address(true), error);
     if (!error) acceptor->bind(endpoint, error);
     if (!error) acceptor->listen(asio::socket_base::max_listen_connections, error);
+    if (error == boost::system::errc::address_not_available)
+        throw InputError("--host " + options.host + ": is no address of this machine");
     if (error)
         throw OutputError(place + ": cannot be listened on: " + error.message() +
                           "; choose another port with --port, or any free one with --port 0");
@@ -381,7 +392,7 @@ void Server::Parts::accept() {
     acceptor->async_accept([this](error_code error, tcp::socket socket) {
         if (error == asio::error::operation_aborted) return;
         constexpr std::size_t most_connections = 64;
-        if (!error && num_connections < most_connections)
+        if (!error && (connections.size() < most_connections || close_a_stranger()))
             std::make_shared<Connection>(std::move(socket), *this)->read();
         if (!error) return accept();
         // As without a free file descriptor: the next try would fail as well.
@@ -390,6 +401,16 @@ void Server::Parts::accept() {
             if (!ended) accept();
         });
     });
+}
+
+/// Closes the oldest connection of those that have shown no token: without one, nobody can keep
+/// others out. Returns false if there is none.
+bool Server::Parts::close_a_stranger() {
+    const auto oldest =
+        std::ranges::find_if(connections, [](const auto& one) { return !one.second->is_known(); });
+    if (oldest == connections.end()) return false;
+    oldest->second->close();
+    return true;
 }
 
 void Server::Parts::stop() {

@@ -32,14 +32,24 @@ def crc64(data: bytes) -> int:
     return crc
 
 
-def message(kind: str, device: str, body: bytes) -> bytes:
-    head = HEADER.pack(1, kind.encode(), device.encode(), 0, len(body), crc64(body))
+def message(kind: str, device: str, body: bytes, version: int = 1) -> bytes:
+    head = HEADER.pack(version, kind.encode(), device.encode(), 0, len(body), crc64(body))
     return head + body
 
 
+def newer(kind: str, device: str, content: bytes, metadata: bytes = b"") -> bytes:
+    """A message of version 2 of the header, as 3D Slicer sends them."""
+    index = struct.pack(">H", 1) + struct.pack(">HHI", 3, 3, len(metadata)) if metadata else b""
+    extended = struct.pack(">HHII", 12, len(index), len(metadata), 0)
+    return message(kind, device, extended + content + index + metadata, version=2)
+
+
+def matrix(at_mm, columns=((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> bytes:
+    return struct.pack(">12f", *[x for column in columns for x in column], *at_mm)
+
+
 def transform(device: str, at_mm, columns=((1, 0, 0), (0, 1, 0), (0, 0, 1))) -> bytes:
-    numbers = [x for column in columns for x in column] + list(at_mm)
-    return message("TRANSFORM", device, struct.pack(">12f", *numbers))
+    return message("TRANSFORM", device, matrix(at_mm, columns))
 
 
 def text(device: str, what: str) -> bytes:
@@ -179,6 +189,37 @@ class Link(unittest.TestCase):
             if '"withdraw":"jaws"' in self.recording.read_text():
                 return
         self.fail("the jaws are still there")
+
+    def test_messages_of_3d_slicer_lead_tools(self):
+        client = self.client()
+        # It says its version first, and adds metadata to each transform.
+        client.send(newer("STATUS", "Slicer", struct.pack(">Hq20s", 1, 0, b"") + b"fine\0"))
+        client.send(newer("TRANSFORM", "knife", matrix((50.0, -60.0, 50.0)), b"abcdef"))
+        client.until("SENSOR", "knife")
+        client.send(newer("STRING", "knife", struct.pack(">HH", 3, 4) + b"drop"))
+        client.send(newer("TRANSFORM", "jaws", matrix((20.0, 20.0, 90.0))))
+        client.until("SENSOR", "jaws")
+        time.sleep(0.2)
+        self.stop()
+        recorded = self.recording.read_text()
+        self.assertIn('"add":"knife"', recorded)
+        self.assertIn('"withdraw":"knife"', recorded)
+
+    def test_what_cannot_be_used_is_told_once(self):
+        client = self.client()
+        for _ in range(20):
+            client.send(transform("nosuch", (0, 0, 0)))
+            client.send(transform("knife", (0, 0, 0), ((2, 0, 0), (0, 2, 0), (0, 0, 2))))
+            client.send(text("knife", "frobnicate"))
+            client.send(message("TRANSFORM", "jaws", matrix((0, 0, 0)), version=9))
+        client.send(transform("knife", (0.0, 0.0, 500.0)))
+        client.until("SENSOR", "knife")
+        time.sleep(0.2)
+        self.program.send_signal(signal.SIGINT)
+        _, told = self.program.communicate(timeout=PATIENCE)
+        for cause in ("no --tool has this name, but 'jaws' 'knife'", "is scaled",
+                      "neither close, open nor drop", "unknown version of the protocol"):
+            self.assertEqual(told.count(cause), 1, told)
 
     def test_rubbish_harms_nobody(self):
         good = self.client()

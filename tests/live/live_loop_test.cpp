@@ -33,6 +33,7 @@ class Hand : public Device {
         EXPECT_FALSE(surface.triangles().empty());
     }
     void rest() override {}
+    std::vector<std::string> complaints() override { return {}; }
 };
 
 class LiveLoopTest : public testing::Test {

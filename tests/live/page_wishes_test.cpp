@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "incise/live/loop/live_loop.h"
+#include "incise/live/loop/tool_json.h"
 #include "tests/live/soft_block.h"
 #include "tests/live/web_client.h"
 
@@ -145,6 +146,65 @@ TEST_F(PageWishes, AThreadIsSewnTightenedAndUntied) {
         page.say(R"({"do":"tighten","factor":0.5,"name":"nothing"})");
         EXPECT_THAT(page.wait_for(is_error)["text"], HasSubstr("no tool 'nothing'"));
     });
+}
+
+TEST_F(PageWishes, NestedTextsAreRefused) {
+    run([&] {
+        WebPage page(server.address());
+        page.wait_for("hello");
+        const std::string deep = std::string(30000, '[') + std::string(30000, ']');
+        page.say(R"({"do":"take","tool":{"kind":"blade","edge":)" + deep +
+                 R"(},"pose":{"at":[0,0,0]}})");
+        EXPECT_THAT(page.wait_for(is_error)["text"], HasSubstr("nested too deeply"));
+        page.say("{\"do\":" + deep);
+        page.wait_for(is_error);
+    });
+}
+
+TEST_F(PageWishes, LongTextsOfThoseThatLookOnAreNotRead) {
+    run([&] {
+        WebPage first(server.address());
+        first.wait_for("hello");
+        WebPage second(server.address());
+        second.wait_for("hello");
+        second.say(std::string(60000, '['));
+        EXPECT_THAT(second.wait_for(is_error)["text"], HasSubstr("take over from it first"));
+        first.say(std::string(60000, '['));
+        EXPECT_THAT(first.wait_for(is_error)["text"], HasSubstr("nested too deeply"));
+    });
+}
+
+TEST_F(PageWishes, ToolsOfTheScenarioAreShown) {
+    run([&] {
+        WebPage page(server.address());
+        const Json hello = page.wait_for("hello");
+        ASSERT_EQ(hello["scripted_tools"].size(), 1u);
+        EXPECT_EQ(hello["scripted_tools"][0]["kind"], "carver");
+        EXPECT_EQ(hello["scripted_tools"][0]["is_obstacle"], false);
+        EXPECT_EQ(hello["scripted_tools"][0]["tool"]["shape"]["sphere"]["radius"], 0.02);
+        const Json state =
+            page.wait_for([](const Json& m) { return is_state(m) && m["scripted"][0]["present"]; });
+        EXPECT_NEAR(state["time"], 0.02, 0.01);
+        EXPECT_NEAR(state["scripted"][0]["pose"]["at"][2], 0.08, 0.01);
+    });
+}
+
+TEST(ToolJson, HasAllShapesThatAPageDraws) {
+    using cutting::ToolShape;
+    const auto text = [](const ToolShape& shape) { return text_of(json_of(shape).value()); };
+    EXPECT_EQ(text(cutting::Blade{.edge = {Vec3(0, 0, 1), Vec3(0, 0, 2)}}),
+              R"({"edge":[[0.0,0.0,1.0],[0.0,0.0,2.0]],"kind":"blade"})");
+    EXPECT_EQ(text(cutting::Grasper{cutting::Cuboid{Vec3(1, 2, 3)}}),
+              R"({"kind":"grasper","shape":{"box":{"size":[1.0,2.0,3.0]}}})");
+    EXPECT_EQ(
+        text(cutting::Probe{cutting::HalfSpace{}}),
+        R"({"kind":"probe","shape":{"plane":{"normal":[0.0,0.0,1.0],"point":[0.0,0.0,0.0]}}})");
+    const cutting::Solid solid{{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}}};
+    EXPECT_EQ(text(cutting::Probe{solid}),
+              R"({"kind":"probe","shape":{"mesh":{"points":[[0.0,0.0,0.0],[1.0,0.0,0.0],)"
+              R"([0.0,1.0,0.0]],"triangles":[[0,1,2]]}}})");
+    EXPECT_EQ(json_of(ToolShape(cutting::PlaneCut{})), std::nullopt);
+    EXPECT_EQ(json_of(ToolShape(cutting::Suture{})), std::nullopt);
 }
 
 TEST_F(PageWishes, ManyDownloadsAtOnceAreOneFile) {

@@ -181,10 +181,33 @@ TEST_F(RecordedStroke, IsRefusedWithFileLineAndProblem) {
     const std::string header = text.substr(0, text.find('\n') + 1);
     EXPECT_THAT(refusal_of(header + "{\"tick\":3}\n"), HasSubstr("lines are missing"));
     EXPECT_THAT(refusal_of(header + "{\"back_to\":3}\n"), HasSubstr("yet to come"));
-    EXPECT_THAT(refusal_of(header + "{\"tick\":0}\n"), HasSubstr("'state': is missing"));
+    const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+    EXPECT_THAT(refusal_of("{\"incise_recording\":" + deep + "}\n"),
+                HasSubstr("nested too deeply"));
+    EXPECT_THAT(refusal_of(header + "{\"tick\":0,\"orders\":" + deep + "}\n"),
+                HasSubstr("nested too deeply"));
     EXPECT_THAT(refusal_of(header + "{\"tick\":0,\"orders\":[{\"fly\":1}],\"state\":\"0\"}\n"),
                 HasSubstr(":2: this is no order"));
     EXPECT_THAT(refusal_of(header + "{\"tick\":0,\"state\":\"what\"}\n"), HasSubstr("no checksum"));
+}
+
+TEST_F(RecordedStroke, MayBeWrittenByHandWithoutChecksums) {
+    const std::string header = text.substr(0, text.find('\n') + 1);
+    const Recording recording = read(header + "{\"tick\":0}\n{\"tick\":1}\n");
+    EXPECT_EQ(recording.num_ticks, 2u);
+    EXPECT_TRUE(recording.checksums.empty());
+}
+
+TEST_F(RecordedStroke, OfAnotherScenarioIsRefusedByItsName) {
+    scenario::Scenario other = folder.scenario();
+    other.name = "slab";
+    other.hash = "0123456789abcdef";
+    try {
+        Replay(other, read(text), false);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "the recording is of block, and this is slab");
+    }
 }
 
 TEST_F(RecordedStroke, OfNothingIsRefusedInWords) {

@@ -249,6 +249,17 @@ TEST_F(ServerTest, RefusesMorePagesThanItServes) {
     EXPECT_THAT(further.read(is_head_complete), StartsWith("HTTP/1.1 503"));
 }
 
+TEST_F(ServerTest, LetsNobodyKeepOthersOutWithoutTheToken) {
+    const auto own = page();
+    std::vector<std::unique_ptr<Client>> idle;
+    for (int i = 0; i < 100; ++i) idle.push_back(std::make_unique<Client>(server.port()));
+    EXPECT_THAT(get("/?token=" + token), HasSubstr("the page"));
+    own->send(frame("still here"));
+    const auto all = requests(2);
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[1].text, "still here");
+}
+
 TEST_F(ServerTest, EndsWhilePagesAreOpen) {
     auto other = std::make_unique<Server>(ServerOptions{.port = 0});
     Client idle(other->port());

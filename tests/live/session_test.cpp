@@ -256,5 +256,15 @@ TEST(OrderText, SaysWhatIsWrong) {
                 HasSubstr("nested too deeply"));
 }
 
+TEST(Session, HasNoEndHoweverShortItsStepsAre) {
+    std::string stiff = soft_block;
+    const auto at = stiff.find("young = ");
+    stiff.replace(at, stiff.find('\n', at) - at, "young = 1e10");
+    Session session(BlockFolder(stiff).scenario(), 1e-4);
+    session.tick();
+    EXPECT_LT(session.simulation().time_step(), 1e-5);
+    EXPECT_DOUBLE_EQ(session.world().time(), 1e-4);
+}
+
 }  // namespace
 }  // namespace incise::live

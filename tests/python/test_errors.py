@@ -70,6 +70,10 @@ class Texts(unittest.TestCase):
         refused("must be above 0", lambda: body.step(0))
         refused("must be above 0", lambda: body.step(float("nan")))
         refused("is above the stable step", lambda: body.step(1.0))
+        refused("for 10 steps write step(n=10)", lambda: body.step(10))
+        refused("numpy.flatnonzero", lambda: body.grasp("h", body.positions[:, 0] > 0), TypeError)
+        refused("a list of texts", lambda: support.world(overrides="dynamics.damping=3"), TypeError)
+        refused("a list of texts", lambda: support.world(overrides={"damping": 3}), TypeError)
         refused("n must be at least 1", lambda: body.step(n=0))
         refused("n must be at least 1", lambda: body.step(n=-3))
         refused("its time is 0 s", lambda: body.run_until(-1))
@@ -104,7 +108,7 @@ class Texts(unittest.TestCase):
         refused("is no suture", knife.tie)
         refused("is no suture", lambda: knife.tighten(1.0))
         refused("is not there to be withdrawn", knife.withdraw)
-        refused("", lambda: setattr(knife, "pose", [0, 0, 0]), TypeError)
+        refused("must be an incise.Pose", lambda: setattr(knife, "pose", [0, 0, 0]), TypeError)
 
     def test_lost_motion_is_told(self) -> None:
         body = support.world(materials=[{"density": 1000, "young": 1e4, "poisson": 0.4,
@@ -123,6 +127,7 @@ class Texts(unittest.TestCase):
         self.assert_refused("no_such_folder",
                             lambda: body.write_vtu("no_such_folder/frame.vtu"), incise.OutputError)
         self.assert_refused("", lambda: body.write_vtu(3), TypeError)
+        self.assert_refused("must end in .vtu", lambda: body.write_vtu("frame.vtk"))
 
     def test_meshes(self) -> None:
         refused = self.assert_refused

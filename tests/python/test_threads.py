@@ -144,6 +144,21 @@ class Threads(unittest.TestCase):
         out, _ = process.communicate(timeout=60)
         self.assertEqual(out, "True True False\n")
 
+    def test_python_ends_while_a_daemon_steps_a_world(self) -> None:
+        for work in ("body.step(n=10**9)", "[body.step(n=3) for _ in iter(int, 1)]",
+                     "[incise.Mesh.box([1, 1, 1], [9, 9, 9]) for _ in iter(int, 1)]"):
+            script = textwrap.dedent(f"""
+                import threading, time
+                import incise, support
+                body = support.world()
+                threading.Thread(target=lambda: {work}, daemon=True).start()
+                time.sleep(0.2)
+            """)
+            for _ in range(3):
+                process = subprocess.run([sys.executable, "-c", script], capture_output=True,
+                                         text=True, timeout=60)
+                self.assertEqual((process.returncode, process.stderr), (0, ""), work)
+
 
 if __name__ == "__main__":
     unittest.main()
