@@ -8,9 +8,12 @@ import json
 import pathlib
 import re
 import shlex
+import subprocess
 import tomllib
 
 STATUS = {0: "finished", 1: "expectation failed", 2: "refused", 3: "failed"}
+# Entries of summary.json about the run itself: the others are quantities of [expect] too.
+OF_THE_RUN = "threads frames wall_time steps_per_second real_time_factor".split()
 KEYS = "program threads scenario results sweep set quantities plots labels".split()
 
 
@@ -59,7 +62,9 @@ class Study:
             if not config.get(key):
                 raise StudyError(f"'{key}' is missing")
         self.program = str(config.get("program", "incise"))
-        self.threads = int(config.get("threads", 1))
+        self.threads = config.get("threads", 1)
+        if not isinstance(self.threads, int) or self.threads < 1:
+            raise StudyError(f"threads: is '{self.threads}', but must be a number from 1")
         self.scenario = pathlib.Path(config["scenario"])
         if not self.scenario.is_file():
             raise StudyError(f"scenario: there is no file '{self.scenario}'")
@@ -110,11 +115,30 @@ class Study:
                 settings[key] = value
         return settings
 
-    def command(self, run):
+    def words(self, run):
         words = [self.program, "run", str(self.scenario), "--out", str(self.folder(run))]
         for key, value in self.settings(run).items():
             words += ["--set", f"{key}={as_toml(value)}"]
-        return shlex.join(words)
+        return words
+
+    def command(self, run):
+        return shlex.join(self.words(run))
+
+    def check(self):
+        """Asks the program whether it is there and knows the quantities, before anything is run."""
+        words = self.words(next(iter(self.runs))) + ["--dry-run", "--force"]
+        for quantity in self.quantities:
+            if quantity not in OF_THE_RUN:
+                words += ["--set", f"expect.{quantity}.max=1e300"]
+        try:
+            told = subprocess.run(words, capture_output=True, text=True).stderr
+        except OSError as error:
+            raise StudyError(f"program: '{self.program}' cannot be run: {error.strerror}") from None
+        for line in told.splitlines():
+            # What else is wrong with this one combination, its own run will say.
+            found = re.search(r"key 'expect\.(\S+)': (is not known.*)", line)
+            if found:
+                raise StudyError(f"quantities: '{found[1]}' {found[2]}")
 
     def inputs(self, run):
         """The scenario, and all files that it names: meshes, surfaces. If one changes, so does the run."""
@@ -211,6 +235,8 @@ class Study:
         unmet = sum(row["status"] == "expectation failed" for row in rows)
         if unmet:
             notes.append(f"hollow: an expectation failed ({unmet})")
+        if not any(as_number(row[y]) is not None for row in rows):
+            axes.set(xticks=[], yticks=[])
         missing = sum(as_number(row[y]) is None for row in rows)
         if missing:
             notes.append(f"not drawn: {missing} of {len(rows)} combinations, which did not finish")

@@ -100,6 +100,20 @@ def check_replacement(command, study, config):
         assert json.loads((run / "summary.json").read_text())["time"] == 0.02
 
 
+def check_mistakes(command, study, config):
+    """A mistake in config.yaml is told before anything is run."""
+    right = {"program": config["program"], "quantities": config["quantities"]}
+    for wrong, cause in (({"quantities": ["max_displacment"]}, "did you mean 'max_displacement'?"),
+                         ({"program": "no_such_program"}, "cannot be run"),
+                         ({"threads": "many"}, "must be a number from 1")):
+        plots = [] if "quantities" in wrong else config["plots"]
+        changed = config | {"results": "other"} | right | wrong | {"plots": plots}
+        (study / "config.yaml").write_text(json.dumps(changed))
+        done = subprocess.run(command, cwd=study, capture_output=True, text=True)
+        assert done.returncode != 0 and cause in done.stderr, done.stderr
+        assert not list(study.glob("other/runs/*/log.txt"))
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     if not shutil.which("snakemake") or not importlib.util.find_spec("matplotlib"):
@@ -111,8 +125,9 @@ def main():
                         ignore=shutil.ignore_patterns("results", ".snakemake", "__pycache__"))
         # JSON is YAML.
         config = CONFIG | {"program": str(program)}
-        (study / "config.yaml").write_text(json.dumps(config))
         command = ["snakemake", "--profile", "profiles/local", "--cores", "1"]
+        check_mistakes(command, study, config)
+        (study / "config.yaml").write_text(json.dumps(config))
         killed = kill_in_the_middle(command, study)
         subprocess.run([*command, "--unlock"], cwd=study, check=True)
         subprocess.run(command, cwd=study, check=True)

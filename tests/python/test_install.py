@@ -33,15 +33,19 @@ class Install(unittest.TestCase):
     def test_pip(self) -> None:
         """The build folder of the tests is used, as the libraries take minutes to build."""
         with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder) / "source", pathlib.Path(folder) / "target"
+            source, target = pathlib.Path(folder) / "source", pathlib.Path(folder) / "env"
             source.mkdir()  # a copy, as setuptools writes beside the sources
             for name in ("setup.py", "pyproject.toml", "CMakeLists.txt"):
                 shutil.copy(support.SOURCES / name, source)
             shutil.copytree(support.SOURCES / "python", source / "python")
-            subprocess.run([sys.executable, "-m", "pip", "install", "--no-build-isolation",
-                            "--no-deps", "--no-index", "--break-system-packages", "--quiet",
-                            "--target", target, source], check=True, cwd=folder)
-            self.use(target)
+            # As docs/python.md says.
+            subprocess.run([sys.executable, "-m", "venv", "--system-site-packages",
+                            "--without-pip", target], check=True)
+            subprocess.run([target / "bin" / "python", "-m", "pip", "install",
+                            "--no-build-isolation", "--no-index", "--quiet", source],
+                           check=True, cwd=folder)
+            (package,) = target.glob("lib/python3*/site-packages")
+            self.use(package)
 
     def test_cmake(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
