@@ -12,10 +12,12 @@ import incise
 
 from . import gym, line, renderer
 from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
+from .target import Target
 
 TIP_TO_HANDLE = 0.03  # m, length of the blade in pictures
 NUM_AHEAD = 5         # points of the line in an observation
 FAR = 0.002           # m from the block at rest: the blade cuts nothing there
+ACCURACY = 0.001      # m: how far a good cut may be from its target
 
 
 class LineEnv(CuttingEnv):
@@ -27,7 +29,8 @@ class LineEnv(CuttingEnv):
     density = 1000.0
     _tool = "blade"
     _option_names: tuple[str, ...] = ("stiffness", "randomize", "line", "start")
-    _num_samples = 41
+    _num_samples = 41  # points of a line
+    _num_levels = 6    # points of the target surface below each point of the line
     _num_actions = 2
     _num_values = 0
 
@@ -49,6 +52,7 @@ class LineEnv(CuttingEnv):
         self._blade: Any = None
         self._tip = [0.0, 0.0, 0.0]
         self._line: Floats = np.zeros((2, 2))
+        self._target = Target(self._line, self.size, self.size[2], 1, ACCURACY)
         self._points: list[list[float]] = []
         self._num_points = 0
         self._num_done = 0
@@ -117,6 +121,9 @@ class LineEnv(CuttingEnv):
         self._blade.place(incise.Pose(self._tip))
         self._next = self._num_done = 0
         self._is_in_tissue = False
+        self._target = Target(self._line, self.size, self._target_depth(), self._num_levels,
+                              ACCURACY)
+        self._mean_distance = self._max_distance = math.inf
         self._gap = self._distance_to_next()
 
     def _distance_to_next(self) -> float:
@@ -199,27 +206,23 @@ class LineEnv(CuttingEnv):
             along, left, z = (min(10.0, max(-10.0, f)) for f in (along, left, z))
         return along, left, z
 
-    def _below(self, z: Floats) -> Floats:
-        """Return how far heights at rest are beyond the target surface, shape (N,), m."""
-        return np.zeros_like(z)
+    def _target_depth(self) -> float:
+        """Return the depth of the target surface below the top, m."""
+        return self.size[2]
 
     def _on_edit(self, report: incise.StepReport) -> None:
-        world = self.world
         edits = report.edits
-        for edit in edits:
-            self._area += edit["cut_area"]
+        area = sum([edit["cut_area"] for edit in edits])
+        if area == 0.0:
+            return  # elements were divided, and no faces opened
+        self._area += area
+        world = self.world
         surface = world.surface
-        cut = surface.triangles[surface.is_cut]
         rest = world.rest_positions
-        if len(cut):
-            corners = rest[cut]
-            middle = corners.mean(axis=1)
-            area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0],
-                                                 corners[:, 2] - corners[:, 0]), axis=1)
-            away = np.hypot(line.distances(middle[:, :2], self._line), self._below(middle[:, 2]))
-            self._mean_distance = float((away * area).sum() / max(area.sum(), 1e-30))
-            self._max_distance = float(away.max())
-        if edits and edits[-1]["after"]["components"] > 1:
+        self._target.measure(rest[surface.triangles[surface.is_cut]])
+        self._mean_distance = self._target.mean_distance
+        self._max_distance = self._target.max_distance
+        if edits[-1]["after"]["components"] > 1:
             self._on_parts(rest)
 
     def _on_parts(self, rest: Floats) -> None:
@@ -235,6 +238,10 @@ class LineEnv(CuttingEnv):
 
     def _weigh(self, middle: Floats, mass: Floats, is_off: npt.NDArray[np.bool_]) -> None:
         self._lost = float(mass[is_off].sum() / mass.sum())
+
+    def _task_info(self) -> dict[str, Any]:
+        return {"coverage": self._target.coverage,
+                "progress": self._num_done / self._num_points}
 
     # --- Pictures
 
