@@ -151,10 +151,14 @@ class CuttingEnv(gym.Env):
               options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode. Return (observation, info).
 
+        After a call that raises, step() and render() raise ResetNeeded.
+
         seed: begins the random numbers anew; None goes on with them.
         options: a dict. stiffness: Young's modulus, Pa.  randomize: False for the same start each
             time. More of them are in the texts of the classes.
         """
+        self._can_step = False
+        self._ready = None
         super().reset(seed=seed)
         given = dict(options or {})
         unknown = sorted(set(given) - set(self._option_names))
@@ -170,29 +174,36 @@ class CuttingEnv(gym.Env):
         young = float(given.get("stiffness", self.young * self.stiffness_range ** share))
         if not (math.isfinite(young) and young > 0):
             raise ValueError(f"stiffness is {young}: it must be above 0, Pa")
-        self._ready = self._world_of(young)
-        world = self._ready.world
-        world.restore(self._ready.state)
+        ready = self._world_of(young)
+        world = ready.world
+        world.restore(ready.state)
         self._start = world.time
         self._num_steps = 0
         self._version = world.topology_version
         self._area = self._lost = self._mean_distance = self._max_distance = 0.0
         self._largest_force, self._force = 0.0, NO_FORCE
         self._is_unstable = self._is_success = False
+        self._ready = ready
+        try:
+            self._begin(given, is_random)
+            result = self._observation(), self._info()
+        except BaseException:
+            self._ready = None
+            raise
         self._can_step = True
-        self._begin(given, is_random)
-        return self._observation(), self._info()
+        return result
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act. Return (observation, reward, terminated, truncated, info).
 
-        Raises ResetNeeded before reset() and after the end of an episode.
+        Raises ResetNeeded before reset() and after the end of an episode. An action that is
+        refused, with a ValueError, changes nothing.
         """
         if not self._can_step or self._ready is None:
             raise gym.ResetNeeded("call reset() before step(), and after the end of an episode")
         world = self._ready.world
-        self._num_steps += 1
         action = self._checked(action)
+        self._num_steps += 1
         for i in range(self.frame_skip):
             self._move(action)
             at = (self._num_steps - 1) * self.frame_skip + i + 1

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 from __future__ import annotations
 
+import copy
 import inspect
 import math
 from collections.abc import Callable, Sequence
@@ -39,7 +40,8 @@ def _check_space(space: Any, name: str) -> None:
         _require(same(first, space.sample()), f"{name}: the same seed gives another sample")
         _require(space.contains(first), f"{name} does not contain its sample {first!r}")
     _require(not space.contains("no value"), f"{name} contains a text")
-    _require(space == space, f"{name} is not equal to itself")
+    _require(space == copy.deepcopy(space), f"{name} is not equal to its copy")
+    _require(space != gym.Discrete(12345), f"{name} is equal to another space")
 
 
 def _check_observation(env: Any, observation: Any, where: str) -> None:
@@ -71,6 +73,40 @@ def roll(env: Any, seed: int, num_steps: int) -> list[Any]:
     return said
 
 
+def _check_needs_reset(env: Any, when: str) -> None:
+    try:
+        env.step(env.action_space.sample())
+    except gym.ResetNeeded:
+        return
+    except Exception as error:
+        raise AssertionError(f"step() {when} raises {type(error).__name__}, and not "
+                             "ResetNeeded") from error
+    raise AssertionError(f"step() {when} raises nothing")
+
+
+def _is_refused(call: Callable[[], Any]) -> bool:
+    try:
+        call()
+    except Exception:
+        return True
+    return False
+
+
+def _check_refusals(env: Any, other: Any, seed: int) -> None:
+    """Check that what an environment refuses leaves no trace."""
+    for each in (env, other):
+        each.action_space.seed(seed)
+        each.reset(seed=seed)
+    if _is_refused(lambda: env.step("no action")):
+        for _ in range(2):
+            action = env.action_space.sample()
+            _require(same(env.step(action), other.step(action)),
+                     "after an action that was refused, a step gives other values")
+    # An environment may take any options. If it refuses them, there is no episode.
+    if _is_refused(lambda: env.reset(options={"no such option": None})):
+        _check_needs_reset(env, "after a reset() that was refused")
+
+
 def check_env(make: Callable[..., Any], *, seeds: Sequence[int] = range(3),
               num_steps: int = 30) -> None:
     """Check that an environment keeps Gymnasium's contract. Raises AssertionError if not.
@@ -92,12 +128,7 @@ def check_env(make: Callable[..., Any], *, seeds: Sequence[int] = range(3),
     for name in ("seed", "options"):
         _require(name in parameters and parameters[name].kind is inspect.Parameter.KEYWORD_ONLY
                  and parameters[name].default is None, f"reset() lacks the keyword {name}=None")
-    try:
-        env.step(env.action_space.sample())
-    except Exception:  # gymnasium's ResetNeeded is another class than ours
-        pass
-    else:
-        raise AssertionError("step() before reset() raises nothing")
+    _check_needs_reset(env, "before reset()")
 
     result = env.reset(seed=seeds[0], options={})
     _require(isinstance(result, tuple) and len(result) == 2, "reset() returns no pair")
@@ -108,7 +139,7 @@ def check_env(make: Callable[..., Any], *, seeds: Sequence[int] = range(3),
     keys = list(result[1])
     _check_observation(env, result[0], "reset()")
     _check_info(result[1], keys, "reset()")
-    kept, copy = result[0], result[0].copy()
+    kept, before = result[0], result[0].copy()
     for seed in seeds:
         env.action_space.seed(seed)
         observation, info = env.reset(seed=seed)
@@ -126,13 +157,14 @@ def check_env(make: Callable[..., Any], *, seeds: Sequence[int] = range(3),
             _check_info(info, keys, where)
             if terminated or truncated:
                 break
-    _require(same(kept, copy), "a step changed an observation that was returned before")
+    _require(same(kept, before), "a step changed an observation that was returned before")
     other = make()
     for seed in seeds:
         _require(same(roll(env, seed, num_steps), roll(other, seed, num_steps)),
                  f"seed {seed} gives other values in another environment")
     _require(not same(roll(env, seeds[0], 3), roll(env, seeds[0] + 1, 3)),
              "two seeds give the same episode")
+    _check_refusals(env, other, seeds[0])
     other.close()
     env.close()
     env.close()
