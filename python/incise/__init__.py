@@ -12,8 +12,12 @@ from dicts with the same keys, stepped, and looked at as arrays of numpy:
 (24, 3)
 
 All values are in SI units. docs/python.md of the sources is the guide.
+
+incise.envs has environments for robot learning. It is imported when it is first used.
 """
 # SPDX-License-Identifier: LGPL-3.0-or-later
+from typing import TYPE_CHECKING
+
 from ._incise import (
     Constraint,
     CutResult,
@@ -33,6 +37,19 @@ from ._incise import (
     cut,
     read_mesh,
 )
+
+
+if TYPE_CHECKING:
+    from . import envs as envs
+else:
+    def __getattr__(name):
+        if name == "envs":
+            import importlib
+            return importlib.import_module(".envs", __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def __dir__():
+        return sorted({*globals(), "envs"})
 
 
 class InciseWarning(UserWarning):
