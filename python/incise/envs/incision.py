@@ -57,8 +57,10 @@ class LineEnv(CuttingEnv):
         self._num_points = 0
         self._num_done = 0
         self._next = 0
-        x, y = self.size[0], self.size[1]
-        self._limits = (-0.1 * x, -0.2 * y, 1.1 * x, 1.1 * y)  # of the tip: low x, y, high x, y
+        x, y, z = self.size
+        # Where the tip may be, x, y and z, m.
+        self._low = [-0.1 * x, -0.2 * y, 0.1 * z]
+        self._high = [1.1 * x, 1.1 * y, z + 0.01]
         self._gap = 0.0
         self._is_in_tissue = False
         self.action_space = gym.Box(-1.0, 1.0, (self._num_actions,), np.float32)
@@ -104,17 +106,20 @@ class LineEnv(CuttingEnv):
         self._line = self._random_line(self.np_random, is_random)
         if options.get("line") is not None:
             self._line = line.resampled(options["line"], self._num_samples)
+            self._require_reach(self._line, "line")
         points = self._line.tolist()
         self._num_points = len(points)
         # The last point again, for what looks ahead of it.
         self._points = points + [points[-1]] * (2 * NUM_AHEAD)
-        *self._tip, angle = self._random_start(self.np_random, is_random)
+        *tip, angle = self._random_start(self.np_random, is_random)
+        self._tip = self._kept(*tip)
         (x0, y0), (x1, y1) = points[0], points[1]
         self._heading = math.atan2(y1 - y0, x1 - x0) + angle
         if options.get("start") is not None:
             start = np.asarray(options["start"], float)
             if start.shape != (4,) or not np.isfinite(start).all():
                 raise ValueError("start is x, y and z of the tip, m, and the heading, rad")
+            self._require_reach(start[None, :3], "start")
             *self._tip, self._heading = start.tolist()
         self._cos, self._sin = math.cos(self._heading), math.sin(self._heading)
         self._blade = self._ready.extra["blade"]
@@ -125,6 +130,19 @@ class LineEnv(CuttingEnv):
                               ACCURACY)
         self._mean_distance = self._max_distance = math.inf
         self._gap = self._distance_to_next()
+
+    def _require_reach(self, points: Floats, name: str) -> None:
+        """Raise ValueError if the tip cannot go to points, (x, y) or (x, y, z) each, m."""
+        num = points.shape[1]
+        low, high = self._low[:num], self._high[:num]
+        if not ((points >= low) & (points <= high)).all():
+            raise ValueError(f"{name} is beyond where the blade can go: from {low} to {high} m")
+
+    def _kept(self, x: float, y: float, z: float) -> list[float]:
+        """Return the nearest place to which the tip can go, m."""
+        (x0, y0, z0), (x1, y1, z1) = self._low, self._high
+        return [x0 if x < x0 else x1 if x > x1 else x, y0 if y < y0 else y1 if y > y1 else y,
+                z0 if z < z0 else z1 if z > z1 else z]
 
     def _distance_to_next(self) -> float:
         """Return the distance to the next point of the line, m."""
@@ -137,16 +155,9 @@ class LineEnv(CuttingEnv):
         self._heading += self._turn * action[1]
         self._cos, self._sin = math.cos(self._heading), math.sin(self._heading)
         stride = 0.5 * self._stride * (action[0] + 1.0)
-        x += stride * self._cos
-        y += stride * self._sin
-        low_x, low_y, high_x, high_y = self._limits
-        x = low_x if x < low_x else high_x if x > high_x else x
-        y = low_y if y < low_y else high_y if y > high_y else y
         if len(action) > 2:
             z += self._stride * action[2]
-            top, bottom = size[2] + 0.01, 0.1 * size[2]
-            z = bottom if z < bottom else top if z > top else z
-        self._tip = [x, y, z]
+        self._tip = x, y, z = self._kept(x + stride * self._cos, y + stride * self._sin, z)
         pose = incise.Pose(self._tip)
         # Far from the tissue the blade sweeps nothing, which spares the world to keep its way.
         if (x < -FAR or y < -FAR or x > size[0] + FAR or y > size[1] + FAR

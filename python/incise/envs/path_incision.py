@@ -53,7 +53,8 @@ class PathIncisionEnv(LineEnv):
         asked for. A cut ends at faces of elements: choose layers of elements (cells along z) that
         are thin against the depth, or these figures are coarse.
     options of reset(): line, points (N, 2) on the top, m; start, x, y and z of the
-        tip, m, and the heading, rad; depth, m.
+        tip, m, and the heading, rad; depth, m. Lines and starts that are farther from the block
+        than the tip can go are refused.
     """
 
     _num_actions = 3
@@ -100,8 +101,8 @@ class PathIncisionEnv(LineEnv):
         return [[0.0, 0.0, 0.0], [0.0, 0.0, 3.0 * self.size[2]]]
 
     def _random_line(self, random: np.random.Generator, is_random: bool) -> Floats:
-        drawn = random.uniform(-1.0, 1.0, 3) if is_random else np.array([0.7, 0.0, 0.0])
-        bend, shift, slope = drawn.tolist()
+        drawn = random.uniform(-1.0, 1.0, 3)
+        bend, shift, slope = drawn.tolist() if is_random else (0.7, 0.0, 0.0)
         x, y = self.size[0], self.size[1]
         s = np.linspace(0.0, 1.0, 81)
         across = y * (0.5 + 0.12 * shift + 0.12 * slope * (s - 0.5)
@@ -109,7 +110,7 @@ class PathIncisionEnv(LineEnv):
         return line.resampled(np.column_stack([x * (0.15 + 0.7 * s), across]), self._num_samples)
 
     def _random_start(self, random: np.random.Generator, is_random: bool) -> list[float]:
-        dx, dy, dz, angle = (random.uniform(-1.0, 1.0, 4) if is_random else np.zeros(4)).tolist()
+        dx, dy, dz, angle = (random.uniform(-1.0, 1.0, 4) * is_random).tolist()
         first = self._points[0]
         return [first[0] + 0.003 * (dx - 2.0), first[1] + 0.003 * dy,
                 self.size[2] + 0.001 * (dz + 2.0), 0.5 * angle]

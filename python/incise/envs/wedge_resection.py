@@ -43,7 +43,8 @@ class WedgeResectionEnv(LineEnv):
     metrics: coverage, the share of the target surface, which is upright below the line, that has a
         cut within 1 mm; mean_distance and max_distance are infinite while there is no cut.
     options of reset(): line, points (N, 2), m, from front to front; start, x, y
-        and z of the blade, m, and the heading, rad.
+        and z of the blade, m, and the heading, rad. Lines and starts that are farther from the slab
+        than the blade can go are refused.
     """
 
     _num_actions = 2
@@ -80,8 +81,9 @@ class WedgeResectionEnv(LineEnv):
         self.width, self.depth, self.curvature = float(width), float(depth), float(curvature)
         self._removed = 0.0
         self._target_area = 1.0
-        # The blade stays in front of the part that is held.
-        self._limits = (*self._limits[:3], 0.95 * self.size[1])
+        # The blade stays in front of the part that is held, and its edge goes right through.
+        self._high[1] = 0.95 * self.size[1]
+        self._low[2], self._high[2] = -self.size[2], 0.5 * self.size[2]
 
     def _constraints(self) -> list[dict[str, Any]]:
         x, y, z = self.size
@@ -93,8 +95,8 @@ class WedgeResectionEnv(LineEnv):
         return [[0.0, 0.0, -0.5 * z], [0.0, 0.0, 2.0 * z]]
 
     def _random_line(self, random: np.random.Generator, is_random: bool) -> Floats:
-        drawn = random.uniform(-1.0, 1.0, 4) if is_random else np.array([0.0, 0.0, 1.0, 0.0])
-        shift, lean, bend, grow = drawn.tolist()
+        drawn = random.uniform(-1.0, 1.0, 4)
+        shift, lean, bend, grow = drawn.tolist() if is_random else (0.0, 0.0, 1.0, 0.0)
         x = self.size[0] * (0.5 + 0.08 * shift)
         width, depth = self.width * (1 + 0.1 * grow), self.depth * (1 + 0.1 * grow)
         apex = np.array([x + 0.15 * width * lean, depth])
@@ -111,7 +113,7 @@ class WedgeResectionEnv(LineEnv):
         return line.resampled(np.concatenate([sides[0], sides[1][-2::-1]]), self._num_samples)
 
     def _random_start(self, random: np.random.Generator, is_random: bool) -> list[float]:
-        dx, dy, angle = (random.uniform(-1.0, 1.0, 3) if is_random else np.zeros(3)).tolist()
+        dx, dy, angle = (random.uniform(-1.0, 1.0, 3) * is_random).tolist()
         first = self._points[0]
         return [first[0] + 0.003 * dx, first[1] - 0.003 * (dy + 1.5), 0.0, 0.5 * angle]
 
