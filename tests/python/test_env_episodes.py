@@ -1,11 +1,14 @@
 """Episodes of the environments: what is refused, what fails, and what is drawn."""
 # SPDX-License-Identifier: LGPL-3.0-or-later
 import math
+import subprocess
+import sys
 import unittest
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
+import incise
 from incise import envs
 from incise.envs.check import same
 from test_envs import ALL
@@ -48,6 +51,179 @@ class Refusals(unittest.TestCase):
                         env.render()
                     env.reset(seed=0)
                     env.step(env.action_space.sample())
+
+
+class FailingWorld:
+    """A world of which a step raises an error, or leaves a short stable step."""
+
+    def __init__(self, world: incise.World, error: Optional[Exception] = None,
+                 stable_step: Optional[float] = None) -> None:
+        self._world, self._error, self._stable_step = world, error, stable_step
+
+    def run_until(self, time: float) -> incise.StepReport:
+        if self._error is not None:
+            raise self._error
+        return self._world.run_until(time)
+
+    @property
+    def stable_step(self) -> float:
+        return self._world.stable_step if self._stable_step is None else self._stable_step
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._world, name)
+
+
+class Failures(unittest.TestCase):
+    def check_end(self, env: Any, text: str) -> None:
+        observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        self.assertIn(observation, env.observation_space)
+        self.assertLess(reward, 0.0)
+        self.assertEqual((terminated, truncated), (True, False))
+        self.assertTrue(info["is_unstable"])
+        self.assertFalse(info["success"])
+        self.assertIn(text, info["error"])
+        with self.assertRaises(envs.ResetNeeded):
+            env.step(env.action_space.sample())
+
+    def test_errors_of_a_step_end_the_episode(self) -> None:
+        for kind in ALL:
+            for error in (incise.InputError("tool 'blade' meets a hexahedron"),
+                          incise.PhysicsError("the motion is lost")):
+                with self.subTest(kind=kind.__name__, error=error):
+                    env = kind()
+                    info = env.reset(seed=0)[1]
+                    self.assertEqual((info["error"], info["is_unstable"]), ("", False))
+                    ready, sound = env._ready, env._ready.world
+                    ready.world = FailingWorld(sound, error=error)
+                    self.check_end(env, str(error))
+                    ready.world = sound
+                    self.assertTrue(same(env.reset(seed=0), kind().reset(seed=0)))
+                    env.step(env.action_space.sample())
+
+    def test_short_steps_end_the_episode(self) -> None:
+        for kind in ALL:
+            with self.subTest(kind=kind.__name__):
+                env = kind()
+                env.reset(seed=0)
+                env._ready.world = FailingWorld(env._ready.world, stable_step=2e-5)
+                self.assertEqual(env.step(env.action_space.sample())[4]["error"], "")
+                env._ready.world = FailingWorld(env._ready.world, stable_step=0.9e-5)
+                self.check_end(env, "strained")
+
+    def test_short_steps_at_rest_are_allowed(self) -> None:
+        env = envs.PathIncisionEnv(cells=(2, 1, 2), young=1e8, time_step=0.05)
+        env.reset(seed=0)
+        self.assertLess(env.world.stable_step, 1e-3 * env.time_step)
+        self.assertFalse(env.step(np.zeros(3, np.float32))[4]["is_unstable"])
+
+    def test_other_errors_are_not_hidden(self) -> None:
+        env = envs.PathIncisionEnv()
+        env.reset(seed=0)
+        env._ready.world = FailingWorld(env._ready.world, error=incise.Error("another thread"))
+        with self.assertRaises(incise.Error):
+            env.step(env.action_space.sample())
+
+    def test_a_force_that_crushes_the_flap_is_refused(self) -> None:
+        env = envs.DissectionEnv(retraction_force=3.0, cells=(2, 10, 1))
+        with self.assertRaisesRegex(ValueError, "strained"):
+            env.reset(seed=0)
+        with self.assertRaises(envs.ResetNeeded):
+            env.step(env.action_space.sample())
+
+
+class Starts(unittest.TestCase):
+    def test_far_ones_are_refused(self) -> None:
+        for kind in (envs.PathIncisionEnv, envs.WedgeResectionEnv):
+            env = kind()
+            for options in ({"start": [9.0, 0.03, 0.004, 0.0]}, {"start": [0.04, -9.0, 0.004, 0.0]},
+                            {"start": [0.04, 0.03, 9.0, 0.0]}, {"line": [[5.0, 0.0], [6.0, 0.0]]}):
+                with self.subTest(kind=kind.__name__, options=options):
+                    with self.assertRaisesRegex(ValueError, "beyond"):
+                        env.reset(options=options)
+
+    def test_all_others_are_in_the_space(self) -> None:
+        for kind in (envs.PathIncisionEnv, envs.WedgeResectionEnv):
+            env = kind()
+            for corner in (env._low, env._high):
+                observation, _ = env.reset(options={"start": [*corner, 1.0]})
+                self.assertIn(observation, env.observation_space)
+            observation, _ = env.reset(options={"line": [env._low[:2], env._high[:2]]})
+            self.assertIn(observation, env.observation_space)
+            self.assertTrue(all(low <= x <= high for low, x, high
+                                in zip(env._low, env._tip, env._high)))
+        thin = envs.PathIncisionEnv(size=(0.08, 0.06, 0.0005), depth=0.0003)
+        self.assertIn(thin.reset(seed=0)[0], thin.observation_space)
+
+    def test_options_change_no_later_random_numbers(self) -> None:
+        given = {envs.PathIncisionEnv: {"line": [[0.01, 0.03], [0.07, 0.03]],
+                                        "start": [0.0, 0.03, 0.012, 0.0]},
+                 envs.WedgeResectionEnv: {"start": [0.04, -0.003, 0.0, 1.5]},
+                 envs.DissectionEnv: {"state": [0.0, 0.0, 0.0, 5.0]}}
+        for kind in ALL:
+            env = kind()
+            env.reset(seed=4)
+            second = env.reset()
+            for options in ({"randomize": False}, {"stiffness": 2e3}, given[kind]):
+                with self.subTest(kind=kind.__name__, options=options):
+                    env.reset(seed=4, options=options)
+                    self.assertTrue(same(env.reset(), second))
+
+
+class Violations(unittest.TestCase):
+    def test_all_parts_of_a_step_count(self) -> None:
+        env = envs.DissectionEnv(frame_skip=2)
+        still = [0.0] * 5
+        # Out at the first part, and in again at the second.
+        for violation, parts in (("state_limits_violation", ([0.0, 0.0, 0.0, -1.0, 0.0], still)),
+                                 ("workspace_violation", ([0.0, 0.0, 0.0, 1.0, 0.0], still))):
+            with self.subTest(violation=violation):
+                env.reset(seed=0, options={"state": (0.0, 0.0, 0.0, 0.1)})
+                if violation == "workspace_violation":
+                    while not env._flags[0]:
+                        env._move(parts[0])
+                for part in parts:
+                    env._move(part)
+                env._judge()
+                self.assertEqual(env._features[violation], 1.0)
+                env._move(still)
+                env._judge()
+                self.assertEqual(env._features[violation], 0.0)
+
+    def test_a_touch_of_the_board_within_a_step_counts(self) -> None:
+        env = envs.DissectionEnv(frame_skip=2)
+        env.reset(seed=0, options={"state": (0.0, 0.0, 0.0, 2.0)})
+        down, up = [0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, -1.0, 0.0]
+        while env._tip()[2] >= 0.0:
+            env._move(down)
+        env._judge()
+        env._move(up)
+        env._judge()
+        self.assertEqual(env._features["collision_with_board"], 0.0)
+        env._move(down)
+        env._move(up)
+        env._judge()
+        self.assertEqual(env._features["collision_with_board"], 1.0)
+
+
+class Package(unittest.TestCase):
+    def run_code(self, code: str) -> str:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.strip()
+
+    def test_the_environments_come_with_the_package(self) -> None:
+        self.assertEqual(self.run_code(
+            "import incise, sys\n"
+            "assert 'envs' in dir(incise) and 'World' in dir(incise)\n"
+            "assert 'incise.envs' not in sys.modules\n"
+            "print(incise.envs.DissectionEnv.__name__, incise.envs is sys.modules['incise.envs'])"),
+            "DissectionEnv True")
+        self.assertEqual(self.run_code("from incise import envs; print(envs.__name__)"),
+                         "incise.envs")
+
+    def test_other_names_are_unknown(self) -> None:
+        with self.assertRaisesRegex(AttributeError, "module 'incise' has no attribute 'env'"):
+            incise.env  # type: ignore[attr-defined]
 
 
 class Checker(unittest.TestCase):

@@ -16,6 +16,10 @@ from . import gym, renderer
 Floats = npt.NDArray[np.float64]
 OBSERVATIONS = ("state", "rgb")
 NO_FORCE = (0.0, 0.0, 0.0)
+# Steps of the simulation that are shorter than this share of time_step would take seconds.
+LEAST_STEP = 1e-3
+# Stiff tissue and small elements have short steps at rest: then a fall to this share is the limit.
+LEAST_SHARE = 0.1
 
 
 def part_labels(cells: npt.NDArray[np.int64], num_nodes: int) -> npt.NDArray[np.int64]:
@@ -45,6 +49,7 @@ class World:
         self.world = world
         self.young = young
         self.state = world.save()
+        self.stable_step = world.stable_step
         self.extra = extra or {}
 
 
@@ -53,6 +58,11 @@ class CuttingEnv(gym.Env):
 
     One call of step() is time_step times frame_skip of simulated time. Worlds are made at the first
     reset() that needs them and then restored: one for each level of stiffness.
+
+    An episode ends as unstable, with the reward of that and info["is_unstable"], if the motion is
+    lost, if a tool cannot do what it is led to, or if the tissue is strained so much that the
+    steps of the simulation become a thousand times shorter than time_step. info["error"] says why;
+    it is empty otherwise.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 100}
@@ -103,6 +113,7 @@ class CuttingEnv(gym.Env):
         self._largest_force = 0.0
         self._force: tuple[float, float, float] = NO_FORCE
         self._is_unstable = False
+        self._error = ""
         self._is_success = False
 
     # --- What the task says
@@ -183,6 +194,7 @@ class CuttingEnv(gym.Env):
         self._area = self._lost = self._mean_distance = self._max_distance = 0.0
         self._largest_force, self._force = 0.0, NO_FORCE
         self._is_unstable = self._is_success = False
+        self._error = ""
         self._ready = ready
         try:
             self._begin(given, is_random)
@@ -204,18 +216,23 @@ class CuttingEnv(gym.Env):
         world = self._ready.world
         action = self._checked(action)
         self._num_steps += 1
+        least_step = self._least_step(self._ready.stable_step)
         for i in range(self.frame_skip):
-            self._move(action)
             at = (self._num_steps - 1) * self.frame_skip + i + 1
             try:
+                self._move(action)
                 report = world.run_until(self._start + at * self.time_step)
-            except incise.PhysicsError:
-                self._is_unstable = True
+            except (incise.PhysicsError, incise.InputError) as error:
+                self._error = str(error)
                 break
             self._feel(report)
             if world.topology_version != self._version:
                 self._version = world.topology_version
                 self._on_edit(report)
+            if world.stable_step < least_step:
+                self._error = strained(world.stable_step)
+                break
+        self._is_unstable = bool(self._error)
         if self._is_unstable:
             reward, terminated = -1.0, True
         else:
@@ -259,6 +276,13 @@ class CuttingEnv(gym.Env):
         return self._ready.world
 
     # --- Common parts
+
+    def _least_step(self, at_start: float) -> float:
+        """Return the stable step below which the simulation is given up, s.
+
+        at_start: the stable step before the episode, s.
+        """
+        return min(LEAST_STEP * self.time_step, LEAST_SHARE * at_start)
 
     def _world_of(self, young: float) -> World:
         found = self._worlds.get(young)
@@ -307,10 +331,17 @@ class CuttingEnv(gym.Env):
             "largest_force": self._largest_force,
             "success": self._is_success,
             "is_unstable": self._is_unstable,
+            "error": self._error,
             "stiffness": self._ready.young if self._ready else 0.0,
             "time": self._num_steps * self._seconds,
             **self._task_info(),
         }
+
+
+def strained(stable_step: float) -> str:
+    """Return the text of an error: tissue is so strained that this is its stable step, s."""
+    return (f"the tissue is strained so much that the simulation needs steps of {stable_step:.2g} "
+            "s: move tools more slowly, or apply smaller forces")
 
 
 def image_space(shape: tuple[int, int]) -> Any:

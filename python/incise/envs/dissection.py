@@ -17,7 +17,7 @@ import numpy.typing as npt
 import incise
 
 from . import gym, renderer
-from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
+from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels, strained
 
 MM = 0.001
 TISSUE, CONNECTIVE = 1, 2
@@ -36,6 +36,7 @@ WORKSPACE_LOW = (-48.0, 0.0, -10.0)  # mm
 WORKSPACE_HIGH = (48.0, 110.0, 80.0)
 FORCE_STEP, FORCE_LIMIT = 3e2, 1e5
 FORCE_START = (0.0, -1e5, 1e5)       # the unit is nominal: see DissectionEnv, retraction_force
+VIOLATIONS = ("workspace_violation", "state_limits_violation", "collision_with_board")
 PARKED = incise.Pose([0.0, 0.0, 100.0])
 
 
@@ -106,7 +107,8 @@ class DissectionEnv(CuttingEnv):
         cut_connective_tissue, cut_tissue  elements removed in this step
         distance_cauter_border_point, delta_distance_cauter_border_point  over the diagonal of the
             workspace
-        workspace_violation, state_limits_violation, collision_with_board  1 or 0
+        workspace_violation, state_limits_violation, collision_with_board  1 if it was so at any
+            time of the step, else 0
         successful_task  1 when no connective tissue is left, else 0
         unstable_deformation  1 if the motion is lost, which ends the episode
         The default amounts are 1, -1, 0, -5, -0.01, -0.01, -0.1, 10 and -10, in this order.
@@ -215,6 +217,8 @@ class DissectionEnv(CuttingEnv):
         self._distance = 0.0
         # Elements of connective tissue and of tissue after an edit in this step.
         self._num_left: Optional[tuple[int, int]] = None
+        # The VIOLATIONS since the last reward, 1 or 0 each.
+        self._flags = [0.0, 0.0, 0.0]
 
     # --- The body
 
@@ -278,8 +282,11 @@ class DissectionEnv(CuttingEnv):
             extra["shaft"] = world.add_tool("shaft", {"kind": "probe", "shape": {"capsule": {
                 "from": [0.0, 0.0, -0.15], "to": [0.0, 0.0, 0.004], "radius": 0.0015}}}, PARKED)
         extra["cauter"].pose = PARKED
+        least_step = self._least_step(world.stable_step)
         for k in range(max(1, self.settle_steps)):
             world.run_until((k + 1) * self.time_step)
+            if world.stable_step < least_step:
+                raise ValueError(f"before the first episode, {strained(world.stable_step)}")
         return World(world, young, extra)
 
     # --- An episode
@@ -287,12 +294,10 @@ class DissectionEnv(CuttingEnv):
     def _begin(self, options: dict[str, Any], is_random: bool) -> None:
         assert self._ready is not None
         self._cauter = self._ready.extra["cauter"]
-        state: tuple[float, ...] = START
-        while is_random:
-            noise = self.np_random.uniform(-1.0, 1.0, 4).tolist()
-            state = tuple(s + n * d for s, n, d in zip(START, NOISE, noise))
-            if self._is_allowed(state):
-                break
+        # A start is drawn in each case: options do not change the numbers that follow.
+        state = self._random_state()
+        if not is_random:
+            state = START
         if options.get("state") is not None:
             state = tuple(float(x) for x in options["state"])
             if len(state) != 4 or not self._is_allowed(state):
@@ -314,12 +319,19 @@ class DissectionEnv(CuttingEnv):
         self._full_area = WIDTH * LENGTH * self.rows_to_cut / NUM_ROWS
         self._total_connective = int((regions == CONNECTIVE).sum())
         self._total_tissue = int((regions == TISSUE).sum())
-        self._flags = [0.0, 0.0]
+        self._flags = [0.0, 0.0, 0.0]
         self._look_at_mesh(rest, cells, regions)
         self._positions = self.world.positions
         self._find_border()
         self._features = dict.fromkeys(self.default_amounts, 0.0)
         self._features["distance_cauter_border_point"] = self._distance
+
+    def _random_state(self) -> tuple[float, ...]:
+        while True:
+            noise = self.np_random.uniform(-1.0, 1.0, 4).tolist()
+            state = tuple(s + n * d for s, n, d in zip(START, NOISE, noise))
+            if self._is_allowed(state):
+                return state
 
     def _is_allowed(self, state: tuple[float, ...]) -> bool:
         position = pose_of(state)[0]
@@ -354,7 +366,6 @@ class DissectionEnv(CuttingEnv):
                 self._is_active = action == 8
         now = self._state_now
         state = [s + c for s, c in zip(now, change)]
-        self._flags = [0.0, 0.0]
         for i in range(4):
             if not STATE_LOW[i] <= state[i] <= STATE_HIGH[i]:
                 state[i] = now[i]
@@ -367,6 +378,8 @@ class DissectionEnv(CuttingEnv):
             self._position, self._quaternion, self._rotation = pose
         else:
             self._flags[0] = 1.0
+        if self._tip()[2] < 0.0:
+            self._flags[2] = 1.0
         if self._is_active:
             if not was_active:
                 self._cauter.place(incise.Pose(*before))
@@ -461,8 +474,9 @@ class DissectionEnv(CuttingEnv):
         features["distance_cauter_border_point"] = self._distance
         features["delta_distance_cauter_border_point"] = (
             0.0 if edited is not None else self._distance - before)
-        features["workspace_violation"], features["state_limits_violation"] = self._flags
-        features["collision_with_board"] = float(self._tip()[2] < 0.0)
+        for key, flag in zip(VIOLATIONS, self._flags):
+            features[key] = flag
+        self._flags = [0.0, 0.0, 0.0]
         self._is_success = self._count[1] == self._total_connective
         features["successful_task"] = float(self._is_success)
         amounts = self.reward_amounts
