@@ -25,10 +25,18 @@ def distances(points: Floats, line: Floats) -> Floats:
     """Return the distance of points (N, 2) from a line of points (M, 2). Shape (N,), m."""
     start, way = line[:-1], np.diff(line, axis=0)
     offset = points[:, None] - start
-    share = np.clip(np.einsum("nmi,mi->nm", offset, way) / np.einsum("mi,mi->m", way, way), 0, 1)
+    share = np.einsum("nmi,mi->nm", offset, way) / np.einsum("mi,mi->m", way, way)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)  # np.clip is slower for few
     rest = offset - share[..., None] * way
     nearest: Floats = np.sqrt(np.einsum("nmi,nmi->nm", rest, rest).min(axis=1))
     return nearest
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the cross products of vectors (..., 3), as np.cross, which is slow for few."""
+    product: Floats = (a[..., [1, 2, 0]] * b[..., [2, 0, 1]]
+                       - a[..., [2, 0, 1]] * b[..., [1, 2, 0]])
+    return product
 
 
 def is_inside(points: Floats, corners: Floats) -> npt.NDArray[np.bool_]:

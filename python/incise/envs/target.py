@@ -15,13 +15,13 @@ Floats = npt.NDArray[np.float64]
 def are_near(points: Floats, triangles: Floats, reach: float) -> npt.NDArray[np.bool_]:
     """Return which points (N, 3) are within reach, m, of some of the triangles (T, 3, 3)."""
     sides = np.roll(triangles, -1, axis=1) - triangles
-    normals = np.cross(sides[:, 0], sides[:, 1])
+    normals = line.cross(sides[:, 0], sides[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-30)[:, None]
-    inwards = np.cross(normals[:, None], sides)
+    inwards = line.cross(normals[:, None], sides)
     offset = points[:, None, None] - triangles
     share = np.einsum("ntec,tec->nte", offset, sides)
     share /= np.maximum(np.einsum("tec,tec->te", sides, sides), 1e-30)
-    rest = offset - np.clip(share, 0.0, 1.0)[..., None] * sides
+    rest = offset - np.minimum(np.maximum(share, 0.0), 1.0)[..., None] * sides
     is_near = (np.einsum("ntec,ntec->nte", rest, rest) <= reach ** 2).any(axis=2)
     # Above the triangle, the distance is that from its plane.
     is_above = (np.einsum("ntec,tec->nte", offset, inwards) >= 0.0).all(axis=2)
@@ -85,10 +85,12 @@ class Target:
                                 np.maximum(self._bottom - middle[is_new, 2], 0.0))
         self._keys, self._away = keys, away
         sides = faces[:, 1:] - faces[:, :1]
-        area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        area = np.linalg.norm(line.cross(sides[:, 0], sides[:, 1]), axis=1)
         self.mean_distance = float(away @ area / max(float(area.sum()), 1e-30))
         self.max_distance = float(away.max())
         self.excess_depth = max(0.0, self._bottom - float(faces[:, :, 2].min()))
+        # Most faces are there twice, one on each side of the cut.
+        is_new[1:] &= keys[1:] != keys[:-1]
         self._cover(faces[is_new])
 
     def _cover(self, faces: Floats) -> None:
