@@ -1,6 +1,6 @@
 """Train a small policy to cut along a line, by the cross-entropy method, in numpy alone.
 
-    python train_cut.py                      # about a minute; draws train_cut.png with matplotlib
+    python train_cut.py                      # two minutes; draws train_cut.png with matplotlib
     python train_cut.py --generations 4      # a shorter one
     python train_cut.py --processes 4        # episodes in processes of their own; the same figures
 

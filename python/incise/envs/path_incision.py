@@ -40,9 +40,9 @@ class PathIncisionEnv(LineEnv):
     observation "rgb": uint8, shape image_shape + (3,).
     reward: 20 for the whole line, in equal parts, each less by its lateral and depth errors; 0.2 a
         mm of approach to the next point at the depth that is asked for; -0.02 a step; -0.03 a step
-        in which the tip is in the tissue off the line or too deep by half; 5 at the end if the cut
-        is good. A point of the line is done if the tip passes it at three quarters of the depth
-        that is asked for, or deeper.
+        in which the tip is in the tissue off the line or too deep by half; at the end 5 times
+        coverage, and 5 more for success. A point of the line is done if the tip passes it at three
+        quarters of the depth that is asked for, or deeper.
     end: terminated when the tip has passed the last point of the line, truncated after
         max_episode_steps.
     success: at the end, at least 80 % of the target surface has a cut within 1 mm, the cut faces
@@ -139,17 +139,18 @@ class PathIncisionEnv(LineEnv):
             off = self._off_line()
             if passed:
                 reward += 20.0 * passed / self._num_points * max(
-                    0.0, 1.0 - 0.5 * off / self.tolerance - min(error, 0.5))
+                    0.0, 1.0 - off / self.tolerance - min(error, 0.5))
             elif off > self.tolerance:
                 reward -= 0.03
             if error > 0.5 and depth > self._depth:
                 reward -= 0.03
         is_done = self._next == self._num_points
-        target = self._target
-        if is_done and (target.coverage >= LEAST_COVERAGE and target.excess_depth <= ACCURACY
-                        and target.mean_distance <= ACCURACY):
-            self._is_success = True
-            reward += 5.0
+        if is_done:
+            target = self._target
+            self._is_success = (target.coverage >= LEAST_COVERAGE
+                                and target.excess_depth <= ACCURACY
+                                and target.mean_distance <= ACCURACY)
+            reward += 5.0 * target.coverage + 5.0 * self._is_success
         return reward, is_done
 
     def _target_depth(self) -> float:
