@@ -3,11 +3,13 @@
 import functools
 import math
 import unittest
+import unittest.mock
 from typing import Any
 
 import numpy as np
 
 from incise import envs
+from incise.envs import path_incision
 from incise.envs.target import Target, are_near
 from test_envs import follow, play
 
@@ -24,12 +26,22 @@ class Success(unittest.TestCase):
         return play(envs.PathIncisionEnv(), seed, functools.partial(follow_at, share))[1]
 
     def test_needs_the_depth(self) -> None:
-        for share in (0.0, 0.5, 0.7):
+        for share in (0.0, 0.5, 0.7, 0.8):
             for seed in range(3):
                 with self.subTest(share=share, seed=seed):
                     info = self.play_at(share, seed)
                     self.assertFalse(info["success"], info)
                     self.assertLess(info["coverage"], 0.8)
+
+    def test_needs_a_cut_where_the_line_is_done(self) -> None:
+        for share in (0.5, 0.7):
+            for seed in range(3):
+                with self.subTest(share=share, seed=seed), \
+                        unittest.mock.patch.object(path_incision, "LEAST_DEPTH", 0.4):
+                    info = self.play_at(share, seed)
+                    self.assertGreater(info["progress"], 0.9)
+                    self.assertLess(info["coverage"], 0.8)
+                    self.assertFalse(info["success"], info)
 
     def test_forbids_to_cut_too_deep(self) -> None:
         for share in (1.35, 1.5):
