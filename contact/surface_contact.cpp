@@ -18,7 +18,10 @@ namespace {
 // Lengths are parts of the mean length of an element.
 constexpr double node_reach =
     0.15;  // at which a node is a point of contact: farther than it moves in a step
-constexpr double skin = 0.5;  // by which pairs are found that are not within node_reach yet
+/// By how much more than node_reach pairs are found: `widest_skin` or a half or a quarter of it.
+constexpr double widest_skin = 0.5, narrowest_skin = 0.125;
+/// With more pairs than that for each node, the skin becomes narrower; with less, wider.
+constexpr double many_pairs = 32.0, few_pairs = 4.0;
 /// A node that is deeper has no side any more. It is a part of the local length.
 constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
@@ -173,7 +176,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
     if (changed.isEmpty()) return;
     // Twice as far as pairs reach: the triangles of nodes that are found anew may have moved since
     // their own were found.
-    const double distance = (node_reach + skin) * size_;
+    const double distance = (node_reach + skin_) * size_;
     const Box near_edit(changed.min() - Vec3::Constant(2.0 * distance),
                         changed.max() + Vec3::Constant(2.0 * distance));
     const auto is_near_edit = [&](NodeId n) {
@@ -197,8 +200,9 @@ void SurfaceContact::know_surface(const physics::Model& model,
         near_[i] = before;
         near_[i].touched = touched;
     }
-    if (num_known == 0) room_ = skin * size_;
+    if (num_known == 0) room_ = skin_ * size_;
     number_nodes(positions.size());
+    if (has_many_pairs()) find_pairs(model);
 }
 
 void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
@@ -208,7 +212,8 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
         if (!holds) throw InputError("its contact is that of another body");
     };
     require(settings_.enabled && settings_.friction >= 0.0 && size_ > 0.0 &&
-            positions_of_pairs_.size() == model.mesh().node_capacity() && std::isfinite(room_));
+            positions_of_pairs_.size() == model.mesh().node_capacity() && std::isfinite(room_) &&
+            skin_ >= narrowest_skin && skin_ <= widest_skin);
     list_triangles(model, surface);
     require(near_.size() == pairs_.nodes().size() &&
             pairs_.fits(model.mesh().node_capacity(), triangles_.size()));
@@ -236,7 +241,7 @@ bool SurfaceContact::has_moved_far(std::span<const Vec3> positions) {
             square = std::max(
                 square,
                 (positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm());
-    room_ = skin * size_ - 2.0 * std::sqrt(square);
+    room_ = skin_ * size_ - 2.0 * std::sqrt(square);
     return room_ < 0.0;
 }
 
@@ -246,14 +251,33 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
         if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
     const std::span<const Vec3> positions = model.mesh_positions();
     tree_.fit(positions);
-    pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
-                (node_reach + skin) * size_);
+    const auto find = [&] {
+        pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
+                    (node_reach + skin_) * size_);
+    };
+    if (pairs_per_node() < few_pairs) skin_ = std::min(widest_skin, 2.0 * skin_);
+    if (has_many_pairs()) skin_ *= 0.5;
+    find();
+    while (has_many_pairs()) {
+        skin_ *= 0.5;
+        find();
+    }
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (const auto it = known.find(pairs_.nodes()[i]); it != known.end()) near_[i] = it->second;
     positions_of_pairs_.assign(positions.begin(), positions.end());
-    room_ = skin * size_;
+    room_ = skin_ * size_;
     number_nodes(positions.size());
+}
+
+double SurfaceContact::pairs_per_node() const {
+    return static_cast<double>(pairs_.size()) / static_cast<double>(pairs_.nodes().size() + 1);
+}
+
+/// True if a narrower skin is worth while: between the sides of many cuts a node has so many
+/// triangles in its reach that they cost more than to look for them more often.
+bool SurfaceContact::has_many_pairs() const {
+    return skin_ > narrowest_skin && pairs_per_node() > many_pairs;
 }
 
 /// Returns where a node is above a triangle. Its gap is infinite if the triangle has no area.

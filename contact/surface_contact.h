@@ -90,11 +90,13 @@ class SurfaceContact {
 
     static void list(auto& ar, auto& self) {
         ar(self.settings_, self.size_, self.pairs_, self.near_, self.positions_of_pairs_,
-           self.room_, self.max_penetration_);
+           self.skin_, self.room_, self.max_penetration_);
     }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
     void list_lengths(const physics::Model& model);
     void find_pairs(const physics::Model& model);
+    double pairs_per_node() const;
+    bool has_many_pairs() const;
     bool has_moved_far(std::span<const Vec3> positions);
     void number_nodes(std::size_t node_capacity);
     void find_touched(std::size_t i, const physics::Model& model);
@@ -115,6 +117,7 @@ class SurfaceContact {
     std::vector<std::int32_t> near_of_node_;  // by id, index of the node in pairs_, or -1
     std::vector<NearNode> near_;              // by node of pairs_
     std::vector<Vec3> positions_of_pairs_;    // at which pairs_ were found, by id
+    double skin_ = 0.5;                       // see widest_skin
     double room_ = -1.0;  // how far the surface may move before pairs_ is out of date, m
     double max_penetration_ = 0.0;
     std::vector<Touch> touches_;                // scratch, by node of pairs_

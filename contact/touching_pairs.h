@@ -54,6 +54,8 @@ class TouchingPairs {
 
     /// Returns the nodes with pairs, in ascending order.
     std::span<const NodeId> nodes() const { return nodes_; }
+    /// Returns the number of pairs.
+    std::size_t size() const { return triangles_.size(); }
     /// Returns the triangles of the i-th of nodes().
     std::span<const std::uint32_t> triangles_of(std::size_t i) const {
         return {triangles_.data() + begin_[i], begin_[i + 1] - begin_[i]};
