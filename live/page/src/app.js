@@ -8,6 +8,7 @@ import { button, element, write } from './dom.js';
 import { FieldRange } from './field.js';
 import { decodeFrame } from './frame.js';
 import { Hand } from './hand.js';
+import { HandCheck } from './hand_check.js';
 import { Keyboard } from './keyboard.js';
 import { Legend } from './legend.js';
 import { Messages } from './messages.js';
@@ -35,6 +36,8 @@ const kinds = { look: '', scalpel: 'blade', probe: 'probe', grasper: 'grasper', 
 const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 /** Milliseconds in which a reset has to be asked for again. */
 const resetWithin = 4000;
+/** Milliseconds after which a tool in the hand moves on, though no picture was drawn. */
+const moveWithin = 30;
 
 export class App {
     /** @type {import('./types.js').Hello|null} */
@@ -54,6 +57,9 @@ export class App {
     #cursor = new Cursor();
     #lost = false;
     #resetAsked = 0;
+    #check = new HandCheck();
+    /** When the tool in the hand was moved last. */
+    #movedHand = 0;
     /** The body that the camera was placed for. */
     #framed = '';
     /** The newest frame that is not drawn yet. @type {import('./types.js').Frame|null} */
@@ -105,9 +111,11 @@ export class App {
         this.keyboard = new Keyboard(this.#commands(), () => this.scene.invalidate());
         this.#bindButtons();
         this.setMode('look');
-        this.scene.beforeEach((seconds) => this.#beforePicture(seconds));
+        this.scene.beforeEach(() => this.#beforePicture());
         this.scene.afterEach(() => this.#overlay.update(this.scene));
         setInterval(() => this.#showStage(), 1000);
+        this.scene.onSlow = () => this.#drawLess();
+        setInterval(() => this.#betweenPictures(), moveWithin);
         this.connection = new Connection(socketAddress(), {
             opened: () => this.#opened(),
             told: (message) => this.#told(message),
@@ -126,7 +134,9 @@ export class App {
 
     /** @param {Record<string, unknown>} order */
     send(order) {
-        return this.connection.send(order);
+        const isSent = this.connection.send(order);
+        if (isSent) this.#check.sent(order.do, performance.now());
+        return isSent;
     }
 
     // ---- what the server says
@@ -134,6 +144,7 @@ export class App {
     #opened() {
         if (this.#lost) this.messages.show('info', 'The connection is back.');
         this.#lost = false;
+        this.#check.connected();
         this.#showStatus();
     }
 
@@ -174,24 +185,18 @@ export class App {
             this.#stateIsNew = true;
             this.#compareHands(message);
             this.scene.invalidate();
-        } else if (message.type === 'message') this.messages.show(message.level, message.text);
+        } else if (message.type === 'message') {
+            if (message.level === 'error') this.#check.refused(performance.now());
+            this.messages.show(message.level, message.text);
+        }
     }
 
-    /** States in a row that disagree with this page on whether a tool is in the hand. */
-    #disagreeing = 0;
-
-    /**
-     * For a few states the server may not know of an order yet. After many, the tool was taken away,
-     * or its drop was lost.
-     * @param {import('./types.js').State} state
-     */
+    /** @param {import('./types.js').State} state */
     #compareHands(state) {
-        const held = state.tools.some((tool) => tool.mine && tool.present);
-        this.#disagreeing = held === this.hand.isEmpty ? this.#disagreeing + 1 : 0;
-        if (this.#disagreeing < 120) return;
-        this.#disagreeing = 0;
-        if (held) this.send({ do: 'drop' });
-        else this.#letGo();
+        const own = state.tools.find((tool) => tool.mine)?.name ?? '';
+        const verdict = this.#check.look(own, !this.hand.isEmpty, performance.now());
+        if (verdict === 'gone') this.#letGo();
+        if (verdict === 'left') this.send({ do: 'drop' });
     }
 
     /** @param {import('./types.js').Hello} hello */
@@ -239,12 +244,10 @@ export class App {
 
     // ---- before each picture
 
-    /** @param {number} seconds @returns {boolean} wants another picture */
-    #beforePicture(seconds) {
-        let again = this.keyboard.move(seconds);
+    /** @returns {boolean} wants another picture */
+    #beforePicture() {
         if (this.#takeFrame() || this.#stateIsNew) this.#colourField();
-        if (this.mode && !this.hand.isEmpty && this.mode.step(seconds)) again = true;
-        this.hand.flush();
+        const again = this.#moveHand();
         if (this.#stateIsNew && this.state) {
             showReadings(this.state, this.isOperator);
             this.#showStatus();
@@ -254,6 +257,29 @@ export class App {
         this.section.update();
         this.#showTools();
         return again;
+    }
+
+    /** Moves the tool to where pointer and keys want it. Returns true if it is not there yet. */
+    #moveHand() {
+        const now = performance.now();
+        const seconds = Math.min((now - this.#movedHand) / 1000, 0.1);
+        this.#movedHand = now;
+        let again = this.keyboard.move(seconds);
+        this.pointer.deliver();
+        if (this.mode && !this.hand.isEmpty && this.mode.step(seconds)) again = true;
+        this.hand.flush();
+        return again;
+    }
+
+    /** Pictures may take long, for instance without a graphics card. The hand does not wait for them. */
+    #betweenPictures() {
+        if (this.hand.isEmpty && !this.keyboard.isMoving) return;
+        if (performance.now() - this.#movedHand >= moveWithin - 5) this.#moveHand();
+    }
+
+    #drawLess() {
+        this.tissue.drawLess();
+        this.messages.show('info', 'Pictures took more than 0.1 s each: they have less detail now. A graphics card draws them smoothly.');
     }
 
     #takeFrame() {
@@ -402,6 +428,7 @@ export class App {
                 const next = names[(names.indexOf(this.state?.field ?? 'none') + 1) % names.length];
                 if (next) send({ do: 'show', field: next });
             },
+            fit: () => this.scene.fit(this.tissue.box()),
             help: () => /** @type {HTMLDialogElement} */ (element('help')).showModal(),
             enter: () => this.#enter(),
             back: () => this.modeName === 'suture' && this.suture.back(),

@@ -1,4 +1,4 @@
-// The tool in the hand: what was told to the server about it, at most one pose a picture.
+// The tool in the hand: what was told to the server about it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
@@ -61,7 +61,7 @@ export class Hand {
         this.#unsent = true;
     }
 
-    /** Sends the last pose, if it was not sent yet. To be called once a picture. */
+    /** Sends the last pose, if it was not sent yet. To be called some thirty times a second or more. */
     flush() {
         if (!this.#unsent || this.isEmpty) return;
         this.#unsent = false;

@@ -21,6 +21,7 @@ const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], Arrow
  * @property {(up: boolean) => void} speed
  * @property {() => void} section
  * @property {() => void} field
+ * @property {() => void} fit
  * @property {() => void} help
  * @property {() => boolean} enter used
  * @property {() => boolean} back used
@@ -47,6 +48,11 @@ export class Keyboard {
         addEventListener('blur', () => this.#down.clear());
     }
 
+    /** True while arrows move the cursor. */
+    get isMoving() {
+        return this.#down.size > 0;
+    }
+
     /** Moves the cursor while arrows are down. @param {number} seconds @returns {boolean} wants another picture */
     move(seconds) {
         let x = 0;
@@ -59,7 +65,7 @@ export class Keyboard {
         }
         const by = pace * seconds * (this.#shift ? slow : 1);
         if (x || y) this.#commands.moveCursor(x * by, y * by);
-        return this.#down.size > 0;
+        return this.isMoving;
     }
 
     /** @param {KeyboardEvent} event @returns {boolean} used */
@@ -108,6 +114,7 @@ export class Keyboard {
             r: this.#commands.reset,
             s: this.#commands.section,
             f: this.#commands.field,
+            c: this.#commands.fit,
             h: this.#commands.help,
             '?': this.#commands.help,
             escape: this.#commands.escape,

@@ -10,7 +10,8 @@ export function roundDown(value) {
     return (first >= 5 ? 5 : first >= 2 ? 2 : 1) * power;
 }
 
-const longestBar = 110;
+/** Pixels. On small pages other panels are near. */
+const longestBar = (/** @type {number} */ width) => (width < 900 ? 60 : 110);
 
 export class Overlay {
     #bar = /** @type {HTMLElement} */ (document.getElementById('scale-bar'));
@@ -20,7 +21,7 @@ export class Overlay {
 
     /** @param {import('./scene.js').Scene} scene */
     update(scene) {
-        const metres = roundDown(longestBar * scene.metresPerPixel);
+        const metres = roundDown(longestBar(scene.stage.clientWidth) * scene.metresPerPixel);
         const width = metres / scene.metresPerPixel;
         const turned = ['x', 'y', 'z'].map((axis) => {
             const end = new Vector3(Number(axis === 'x'), Number(axis === 'y'), Number(axis === 'z'));

@@ -8,6 +8,8 @@ export class Pointer {
     /** True while a drag uses the tool. */
     dragging = false;
     #id = -1;
+    /** The pointer has moved since the mode heard of it. */
+    #moved = false;
     #desk;
 
     /**
@@ -25,6 +27,8 @@ export class Pointer {
         const first = { capture: true };
         canvas.addEventListener('pointerdown', (event) => this.#down(event), first);
         canvas.addEventListener('pointermove', (event) => this.#move(event), first);
+        // Browsers hold movements back until the next picture, which may take a second; not these.
+        canvas.addEventListener('pointerrawupdate', (event) => this.#moveRaw(/** @type {PointerEvent} */ (event)), first);
         canvas.addEventListener('pointerup', (event) => this.#up(event), first);
         canvas.addEventListener('pointercancel', (event) => this.#up(event), first);
         canvas.addEventListener('pointerleave', () => {
@@ -61,6 +65,7 @@ export class Pointer {
         this.scene.canvas.setPointerCapture(event.pointerId);
         this.#id = event.pointerId;
         this.dragging = true;
+        this.#moved = false;
         this.at = { x: event.clientX, y: event.clientY };
         mode.begin(event.clientX, event.clientY);
         this.scene.invalidate();
@@ -76,22 +81,41 @@ export class Pointer {
         this.at = { x: event.clientX, y: event.clientY };
         if (this.dragging) {
             event.stopImmediatePropagation();
-            this.#desk.mode()?.move(event.clientX, event.clientY);
+            this.#moved = true;
         }
         if (this.#desk.mode()) this.scene.invalidate();
+    }
+
+    /** @param {PointerEvent} event */
+    #moveRaw(event) {
+        if (!this.dragging || event.pointerId !== this.#id) return;
+        this.at = { x: event.clientX, y: event.clientY };
+        this.#moved = true;
+    }
+
+    /** Tells the mode where the pointer is, if it has moved in a drag. */
+    deliver() {
+        if (!this.dragging || !this.#moved || !this.at) return;
+        this.#moved = false;
+        this.#desk.mode()?.move(this.at.x, this.at.y);
     }
 
     /** @param {PointerEvent} event */
     #up(event) {
         if (!this.dragging || event.pointerId !== this.#id) return;
         event.stopImmediatePropagation();
+        if (event.type === 'pointerup') {
+            this.at = { x: event.clientX, y: event.clientY };
+            this.#moved = true;
+        }
         this.stop();
     }
 
-    /** Ends the drag, wherever the pointer is. */
+    /** Ends the drag where the pointer was last. */
     stop() {
         if (!this.dragging) return;
-        this.dragging = false;
+        this.deliver();
+        this.dragging = this.#moved = false;
         this.#desk.mode()?.end();
         this.scene.invalidate();
     }

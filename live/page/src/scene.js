@@ -20,8 +20,14 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
+import { freeArea } from './free_area.js';
 
 const background = 0x15181c;
+/** Pixels between the body and the panels. */
+const margin = 14;
+/** A picture that takes more milliseconds is slow; so many, and so many milliseconds of them, are too much. */
+const slow = 100;
+const tooSlow = { pictures: 5, time: 2500 };
 
 /** Light from above, where z points. @param {number} sky @param {number} ground @param {number} intensity */
 function skyLight(sky, ground, intensity) {
@@ -32,6 +38,7 @@ function skyLight(sky, ground, intensity) {
 
 export class Scene {
     three = new ThreeScene();
+    sky = { full: skyLight(0xdfe6f0, 0x8a7268, 0.4), low: skyLight(0xdfe6f0, 0x75625c, 1.7) };
     camera = new PerspectiveCamera(32, 1, 0.001, 10);
     /** Number of pictures that were drawn. */
     pictures = 0;
@@ -39,8 +46,14 @@ export class Scene {
     box = new Box3();
     #low;
     #wanted = false;
-    #last = 0;
-    /** @type {((seconds: number) => boolean)[]} */
+    /** When the next picture was asked for. */
+    #asked = 0;
+    #slow = { pictures: 0, time: 0 };
+    /** Called once if pictures take long for a while; they have less detail then. */
+    onSlow = () => {};
+    /** The camera is where fit() put it. @type {Box3|null} */
+    #fitted = null;
+    /** @type {(() => boolean)[]} */
     #steps = [];
     /** @type {(() => void)[]} */
     #watchers = [];
@@ -54,8 +67,6 @@ export class Scene {
         this.#low = low;
         this.stage = stage;
         this.renderer = new WebGLRenderer({ antialias: !low, stencil: true, powerPreference: 'high-performance' });
-        this.renderer.setPixelRatio(low ? 0.6 : Math.min(devicePixelRatio, 2));
-        this.renderer.toneMapping = low ? NoToneMapping : NeutralToneMapping;
         this.renderer.toneMappingExposure = 0.95;
         this.renderer.localClippingEnabled = true;
         this.canvas = this.renderer.domElement;
@@ -66,21 +77,18 @@ export class Scene {
         this.three.background = new Color(background);
         this.camera.up.set(0, 0, 1);
         this.#addLights();
+        this.#setQuality();
         this.controls = this.#addControls();
         new ResizeObserver(() => this.#resize()).observe(stage);
         this.#resize();
     }
 
     #addLights() {
-        this.key = new DirectionalLight(0xfff4e6, this.#low ? 2.1 : 2.3);
+        this.key = new DirectionalLight(0xfff4e6);
         this.rim = new DirectionalLight(0xbfd4ff, 0.7);
-        this.three.add(this.key, this.key.target);
-        if (!this.#low) this.three.add(this.rim, this.rim.target);
-        else {
-            this.three.add(skyLight(0xdfe6f0, 0x75625c, 1.7));
-            return;
-        }
-        this.three.add(skyLight(0xdfe6f0, 0x8a7268, 0.4));
+        this.three.add(this.key, this.key.target, this.rim, this.rim.target);
+        this.three.add(this.sky.full, this.sky.low);
+        if (this.#low) return;
         const generator = new PMREMGenerator(this.renderer);
         const room = new RoomEnvironment();
         this.three.environment = generator.fromScene(room, 0.04).texture;
@@ -88,12 +96,23 @@ export class Scene {
         this.three.environmentRotation.x = Math.PI / 2;
         room.dispose();
         generator.dispose();
-        this.renderer.shadowMap.enabled = true;
         this.renderer.shadowMap.type = PCFShadowMap;
-        this.key.castShadow = true;
         this.key.shadow.mapSize.set(2048, 2048);
         this.key.shadow.radius = 3;
         this.key.shadow.intensity = 0.8;
+    }
+
+    #setQuality() {
+        const low = this.#low;
+        this.renderer.setPixelRatio(low ? 0.6 : Math.min(devicePixelRatio, 2));
+        this.renderer.toneMapping = low ? NoToneMapping : NeutralToneMapping;
+        this.renderer.shadowMap.enabled = !low;
+        if (low) this.three.environment = null;
+        if (!this.key || !this.rim) return;
+        this.key.intensity = low ? 2.1 : 2.3;
+        this.key.castShadow = this.rim.visible = !low;
+        this.sky.full.visible = !low;
+        this.sky.low.visible = low;
     }
 
     #addControls() {
@@ -105,6 +124,7 @@ export class Scene {
         controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.ROTATE };
         controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
         controls.addEventListener('change', () => this.invalidate());
+        controls.addEventListener('start', () => (this.#fitted = null));
         return controls;
     }
 
@@ -114,18 +134,10 @@ export class Scene {
         this.box.max.fromArray(size[1]);
         const centre = this.box.getCenter(new Vector3());
         const radius = Math.max(this.diagonal / 2, 1e-9);
-        const narrow = Math.min(1, this.camera.aspect * (this.#insets() ? 0.78 : 1));
-        const distance = (radius * 0.8) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
-        this.camera.near = distance / 100;
-        this.camera.far = distance * 20;
-        this.camera.position
-            .set(0.32, -1, 0.62)
-            .normalize()
-            .multiplyScalar(distance)
-            .add(centre);
-        this.controls.target.copy(centre);
+        this.camera.near = radius / 30;
+        this.camera.far = radius * 60;
         this.controls.minDistance = radius * 0.08;
-        this.controls.maxDistance = distance * 6;
+        this.controls.maxDistance = radius * 20;
         const shadow = this.key?.shadow;
         if (shadow?.camera) {
             const { camera } = shadow;
@@ -137,28 +149,81 @@ export class Scene {
             shadow.normalBias = radius * 0.012;
             shadow.bias = -0.0008;
         }
-        this.controls.update();
+        this.camera.position.set(0.32, -1, 0.62).add(centre);
+        this.camera.lookAt(centre);
+        this.#fitted = this.box.clone();
         this.#resize();
+    }
+
+    /**
+     * Moves the camera, without turning it, so that a box fills what the panels leave free.
+     * In the axes of the camera the sides of the free area are planes through the eye: they bound
+     * where the eye may be for each corner of the box.
+     * @param {Box3} box
+     */
+    fit(box) {
+        if (box.isEmpty()) return;
+        const { camera } = this;
+        const area = this.#freeArea();
+        camera.updateMatrixWorld();
+        const turn = camera.quaternion;
+        const back = turn.clone().invert();
+        const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
+            new Vector3(
+                (i & 1 ? box.max : box.min).x,
+                (i & 2 ? box.max : box.min).y,
+                (i & 4 ? box.max : box.min).z
+            ).applyQuaternion(back)
+        );
+        // Slopes of the sides of the area, whose middle the camera looks at.
+        const perPixel = (2 * Math.tan((camera.fov * Math.PI) / 360)) / Math.max(this.stage.clientHeight, 1);
+        const across = perPixel * Math.max((area.right - area.left) / 2 - margin, 20);
+        const upright = perPixel * Math.max((area.bottom - area.top) / 2 - margin, 20);
+        const bounds = (/** @type {'x'|'y'} */ axis, /** @type {number} */ slope) => [
+            Math.max(...corners.map((corner) => corner[axis] + slope * corner.z)),
+            Math.min(...corners.map((corner) => corner[axis] - slope * corner.z)),
+        ];
+        const [right, left] = bounds('x', across);
+        const [top, bottom] = bounds('y', upright);
+        const near = Math.max(...corners.map((corner) => corner.z)) + 2 * camera.near;
+        const z = Math.max((right - left) / (2 * across), (top - bottom) / (2 * upright), near);
+        const middle = box.getCenter(new Vector3()).applyQuaternion(back).z;
+        const eye = new Vector3((right + left) / 2, (top + bottom) / 2, z);
+        this.controls.maxDistance = Math.max(this.controls.maxDistance, 3 * (z - middle));
+        camera.far = Math.max(camera.far, 20 * (z - middle));
+        camera.position.copy(eye).applyQuaternion(turn);
+        this.controls.target.copy(eye.setZ(middle)).applyQuaternion(turn);
+        this.#fitted = box.clone();
+        this.#placePicture(area);
+        this.controls.update();
+        this.invalidate();
     }
 
     get diagonal() {
         return this.box.getSize(new Vector3()).length();
     }
 
-    /** Width that the panels take on the sides, in pixels; zero on narrow pages. */
-    #insets() {
-        return this.stage.clientWidth >= 720 ? 180 : 0;
+    #freeArea() {
+        return freeArea(this.stage.clientWidth, this.stage.clientHeight);
+    }
+
+    /** Puts the point that the camera looks at into the middle of an area. @param {import('./free_area.js').Area} area */
+    #placePicture({ left, top, right, bottom }) {
+        const width = Math.max(this.stage.clientWidth, 1);
+        const height = Math.max(this.stage.clientHeight, 1);
+        this.camera.aspect = width / height;
+        const [x, y] = [(width - left - right) / 2, (height - top - bottom) / 2];
+        this.camera.setViewOffset(width, height, x, y, width, height);
+        this.camera.updateProjectionMatrix();
     }
 
     #resize() {
         const width = Math.max(this.stage.clientWidth, 1);
         const height = Math.max(this.stage.clientHeight, 1);
         this.renderer.setSize(width, height, false);
-        this.camera.aspect = width / height;
-        // The body stands in the middle of what the panels leave.
-        if (this.#insets()) this.camera.setViewOffset(width, height, this.#insets() / 2, 0, width, height);
-        else this.camera.clearViewOffset();
-        this.camera.updateProjectionMatrix();
+        // The body stands in the middle of what the panels leave, until the user turns or moves the view.
+        if (this.#fitted) this.fit(this.#fitted);
+        else this.#placePicture(this.#freeArea());
         this.draw();
     }
 
@@ -166,20 +231,40 @@ export class Scene {
     invalidate() {
         if (this.#wanted) return;
         this.#wanted = true;
-        requestAnimationFrame((now) => this.#onAnimationFrame(now));
+        this.#asked = performance.now();
+        requestAnimationFrame(() => this.#onAnimationFrame());
     }
 
-    /** @param {number} now milliseconds */
-    #onAnimationFrame(now) {
+    #onAnimationFrame() {
         this.#wanted = false;
-        const seconds = Math.min((now - this.#last) / 1000, 0.1);
-        this.#last = now;
+        const asked = this.#asked;
         if (this.controls.update()) this.invalidate();
-        for (const step of this.#steps) if (step(seconds)) this.invalidate();
+        for (const step of this.#steps) if (step()) this.invalidate();
         this.draw();
+        // A picture without a graphics card is copied after this function: that time counts too.
+        if (!this.#low) setTimeout(() => this.#watchPace(performance.now() - asked));
     }
 
-    /** Calls a function before each picture; the function returns true if it wants another one. @param {(seconds: number) => boolean} step */
+    /** @param {number} taken milliseconds of the last picture, from the wish for it */
+    #watchPace(taken) {
+        // The first pictures wait for shaders, and those of a page that was hidden came when it was shown.
+        if (this.#low || this.box.isEmpty() || document.hidden) return;
+        const pace = this.#slow;
+        if (taken > slow) {
+            ++pace.pictures;
+            pace.time += Math.min(taken, 1000);
+        } else {
+            pace.pictures = Math.max(pace.pictures - 2, 0);
+            pace.time = Math.max(pace.time - 2 * slow, 0);
+        }
+        if (pace.pictures < tooSlow.pictures || pace.time < tooSlow.time) return;
+        this.#low = true;
+        this.#setQuality();
+        this.#resize();
+        this.onSlow();
+    }
+
+    /** Calls a function before each picture; the function returns true if it wants another one. @param {() => boolean} step */
     beforeEach(step) {
         this.#steps.push(step);
     }

@@ -1,6 +1,6 @@
 // The body's surface in the scene: its buffers, colours and normals.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-import { BufferAttribute, BufferGeometry, Color, Mesh, Sphere, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, Color, Mesh, Sphere, Vector3 } from 'three';
 import { tissueColours } from './colours.js';
 import { Lips } from './lips.js';
 import { computeNormals } from './normals.js';
@@ -50,6 +50,24 @@ export class Tissue {
     setBody(hello) {
         this.#regions = hello.regions;
         this.uniforms.grain.value = 2.2 / hello.element_size;
+    }
+
+    /** Draws with less detail from now on. */
+    drawLess() {
+        this.material.dispose();
+        this.mesh.material = this.material = tissueMaterial(true, this.uniforms);
+        this.mesh.castShadow = this.mesh.receiveShadow = false;
+    }
+
+    /** The box round the body as it is; round its rest shape, if parts of it have gone far away. */
+    box() {
+        const box = new Box3();
+        const rest = new Box3();
+        if (!this.topology) return box;
+        box.setFromArray(this.positions).translate(this.origin);
+        rest.setFromArray(this.topology.rest);
+        const size = (/** @type {Box3} */ one) => one.getSize(new Vector3()).length();
+        return size(box) < 3 * size(rest) ? box : rest;
     }
 
     /** Forgets the body, for instance when the connection was lost. */
