@@ -7,6 +7,7 @@ import { fileURLToPath } from 'node:url';
 import { randomBytes } from 'node:crypto';
 import { WebSocketServer } from 'ws';
 import { Body } from './body.mjs';
+import { scriptedTools, scriptedStates } from './scripted.mjs';
 import { readTetrahedra } from './vtu.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -42,12 +43,14 @@ const isVector = (v, n) =>
 const isPose = (pose) => pose && isVector(pose.at, 3) && isVector(pose.rotation, 4);
 
 class Session {
-    constructor(scenario, record) {
+    /** @param {boolean} scripted with tools of a scenario, and obstacles */
+    constructor(scenario, record, scripted) {
         const text = readFileSync(scenario, 'utf8');
         const file = /^file\s*=\s*"([^"]*)"/m.exec(text)?.[1] ?? '';
         this.title = /^title\s*=\s*"([^"]*)"/m.exec(text)?.[1] ?? scenario;
         this.body = new Body(readTetrahedra(resolve(dirname(scenario), file)));
         this.record = record;
+        this.scripted = scripted ? scriptedTools(this.body.min, this.body.max) : [];
         if (record) writeFileSync(record, '');
         this.names = {};
         this.clients = [];
@@ -82,6 +85,7 @@ class Session {
                 { id: 2, name: 'nodule' },
             ],
             fields,
+            scripted_tools: this.scripted,
             has_contact: true,
             kinds: ['blade', 'probe', 'grasper', 'suture', 'carver'],
             recording: this.record ?? '',
@@ -106,6 +110,7 @@ class Session {
             mass: 1.06 * 0.9,
             field: this.field,
             can_undo: this.marks.length > 0,
+            scripted: scriptedStates(this.scripted, this.ticks / 60, body.min, body.max),
             tools: this.tools.map((tool) => ({
                 ...tool.shown,
                 mine: tool === this.hand && client === this.operator,
@@ -409,7 +414,7 @@ function live(args) {
         const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
         console.error(`Open http://127.0.0.1:${port}/?token=${token}`);
         setTimeout(() => {
-            session = new Session(args[0], option('--record'));
+            session = new Session(args[0], option('--record'), args.includes('--scripted'));
             waiting.forEach(join_);
             setInterval(() => {
                 if (!session.paused) session.tick();

@@ -1,5 +1,6 @@
 // Ties the parts of the page together.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+import { Vector3 } from 'three';
 import { Aim } from './aim.js';
 import { tissueColours } from './colours.js';
 import { Connection, socketAddress } from './connection.js';
@@ -124,6 +125,12 @@ export class App {
         });
     }
 
+    /** The tools of the scenario where they are. @returns {import('./types.js').PlacedTool[]} */
+    get scripted() {
+        const states = this.state?.scripted ?? [];
+        return (this.hello?.scripted_tools ?? []).map((tool, i) => ({ ...tool, ...(states[i] ?? { present: false }) }));
+    }
+
     get mode() {
         return this.modes[this.modeName];
     }
@@ -215,7 +222,7 @@ export class App {
             Object.assign(this.settings, suitable(hello.element_size, this.scene.diagonal));
         }
         this.tissue.setBody(hello);
-        this.toolsView.setSize(this.scene.diagonal);
+        this.toolsView.setBody(this.scene.diagonal, this.scene.box.getCenter(new Vector3()));
         this.toolPanel.setBody(hello.element_size, this.scene.diagonal);
         write('title', hello.title || 'Incise');
         document.title = hello.title ? `${hello.title} – Incise` : 'Incise';
@@ -249,7 +256,7 @@ export class App {
         if (this.#takeFrame() || this.#stateIsNew) this.#colourField();
         const again = this.#moveHand();
         if (this.#stateIsNew && this.state) {
-            showReadings(this.state, this.isOperator);
+            showReadings(this.state, this.scripted, this.isOperator);
             this.#showStatus();
             if (this.modeName === 'suture') this.toolPanel.showThread();
         }
@@ -279,6 +286,7 @@ export class App {
 
     #drawLess() {
         this.tissue.drawLess();
+        this.toolsView.drawLess();
         this.messages.show('info', 'Pictures took more than 0.1 s each: they have less detail now. A graphics card draws them smoothly.');
     }
 
@@ -318,7 +326,7 @@ export class App {
         let wanted = null;
         if (this.hand.tool && this.hand.pose) wanted = this.#lagging(this.hand.tool, this.hand.pose);
         else if (this.isOperator && at && this.mode) wanted = this.mode.preview(at.x, at.y);
-        this.toolsView.update({ tools: this.state?.tools ?? [], wanted }, this.scene.camera);
+        this.toolsView.update({ tools: this.state?.tools ?? [], scripted: this.scripted, wanted }, this.scene.camera);
         const tied = (this.state?.tools ?? []).filter((tool) => tool.kind === 'suture' && tool.present);
         this.toolsView.showThreads(
             tied.map((tool) => (tool.tool?.points ?? []).map((point) => this.tissue.positionOfRest(point))),

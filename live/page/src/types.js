@@ -9,7 +9,7 @@
  * @typedef {Object} ToolDefinition
  * @property {string} kind
  * @property {number[][]} [edge] of a blade, in the tool's frame, m
- * @property {any} [shape]
+ * @property {any} [shape] sphere, capsule or box as in scenarios; or mesh {points, triangles}, or plane {point, normal}
  * @property {number} [toughness] of a blade, J/m^2
  * @property {number} [friction]
  * @property {number[][]} [points] of a suture, rest coordinates, m
@@ -28,7 +28,27 @@
  * @property {boolean} has_contact
  * @property {string[]} kinds
  * @property {string} recording
+ * @property {ScriptedTool[]} [scripted_tools] absent with older programs
  */
+
+/**
+ * A tool of the scenario, or an obstacle.
+ * @typedef {Object} ScriptedTool
+ * @property {string} name
+ * @property {string} kind
+ * @property {boolean} is_obstacle
+ * @property {ToolDefinition} tool
+ */
+
+/**
+ * Where a tool of the scenario is.
+ * @typedef {Object} ScriptedState
+ * @property {boolean} present
+ * @property {Pose|null} [pose]
+ * @property {number[]|null} [force] N
+ */
+
+/** @typedef {ScriptedTool & ScriptedState} PlacedTool */
 
 /**
  * @typedef {Object} ToolState
@@ -61,6 +81,7 @@
  * @property {string} field
  * @property {boolean} can_undo
  * @property {ToolState[]} tools
+ * @property {ScriptedState[]} [scripted] in the order of the hello; absent with older programs
  */
 
 /**
