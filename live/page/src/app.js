@@ -386,6 +386,7 @@ export class App {
         button('slower').onclick = () => commands.speed(false);
         button('faster').onclick = () => commands.speed(true);
         button('help-button').onclick = commands.help;
+        element('get-record').addEventListener('click', () => this.#tellSaved());
         button('take-over').onclick = () => this.send({ do: 'take_over' });
         button('more').onclick = () => {
             const open = element('settings').classList.toggle('open');
@@ -394,6 +395,12 @@ export class App {
         const field = /** @type {HTMLSelectElement} */ (element('field'));
         field.onchange = () => this.send({ do: 'show', field: field.value });
         addEventListener('blur', () => this.pointer.stop());
+    }
+
+    #tellSaved() {
+        const name = this.hello?.recording ?? '';
+        const until = this.state ? ` up to ${this.state.time.toFixed(2)} s` : '';
+        this.messages.show('info', `The recording${until} is saved to your downloads as ${name}. It runs again with: incise run SCENARIO.toml --replay ${name}`);
     }
 
     #showFields() {
