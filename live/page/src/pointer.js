@@ -47,6 +47,7 @@ export class Pointer {
         controls.mouseButtons.MIDDLE = MOUSE.PAN;
         controls.mouseButtons.RIGHT = MOUSE.ROTATE;
         controls.touches.ONE = look ? TOUCH.ROTATE : null;
+        controls.touches.TWO = look ? TOUCH.DOLLY_PAN : TOUCH.DOLLY_ROTATE;
         canvas.classList.toggle('uses-tool', !look);
     }
 
