@@ -3,7 +3,7 @@
 // with playwright-core (INCISE_NODE_MODULES). The tests want both cores of a small machine.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, describe, test } from 'node:test';
@@ -15,6 +15,29 @@ const folder = mkdtempSync(join(tmpdir(), 'incise-live-'));
 /** Milliseconds for one test, and for a group of them. */
 const timeout = 180000;
 const whole = 1800000;
+/** A block on a table, with a blade that stays above it. */
+const onTable = `
+[mesh]
+box = { size = [0.1, 0.04, 0.02], cells = [5, 2, 1] }
+[[material]]
+density = 1000
+young   = 10e3
+poisson = 0.3
+[dynamics]
+end_time = 1
+damping  = 20
+[[constraint]]
+where = { box = { min = [-1, -1, -1], max = [1, 1, 1] } }
+fix   = "xyz"
+[[tool]]
+name = "knife"
+kind = "blade"
+edge = [[0, -0.01, 0], [0, 0.05, 0]]
+path = [{ time = 0, at = [0.05, 0, 0.025] }, { time = 1000, at = [0.05, 0, 0.03] }]
+[[obstacle]]
+name  = "table"
+shape = { half_space = { point = [0, 0, -0.001], normal = [0, 0, 1] } }
+`;
 /** @type {Awaited<ReturnType<typeof startLive>>} */
 let session;
 /** @type {any} */
@@ -299,7 +322,7 @@ describe('hands', { timeout: whole }, () => {
         assert.ok((await live.page.textContent('#legend-high')).endsWith(unit));
     });
 
-    test('SectionPlaneShowsTheInside', { timeout }, async () => {
+    test('SectionPlaneClosesTheOuterShape', { timeout }, async () => {
         await live.send({ do: 'pause', on: true });
         await live.until(() => window.incise.state().paused);
         const before = await live.picture();
@@ -312,6 +335,97 @@ describe('hands', { timeout: whole }, () => {
         await live.press('s');
         assert.ok(countChanged(before, await live.picture()) < 1000);
         assert.equal(await live.ask(() => window.incise.ordersSent()), sent);
+    });
+
+    test('BodyFitsBetweenThePanels', { timeout }, async () => {
+        // What a part of the page covers of the box round the body, and of the page.
+        const hidden = () => live.ask(() => {
+            const at = window.incise.corners();
+            const [xs, ys] = [at.map(({ x }) => x), at.map(({ y }) => y)];
+            const box = { left: Math.min(...xs), right: Math.max(...xs), top: Math.min(...ys), bottom: Math.max(...ys) };
+            const outside = box.left < 0 || box.top < 0 || box.right > innerWidth || box.bottom > innerHeight;
+            const covers = (/** @type {string} */ id) => {
+                const part = /** @type {HTMLElement} */ (document.getElementById(id)).getBoundingClientRect();
+                return part.right > box.left && part.left < box.right && part.bottom > box.top && part.top < box.bottom;
+            };
+            const parts = ['top', 'tools', 'readings', 'settings', 'transport', 'corner'].filter(covers);
+            return { outside, parts, size: Math.max(box.right - box.left, box.bottom - box.top) };
+        });
+        for (const [width, height] of [[1280, 800], [760, 520], [480, 460], [375, 700]]) {
+            await live.page.setViewportSize({ width, height });
+            await live.drawn();
+            const { outside, parts, size } = await hidden();
+            assert.ok(!outside, `the body leaves a page of ${width} x ${height}`);
+            assert.deepEqual(parts, [], `panels cover the body on ${width} x ${height}`);
+            assert.ok(size > 120, `the body is ${size} pixels wide on ${width} x ${height}`);
+        }
+        await live.page.mouse.move(187, 300);
+        for (let i = 0; i < 6; ++i) await live.page.mouse.wheel(0, -200);
+        await live.page.waitForFunction(() => {
+            const xs = window.incise.corners().map(({ x }) => x);
+            return Math.max(...xs) - Math.min(...xs) > innerWidth;
+        });
+        await live.press('c');
+        await live.drawn();
+        const { outside, parts } = await hidden();
+        assert.ok(!outside && parts.length === 0, `C does not fit the body: ${parts}`);
+    });
+
+    test('StrokeOutlastsASlowPage', { timeout }, async () => {
+        await live.ask(() => {
+            const { send } = WebSocket.prototype;
+            window.sent = [];
+            WebSocket.prototype.send = function (data) {
+                window.sent.push(JSON.parse(String(data)).do);
+                send.call(this, data);
+            };
+        });
+        await live.press('2');
+        await live.press('ArrowLeft');
+        // After some busy seconds the page takes the tool, and only then reads the states of these seconds.
+        await live.ask(() => {
+            const end = performance.now() + 5000;
+            while (performance.now() < end);
+            document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+        });
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.present));
+        for (let i = 0; i < 3; ++i) {
+            await live.press('ArrowRight');
+            await live.ask(() => {
+                const end = performance.now() + 1000;
+                while (performance.now() < end);
+            });
+        }
+        const { tick } = await live.state();
+        await live.until((before) => window.incise.state().tick > before + 150, tick);
+        assert.ok((await live.state()).tools.some((tool) => tool.mine && tool.present), 'the tool is dropped');
+        // The way to where the tool is dropped belongs to the stroke, though no picture comes between.
+        await live.ask(() => {
+            for (const key of ['ArrowRight', 'Enter'])
+                document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
+        });
+        await live.until(() => !window.incise.state().tools.some((tool) => tool.mine));
+        const sent = await live.ask(() => window.sent);
+        assert.deepEqual(sent.slice(-2), ['move', 'drop']);
+        for (const what of ['take', 'drop']) assert.equal(sent.filter((one) => one === what).length, 1, `${sent}`);
+    });
+
+    test('HandMovesBetweenPictures', { timeout }, async () => {
+        const middle = await live.middle();
+        await live.press('4');
+        await live.page.mouse.move(middle.x, middle.y);
+        await live.page.mouse.down();
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine));
+        // No picture comes any more; orders go nevertheless.
+        const sent = await live.ask(() => {
+            window.requestAnimationFrame = () => 0;
+            return window.incise.ordersSent();
+        });
+        await live.page.mouse.move(middle.x + 10, middle.y - 20, { steps: 4 });
+        const often = { polling: 50, timeout: 40000 };
+        await live.page.waitForFunction((before) => window.incise.ordersSent() > before, sent, often);
+        await live.page.mouse.up();
+        await live.page.waitForFunction(() => !window.incise.state().tools.some((tool) => tool.mine), null, often);
     });
 
     test('NarrowPageLeavesTheMiddleFree', { timeout }, async () => {
@@ -426,6 +540,36 @@ describe('hands', { timeout: whole }, () => {
         assert.deepEqual(answers.filter(([, answered]) => !answered).map(([text]) => text), []);
         const { tick } = await live.state();
         await live.until((before) => window.incise.state().tick > before + 2, tick);
+    });
+});
+
+describe('tools of a scenario', { timeout: whole }, () => {
+    test('TableAndBladeAreDrawn', { timeout }, async (context) => {
+        const body = join(folder, 'on_table.toml');
+        writeFileSync(body, onTable);
+        const own = await startLive(join(folder, 'on_table.jsonl'), body);
+        try {
+            const live = await LivePage.open(browser, own.address);
+            if (!(await live.ask(() => window.incise.hello().scripted_tools))) return context.skip('an older program');
+            await live.until(() => window.incise.scriptedDrawn().length === 2);
+            await live.send({ do: 'pause', on: true });
+            await live.until(() => window.incise.state().paused);
+            assert.deepEqual((await live.ask(() => window.incise.scriptedDrawn())).sort(), ['knife', 'table']);
+            const picture = await live.picture();
+            // The table before the body is lighter than the ground, and the blade stands over the body.
+            const [table, knife] = await live.ask(() => [
+                window.incise.screenPointOf([0.05, -0.03, 0]),
+                window.incise.screenPointOf(window.incise.state().scripted[0].pose.at),
+            ]);
+            const ground = colourAt(picture, 150, 60);
+            assert.ok(difference(colourAt(picture, table.x, table.y), ground) > 12, 'the table is not seen');
+            const near = [0, 2, 4, 6, 8].map((up) => colourAt(picture, knife.x, knife.y - up));
+            assert.ok(near.some(([red, , blue]) => blue > 0.8 * red && red > 90), `no steel at the blade: ${near}`);
+            assert.deepEqual(live.errors, []);
+            await live.close();
+        } finally {
+            await own.stop();
+        }
     });
 });
 

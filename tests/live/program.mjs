@@ -16,9 +16,9 @@ export const nodeModules = need('INCISE_NODE_MODULES');
 /** Seconds in which the program must name its address. */
 const startWithin = 60;
 
-/** @param {string} record file for what is done */
-export async function startLive(record) {
-    const args = ['live', scenario, '--port', '0', '--no-open', '--record', record];
+/** @param {string} record file for what is done @param {string} [body] another scenario */
+export async function startLive(record, body = scenario) {
+    const args = ['live', body, '--port', '0', '--no-open', '--record', record];
     const child = spawn(program, args, { stdio: ['ignore', 'ignore', 'pipe'] });
     let said = '';
     const address = await new Promise((found, failed) => {

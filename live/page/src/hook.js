@@ -36,6 +36,14 @@ export function exposeForTests(app) {
         screenPointOf: (point) => onScreen(new Vector3().fromArray(point)),
         /** What a point of the page shows of the body. @param {number} x @param {number} y */
         pick: (x, y) => app.aim.pick(x, y)?.point.toArray() ?? null,
+        /** The corners of the box round the body at rest, on the page. */
+        corners: () =>
+            [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
+                const { min, max } = scene.box;
+                return scene.onScreen(new Vector3((i & 1 ? max : min).x, (i & 2 ? max : min).y, (i & 4 ? max : min).z));
+            }),
+        /** Names of the tools of the scenario that are drawn. */
+        scriptedDrawn: () => app.toolsView.scripted,
         camera: () => scene.camera.matrixWorld.toArray(),
         /** Sends any text, as a hostile page would. @param {Record<string, unknown>} order */
         send: (order) => app.send(order),

@@ -110,6 +110,11 @@ export class ToolsView {
         for (const name of this.#shown.keys()) this.#remove(name);
     }
 
+    /** Names of the tools of the scenario that are drawn, for tests. */
+    get scripted() {
+        return [...this.#shown.keys()].filter((name) => name.startsWith('=')).map((name) => name.slice(1));
+    }
+
     /** @param {string} name */
     #remove(name) {
         const group = this.#shown.get(name)?.group;
