@@ -7,6 +7,7 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, describe, test } from 'node:test';
+import { HandCheck } from '../../live/page/src/hand_check.js';
 import { between, beyond, launch, LivePage } from './page.mjs';
 import { colourAt, countChanged, difference } from './picture.mjs';
 import { run, scenario, startLive } from './program.mjs';
@@ -71,6 +72,53 @@ const around = (from, to) => ({
     right: Math.max(from.x, to.x) + 30,
     top: Math.min(from.y, to.y) - 40,
     bottom: Math.max(from.y, to.y) + 40,
+});
+
+describe('the hand and the states', () => {
+    /** What a check says of states that come 60 times a second. @param {HandCheck} check @param {string} own @param {boolean} holds @param {number[]} ticks */
+    const looks = (check, own, holds, [from, to]) => {
+        const verdicts = new Set();
+        for (let tick = from; tick < to; ++tick) verdicts.add(check.look(own, holds, (1000 * tick) / 60));
+        return [...verdicts];
+    };
+
+    test('OldStatesDoNotEmptyTheHand', () => {
+        const check = new HandCheck();
+        check.sent('take', 0);
+        assert.deepEqual(looks(check, '', true, [0, 500]), ['waiting']);
+        assert.deepEqual(looks(check, 'blade_1', true, [500, 510]), ['agreed']);
+        check.sent('drop', 8500);
+        check.sent('take', 8600);
+        // States of the first stroke, of the time after it, and of the second.
+        assert.deepEqual(looks(check, 'blade_1', true, [516, 600]), ['agreed']);
+        assert.deepEqual(looks(check, '', true, [600, 800]), ['waiting']);
+        assert.deepEqual(looks(check, 'blade_2', true, [800, 810]), ['agreed']);
+    });
+
+    test('ToolThatIsTakenAwayIsGoneAtOnce', () => {
+        const check = new HandCheck();
+        check.sent('take', 0);
+        looks(check, 'blade_1', true, [0, 10]);
+        assert.equal(check.look('', true, 200), 'gone');
+    });
+
+    test('RefusedTakeIsGoneAfterSomeSeconds', () => {
+        const check = new HandCheck();
+        check.sent('take', 0);
+        check.refused(100);
+        assert.ok(check.doubts);
+        assert.deepEqual(looks(check, '', true, [6, 180]), ['waiting']);
+        assert.ok(looks(check, '', true, [180, 250]).includes('gone'));
+    });
+
+    test('ToolThatOnlyTheServerHoldsIsLeft', () => {
+        const check = new HandCheck();
+        check.sent('take', 0);
+        looks(check, 'probe_1', true, [0, 10]);
+        check.sent('undo', 200);
+        assert.deepEqual(looks(check, 'probe_1', false, [12, 180]), ['waiting']);
+        assert.ok(looks(check, 'probe_1', false, [180, 250]).includes('left'));
+    });
 });
 
 describe('loading', { timeout: whole }, () => {

@@ -219,11 +219,11 @@ export class App {
         if (this.#framed !== body) {
             this.#framed = body;
             this.scene.frame(hello.size);
-            Object.assign(this.settings, suitable(hello.element_size, this.scene.diagonal));
+            Object.assign(this.settings, suitable(hello.element_size, this.scene.diagonal, hello.has_contact));
         }
         this.tissue.setBody(hello);
         this.toolsView.setBody(this.scene.diagonal, this.scene.box.getCenter(new Vector3()));
-        this.toolPanel.setBody(hello.element_size, this.scene.diagonal);
+        this.toolPanel.setBody(hello.element_size, this.scene.diagonal, hello.has_contact);
         write('title', hello.title || 'Incise');
         document.title = hello.title ? `${hello.title} – Incise` : 'Incise';
         this.#showFields();
@@ -274,7 +274,7 @@ export class App {
         let again = this.keyboard.move(seconds);
         this.pointer.deliver();
         if (this.mode && !this.hand.isEmpty && this.mode.step(seconds)) again = true;
-        this.hand.flush();
+        if (!this.#check.doubts) this.hand.flush();
         return again;
     }
 

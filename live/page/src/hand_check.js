@@ -33,6 +33,11 @@ export class HandCheck {
         this.#restart(now);
     }
 
+    /** True if the last take may have been refused: then the server knows of no tool to move. */
+    get doubts() {
+        return this.#refused && this.#shown < this.#taken;
+    }
+
     /** The server refused an order, maybe the last take. @param {number} now milliseconds */
     refused(now) {
         if (this.#refused) return;
@@ -55,7 +60,10 @@ export class HandCheck {
         if ((own !== '') === holds) {
             // Takes that no state has shown were too short, or refused.
             if (!holds && this.#lasts(atLast, now)) this.#shown = this.#taken;
-            if (holds) this.#restart(now);
+            if (holds) {
+                this.#restart(now);
+                this.#refused = false;
+            }
             return 'agreed';
         }
         if (holds && this.#shown === this.#taken) return 'gone';

@@ -17,13 +17,18 @@
 /** Toughness of soft tissue that the blade feels, J/m^2. */
 export const toughness = 160;
 
-/** @param {number} element mean edge @param {number} diagonal of the body @returns {Settings} */
-export function suitable(element, diagonal) {
+/**
+ * @param {number} element mean edge
+ * @param {number} diagonal of the body
+ * @param {boolean} [touches] tools touch tissue: without that a blade has no force
+ * @returns {Settings}
+ */
+export function suitable(element, diagonal, touches = true) {
     const burr = Math.max(1.5 * element, 0.02 * diagonal);
     return {
         depth: 1.5 * element,
         through: false,
-        resistance: true,
+        resistance: touches,
         probe: Math.max(1.5 * element, 0.03 * diagonal),
         press: Math.max(1.2 * element, 0.02 * diagonal),
         grip: Math.max(1.5 * element, 0.02 * diagonal),

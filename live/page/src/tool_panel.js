@@ -65,8 +65,9 @@ export class ToolPanel {
         return [low, Math.max(most * this.#diagonal, 2 * low)];
     }
 
-    /** @param {number} elementSize @param {number} diagonal */
-    setBody(elementSize, diagonal) {
+    /** @param {number} elementSize @param {number} diagonal @param {boolean} touches tools touch tissue */
+    setBody(elementSize, diagonal, touches) {
+        input('resistance').disabled = !touches;
         this.#element = elementSize;
         this.#diagonal = diagonal;
         this.show();
