@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -434,8 +435,13 @@ Server::~Server() {
 std::uint16_t Server::port() const { return parts_->port; }
 
 std::string Server::Parts::root() const {
-    const bool is_ipv6 = options.host.find(':') != std::string::npos;
-    const std::string name = is_ipv6 ? "[" + options.host + "]" : options.host;
+    // What listens on all addresses is reached by the name of the machine.
+    const bool is_everywhere = options.host == "0.0.0.0" || options.host == "::";
+    const bool is_ipv6 = !is_everywhere && options.host.find(':') != std::string::npos;
+    error_code no_name;
+    std::string name = is_everywhere ? asio::ip::host_name(no_name) : options.host;
+    if (no_name) name = options.host;
+    if (is_ipv6) name = "[" + name + "]";
     return "http://" + name + ":" + std::to_string(port) + "/";
 }
 

@@ -34,6 +34,8 @@ class RandomHands {
                     marks, [&](const auto& mark) { return mark.num_ticks > session.num_ticks(); });
             }
         }
+        session.tick();  // it may have gone back to the start
+        recorder.note_tick(session);
     }
 
   private:
@@ -55,7 +57,7 @@ class RandomHands {
         const double x = between(0.0, 0.1), y = between(0.0, 0.1), z = between(0.02, 0.07);
         if (one_in(3)) {
             const std::string name = "tool_" + std::to_string(++count_);
-            switch (below(4)) {
+            switch (below(5)) {
                 case 0:
                     give(session, add_blade(name, x, y, z));
                     break;
@@ -65,14 +67,22 @@ class RandomHands {
                 case 2:
                     give(session, add_ball("probe", name, x, y, 0.07));
                     break;
-                default:
+                case 3:
                     give(session, add_ball("grasper", name, x, y, 0.05));
                     give(session, CloseGrasper{name});
+                    break;
+                default:
+                    give(session, add_suture(name, x, y));
             }
         }
         for (const LedTool& tool : session.tools()) {
             if (!tool.is_in_hand) continue;
             const std::string name = tool.name;
+            if (tool.kind == "suture") {
+                if (one_in(4)) give(session, DrawSuture{name, between(0.5, 1.0) * tool.length});
+                if (one_in(20)) give(session, UntieSuture{name});
+                continue;
+            }
             const Vec3 at =
                 tool.pose.position +
                 Vec3(between(-0.005, 0.005), between(-0.005, 0.005), between(-0.004, 0.003));
@@ -89,8 +99,8 @@ class RandomHands {
 
 TEST(Recording, PlaysToTheSameBitsInEveryTick) {
     const BlockFolder folder;
-    std::size_t num_edits = 0;
-    for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::size_t num_edits = 0, num_sutures = 0;
+    for (unsigned seed = 1; seed <= 12; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const auto file = folder.file("hands.jsonl");
         Session session(folder.scenario());
@@ -108,8 +118,11 @@ TEST(Recording, PlaysToTheSameBitsInEveryTick) {
         EXPECT_EQ(replay.session().simulation().edits().size(),
                   session.simulation().edits().size());
         num_edits += session.simulation().edits().size();
+        num_sutures +=
+            static_cast<std::size_t>(std::ranges::count(session.tools(), "suture", &LedTool::kind));
     }
     EXPECT_GT(num_edits, 50u);
+    EXPECT_GT(num_sutures, 5u);
 }
 
 class RecordedStroke : public testing::Test {

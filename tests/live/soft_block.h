@@ -50,6 +50,11 @@ inline Order add_ball(const std::string& kind, const std::string& name, double x
     return order(R"({"add":")" + name + R"(","tool":{"kind":")" + kind +
                  R"(","shape":{"sphere":{"radius":0.012}}},)" + at(x, y, z) + "}");
 }
+inline Order add_suture(const std::string& name, double x, double y) {
+    return order(R"({"add":")" + name + R"(","tool":{"kind":"suture","stiffness":20,"points":[[)" +
+                 std::to_string(x) + "," + std::to_string(y) + ",0.05],[" +
+                 std::to_string(0.1 - x) + "," + std::to_string(y) + R"(,0.05]]},"at":[0,0,0]})");
+}
 inline Order move(const std::string& name, double x, double y, double z) {
     return order(R"({"move":")" + name + "\"," + at(x, y, z) + "}");
 }
