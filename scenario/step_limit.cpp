@@ -26,7 +26,7 @@ namespace {
     std::ostringstream text;
     text << "steps of " << limit << " s would take more than 1e10 of them ";
     if (std::isfinite(dynamics.end_time))
-        text << "to the end at " << dynamics.end_time << " s: lower dynamics.end_time, or ";
+        text << "to the end at " << dynamics.end_time << " s: lower dynamics.end_time or ";
     else
         text << "for a second: ";
     if (dynamics.time_step)

@@ -8,22 +8,12 @@
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
-#include "incise/io/vtk/vtu_writer.h"
-#include "incise/live/loop/tool_json.h"
-#include "incise/runner/frame_builder.h"
-#include "incise/topology/mesh_metrics.h"
 
 namespace incise::live {
 
 namespace {
 
 using std::chrono::milliseconds;
-
-Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-std::string message_text(std::string_view level, const std::string& text) {
-    return text_of(Json{{"type", "message"}, {"level", level}, {"text", text}});
-}
 
 /// A page may name no files of this machine.
 void refuse_files(const Json& definition) {
@@ -45,15 +35,11 @@ LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
       recorder_(recorder),
       server_(server),
       pictures_(session),
+      messages_(session, pictures_),
+      downloads_(session, recorder, server),
       pace_(session.tick_length()),
       moments_(session.save()),
-      num_warnings_told_(session.simulation().warnings().size()) {
-    const auto& specs = session.simulation().scenario().tools;
-    for (std::size_t i = 0; i < specs.size(); ++i)
-        if (auto definition = live::json_of(session.world().tool({i}).shape))
-            scripted_tools_.push_back(
-                {{i}, specs[i].name, specs[i].is_obstacle, std::move(*definition)});
-}
+      num_warnings_told_(session.simulation().warnings().size()) {}
 
 void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     bool was_opened = !devices_.empty();
@@ -61,7 +47,7 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     while (!is_to_stop()) {
         handle_requests(is_to_stop);
         try {
-            answer_downloads();
+            downloads_.answer();
         } catch (const std::exception& error) {
             tell("error", std::string("a file could not be made: ") + error.what());
         }
@@ -112,8 +98,7 @@ void LiveLoop::handle(const Request& request) {
             case Request::Kind::closed:
                 return close(request.page);
             case Request::Kind::download:
-                downloads_.push_back(request);
-                return;
+                return downloads_.add(request);
             case Request::Kind::text:
                 return read(request);
         }
@@ -136,34 +121,6 @@ void LiveLoop::close(std::uint64_t page) {
     if (operator_ != page) return;
     operator_ = pages_.empty() ? 0 : pages_.front();
     if (operator_ != 0) say_hello(operator_);
-}
-
-/// Answers the downloads that wait: those of one kind with the same file. After that, others wait
-/// until files have taken no more than a twentieth of the time.
-void LiveLoop::answer_downloads() {
-    const auto begin = Pace::Clock::now();
-    if (downloads_.empty() || begin < next_download_) return;
-    std::map<std::string, Download> files;
-    for (const Request& request : std::exchange(downloads_, {})) {
-        const auto [file, is_new] = files.try_emplace(request.text);
-        if (is_new) file->second = download(request.text);
-        server_.answer(request.page, file->second.content, file->second.type, file->second.name);
-    }
-    const auto end = Pace::Clock::now();
-    next_download_ = end + 20 * (end - begin);
-}
-
-LiveLoop::Download LiveLoop::download(const std::string& target) const {
-    const std::string name = session_.simulation().scenario().name;
-    if (target == "/recording.jsonl")
-        return {recorder_.text(), "application/jsonl", name + ".jsonl"};
-    const sim::World& world = session_.world();
-    const auto forces = world.contact_forces();
-    runner::FrameBuilder builder(world.model(), world.time(),
-                                 session_.simulation().scenario().output.fields,
-                                 forces ? &*forces : nullptr);
-    return {io::vtu_text(builder.finish(), io::Compression::zlib), "application/octet-stream",
-            name + ".vtu"};
 }
 
 /// Reads what a page says. Of one that only looks on, no long text is worth the time.
@@ -291,8 +248,7 @@ void LiveLoop::go_back(const Session::Moment& moment) {
     note([&] { recorder_.note_return(session_); });
     moments_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
-    cut_area_ = 0.0;
-    num_edits_counted_ = 0;
+    messages_.forget_edits();
     num_warnings_told_ = session_.simulation().warnings().size();
     hands_.clear();
     for (const LedTool& tool : session_.tools())
@@ -408,33 +364,7 @@ void LiveLoop::tell_if_slow() {
 }
 
 void LiveLoop::say_hello(std::uint64_t page) {
-    const topology::Mesh& mesh = session_.world().mesh();
-    Eigen::AlignedBox3d box;  // at rest: pieces may be far away by now
-    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
-    Json hello = {{"type", "hello"},
-                  {"title", session_.simulation().scenario().title},
-                  {"tick", session_.tick_length()},
-                  {"role", page == operator_ ? "operator" : "watcher"},
-                  {"size", {json_of(Vec3(box.min())), json_of(Vec3(box.max()))}},
-                  {"element_size", session_.element_size()},
-                  {"has_contact", session_.has_contact()},
-                  {"recording", session_.simulation().scenario().name + ".jsonl"},
-                  {"regions", Json::array()},
-                  {"fields", Json::array()},
-                  {"scripted_tools", Json::array()},
-                  {"kinds", {"blade", "carver"}}};
-    if (session_.has_contact())
-        for (const char* kind : {"probe", "grasper", "suture"}) hello["kinds"].push_back(kind);
-    for (const int region : pictures_.mesh().regions())
-        hello["regions"].push_back({{"id", region}, {"name", "region " + std::to_string(region)}});
-    for (const ShownField& field : PictureMaker::fields())
-        hello["fields"].push_back({{"name", field.name}, {"unit", field.unit}});
-    for (const ScriptedTool& tool : scripted_tools_)
-        hello["scripted_tools"].push_back({{"name", tool.name},
-                                           {"kind", tool.definition["kind"]},
-                                           {"is_obstacle", tool.is_obstacle},
-                                           {"tool", tool.definition}});
-    server_.send(page, text_of(hello));
+    server_.send(page, messages_.hello(page == operator_));
 }
 
 void LiveLoop::say_hello_to_all() {
@@ -444,75 +374,14 @@ void LiveLoop::say_hello_to_all() {
 void LiveLoop::show() {
     is_changed_ = false;
     if (pages_.empty()) return;
+    const auto hand = hands_.find(operator_);
     auto picture = pictures_.make(session_);
-    count_cut_area();
-    picture->state = state();
+    picture->state = messages_.state({.is_paused = is_paused_,
+                                      .can_undo = moments_.has_stroke(),
+                                      .speed = pace_.speed(),
+                                      .factor = pace_.factor(),
+                                      .in_hand = hand == hands_.end() ? "" : hand->second});
     server_.show(std::move(picture));
-}
-
-/// Adds the areas of the edits since the last picture.
-void LiveLoop::count_cut_area() {
-    const auto& edits = session_.simulation().edits();
-    for (; num_edits_counted_ < edits.size(); ++num_edits_counted_)
-        cut_area_ += edits[num_edits_counted_].cut_area;
-}
-
-std::string LiveLoop::state() const {
-    const sim::World& world = session_.world();
-    const sim::BodyTotals& last = world.ledger().last();
-    Json state = {{"type", "state"},
-                  {"tick", session_.num_ticks()},
-                  {"time", world.time()},
-                  {"paused", is_paused_},
-                  {"speed", pace_.speed()},
-                  {"factor", pace_.factor()},
-                  {"step", session_.simulation().time_step()},
-                  {"nodes", last.nodes},
-                  {"elements", last.elements},
-                  {"components", last.components},
-                  {"edits", session_.simulation().edits().size()},
-                  {"cut_area", cut_area_},
-                  {"mass", last.totals.mass},
-                  {"field", pictures_.field()},
-                  {"can_undo", moments_.has_stroke()},
-                  {"tools", Json::array()},
-                  {"scripted", Json::array()}};
-    for (const ScriptedTool& tool : scripted_tools_) {
-        Json entry = {{"present", world.is_tool_present(tool.id)}};
-        if (world.is_tool_present(tool.id)) {
-            Json pose;
-            add_pose(pose, world.tool_pose(tool.id));
-            entry["pose"] = std::move(pose);
-            const auto& tools = world.report().tools;
-            const auto found = std::ranges::find_if(
-                tools, [&](const sim::ToolState& row) { return row.tool.index == tool.id.index; });
-            if (found != tools.end()) entry["force"] = json_of(found->force);
-        }
-        state["scripted"].push_back(std::move(entry));
-    }
-    for (const LedTool& tool : session_.tools()) {
-        const bool is_suture = tool.kind == "suture";
-        const bool is_tied = is_suture && world.is_suture_tied(tool.id);
-        if (is_suture ? !is_tied : !tool.is_in_hand) continue;
-        Json entry = {{"name", tool.name},
-                      {"kind", tool.kind},
-                      {"tool", live::json_of(tool.definition)},
-                      {"present", world.is_tool_present(tool.id)},
-                      {"force", json_of(tool.force)},
-                      {"torque", json_of(tool.torque)}};
-        const auto hand = hands_.find(operator_);
-        entry["mine"] = hand != hands_.end() && hand->second == tool.name;
-        if (is_suture) entry["length"] = world.suture_length(tool.id);
-        Json pose;
-        add_pose(pose, is_suture ? Pose() : world.tool_pose(tool.id));
-        entry["pose"] = std::move(pose);
-        if (tool.kind == "grasper") {
-            entry["held"] = world.num_held(tool.id);
-            entry["closed"] = world.is_grasper_closed(tool.id);
-        }
-        state["tools"].push_back(std::move(entry));
-    }
-    return text_of(state);
 }
 
 }  // namespace incise::live

@@ -13,8 +13,10 @@
 
 #include "incise/live/json_values.h"
 #include "incise/live/loop/device.h"
+#include "incise/live/loop/downloads.h"
 #include "incise/live/loop/moments.h"
 #include "incise/live/loop/pace.h"
+#include "incise/live/loop/page_messages.h"
 #include "incise/live/loop/picture_maker.h"
 #include "incise/live/recording.h"
 #include "incise/live/server/server.h"
@@ -44,18 +46,11 @@ class LiveLoop {
     std::function<void(std::string_view, const std::string&)> on_message;
 
   private:
-    /// A file that a page loads down.
-    struct Download {
-        std::string content, type, name;
-    };
-
     void rest(Pace::Clock::time_point now);
     void handle_requests(const std::function<bool()>& is_to_stop);
     void handle(const Request& request);
     void open(std::uint64_t page);
     void close(std::uint64_t page);
-    void answer_downloads();
-    Download download(const std::string& target) const;
     void read(const Request& request);
     void obey(std::uint64_t page, const Json& wish);
 
@@ -82,28 +77,18 @@ class LiveLoop {
     void say_hello(std::uint64_t page);
     void say_hello_to_all();
     void show();
-    void count_cut_area();
-    std::string state() const;
-
-    /// A tool of the scenario that pages draw.
-    struct ScriptedTool {
-        sim::ToolId id;
-        std::string name;
-        bool is_obstacle;
-        Json definition;
-    };
 
     Session& session_;
     Recorder& recorder_;
     Server& server_;
     PictureMaker pictures_;
+    PageMessages messages_;
+    Downloads downloads_;
     Pace pace_;
     Moments moments_;
-    Pace::Clock::time_point next_moment_ = {}, next_download_ = {};
-    std::deque<Request> requests_;    // not handled yet
-    std::vector<Request> downloads_;  // that wait
+    Pace::Clock::time_point next_moment_ = {};
+    std::deque<Request> requests_;  // not handled yet
     std::vector<Device*> devices_;
-    std::vector<ScriptedTool> scripted_tools_;
     std::string last_complaint_;                  // about orders of devices
     std::vector<std::uint64_t> pages_;            // in the order of opening
     std::uint64_t operator_ = 0;                  // 0: none
@@ -113,8 +98,6 @@ class LiveLoop {
     int steps_wanted_ = 0;  // while paused
     std::size_t num_warnings_told_;
     bool has_told_pace_ = false;
-    double cut_area_ = 0.0;  // of the first edits, m2
-    std::size_t num_edits_counted_ = 0;
     std::uint64_t last_failure_ = 0;  // tick
     int num_failures_ = 0;            // that got no farther than the last one
 };

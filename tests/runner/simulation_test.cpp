@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "incise/base/error.h"
@@ -99,6 +100,12 @@ TEST(Simulation, RefusesMoreStepsThanWouldEverEnd) {
               "dynamics.end_time or raise dynamics.time_step");
     EXPECT_NE(refusal("", 1e300).find("check shape and material of element "), std::string::npos);
     EXPECT_EQ(refusal("", 0.3), "no InputError");
+    // Without an end, only steps that would never make a second are refused.
+    constexpr double no_end = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(refusal("time_step = 1e-300", no_end),
+              "scene.toml:14:13: steps of 1e-300 s would take more than 1e10 of them for a second: "
+              "raise dynamics.time_step");
+    EXPECT_EQ(refusal("", no_end), "no InputError");
 }
 
 TEST(Simulation, FramesFallOnMultiplesUpToTheEnd) {
