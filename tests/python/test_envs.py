@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import time
 import unittest
 from typing import Any
 
@@ -361,6 +362,36 @@ class Parts(unittest.TestCase):
             self.assertEqual(int(picture[16, 16, 0]), 0)
             self.assertGreater(int(picture[16, 16, 1]), 0)
 
+    def test_triangles_cover_their_pixels_once(self) -> None:
+        random = np.random.default_rng(1)
+        for shape in ((20, 30), (200, 170)):
+            # A square of many triangles, some of it outside the picture.
+            side = np.linspace(-0.1, 1.3, 9)
+            grid = np.stack(np.meshgrid(side * shape[1], side * shape[0]), axis=-1)
+            grid[1:-1, 1:-1] += random.uniform(-0.05, 0.05, (7, 7, 2)) * shape[::-1]
+            points = np.dstack([grid, 1.0 + 0.01 * grid[..., 0] + 0.02 * grid[..., 1]])
+            a, b, c, d = (p.reshape(-1, 3) for p in (points[:-1, :-1], points[:-1, 1:],
+                                                     points[1:, 1:], points[1:, :-1]))
+            corners = np.concatenate([np.stack([a, b, c], 1), np.stack([a, d, c], 1)])
+            parts = list(renderer.pixels(corners, shape))
+            pixel = np.concatenate([part[1] for part in parts])
+            self.assertEqual(sorted(pixel.tolist()), list(range(shape[0] * shape[1])))
+            row, column = np.divmod(pixel, shape[1])
+            np.testing.assert_allclose(np.concatenate([part[2] for part in parts]),
+                                       1.0 + 0.01 * (column + 0.5) + 0.02 * (row + 0.5))
+
+    def test_lines_have_their_width_and_are_hidden(self) -> None:
+        wall = np.array([[-9.0, 0, -9], [9, 0, -9], [0, 0, 12]])
+        for y, is_seen in ((-0.5, True), (0.01, True), (0.5, False)):
+            for size in (32, 300):
+                camera = renderer.Camera([0.0, -5.0, 0.0], [0.0, 0.0, 0.0], (size, size))
+                segment = np.array([[[-1.0, y, 0.0], [1.0, y, 0.0]]])
+                picture = renderer.draw(camera, wall, np.array([[0, 1, 2]]), np.full((1, 3), 200.0),
+                                        [(segment, 0.1, (9, 0, 0))])
+                width = np.count_nonzero((picture == (9, 0, 0)).all(axis=2), axis=0)
+                expected = max(2.0, 0.1 * camera.focal_length / (5 + y)) if is_seen else 0
+                self.assertAlmostEqual(width[size // 2], expected, delta=1.01 if is_seen else 0)
+
     def test_pictures_show_the_cut(self) -> None:
         env = envs.PathIncisionEnv(render_mode="rgb_array")
         env.reset(seed=0)
@@ -369,6 +400,37 @@ class Parts(unittest.TestCase):
         after = env.render()
         self.assertEqual(before.shape, (96, 96, 3))
         self.assertGreater(np.count_nonzero(before != after), 50)
+
+    def test_a_cut_looks_alike_at_all_sizes(self) -> None:
+        # The blade is moved away, so that it hides nothing.
+        for kind, span in ((envs.PathIncisionEnv, (0.08, 0.85)),
+                           (envs.WedgeResectionEnv, (0.15, 0.35))):
+            env = kind()
+            play(env, 0)
+            env._tip = [-0.03, 0.0, 0.0]
+            marked = line.resampled(env._line, 200)[int(200 * span[0]):int(200 * span[1])]
+            shares = []
+            for shape in ((64, 64), (96, 96), (480, 480), (480, 640), (800, 1000)):
+                with self.subTest(kind=kind.__name__, shape=shape):
+                    picture = env.picture(shape).astype(int)
+                    is_red = (picture[..., 0] > 140) & (picture[..., 1:] < 60).all(axis=2)
+                    at = env._camera(shape).project(
+                        np.column_stack([marked, np.full(len(marked), env.size[2])]))
+                    column, row = at[:, 0].astype(int), at[:, 1].astype(int)
+                    self.assertGreater(np.mean(is_red[row, column]), 0.9)
+                    # The share of the picture, were it as wide as it is high.
+                    shares.append(np.count_nonzero(is_red) / shape[0] ** 2)
+            self.assertLess(max(shares), 2.0 * min(shares), shares)
+
+    def test_large_pictures_take_no_long_time(self) -> None:
+        env = envs.DissectionEnv()
+        env.reset(seed=0)
+        times = []
+        for _ in range(3):
+            begin = time.process_time()
+            env.picture((400, 600))
+            times.append(time.process_time() - begin)
+        self.assertLess(min(times), 0.08)  # it was 0.19, and is 0.007
 
 
 class Guide(unittest.TestCase):

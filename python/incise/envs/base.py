@@ -146,9 +146,8 @@ class CuttingEnv(gym.Env):
         """Return what info says beyond the common metrics."""
         raise NotImplementedError
 
-    def _scene(self) -> tuple[Floats, npt.NDArray[np.int64], Floats,
-                              tuple[tuple[Floats, tuple[int, int, int]], ...]]:
-        """Return points, triangles, their colours, and marks: see renderer.draw()."""
+    def _scene(self) -> tuple[Floats, npt.NDArray[np.int64], Floats, tuple[renderer.Lines, ...]]:
+        """Return points, triangles, their colours, and lines: see renderer.draw()."""
         raise NotImplementedError
 
     def _camera(self, shape: tuple[int, int]) -> renderer.Camera:
@@ -264,9 +263,9 @@ class CuttingEnv(gym.Env):
 
         shape: height and width, pixels; None: image_shape.
         """
-        points, triangles, colors, marks = self._scene()
+        points, triangles, colors, lines = self._scene()
         return renderer.draw(self._camera(shape or self.image_shape), points, triangles, colors,
-                             marks)
+                             lines)
 
     @property
     def world(self) -> incise.World:

@@ -36,6 +36,7 @@ WORKSPACE_LOW = (-48.0, 0.0, -10.0)  # mm
 WORKSPACE_HIGH = (48.0, 110.0, 80.0)
 FORCE_STEP, FORCE_LIMIT = 3e2, 1e5
 FORCE_START = (0.0, -1e5, 1e5)       # the unit is nominal: see DissectionEnv, retraction_force
+SPOT_WIDTH = 0.0026                  # m, of the border point in pictures
 VIOLATIONS = ("workspace_violation", "state_limits_violation", "collision_with_board")
 PARKED = incise.Pose([0.0, 0.0, 100.0])
 
@@ -538,11 +539,10 @@ class DissectionEnv(CuttingEnv):
             paint.append(np.broadcast_to(np.asarray(c, float), (len(t), 3)))
             offset += len(p)
         spot = np.array(self._border) * MM
-        marks: tuple[tuple[Floats, tuple[int, int, int]], ...] = ()
+        lines: tuple[renderer.Lines, ...] = ()
         if len(self._border_nodes):
-            cross = np.array([[i, j, 0.0] for i in range(-3, 4) for j in range(-3, 4)]) * 0.0004
-            marks = ((spot + cross, (250, 230, 20)),)
-        return np.concatenate(points), np.concatenate(faces), np.concatenate(paint), marks
+            lines = ((np.array([[spot, spot]]), SPOT_WIDTH, (250, 230, 20)),)
+        return np.concatenate(points), np.concatenate(faces), np.concatenate(paint), lines
 
     def _camera(self, shape: tuple[int, int]) -> renderer.Camera:
         return renderer.Camera([0.085, 0.17, 0.075], [0.0, 0.06, 0.005], shape, 0.75)

@@ -18,6 +18,21 @@ TIP_TO_HANDLE = 0.03  # m, length of the blade in pictures
 NUM_AHEAD = 5         # points of the line in an observation
 FAR = 0.002           # m from the block at rest: the blade cuts nothing there
 ACCURACY = 0.001      # m: how far a good cut may be from its target
+MARK_WIDTH = 0.001    # m, of the line in pictures
+WOUND_WIDTH = 0.002   # m, of the edges of a cut in pictures
+
+
+def rims(triangles: npt.NDArray[np.int64], is_cut: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Return the edges at which cut faces meet the rest of a surface: rows of nodes, shape (M, 2).
+
+    triangles: shape (T, 3).  is_cut: which of them are cut faces, shape (T,).
+    """
+    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+    keys = edges[..., 0] * (1 + int(triangles.max(initial=0))) + edges[..., 1]
+    _, rows = np.unique(keys[is_cut], return_index=True)
+    cut = edges[is_cut].reshape(-1, 2)[rows]
+    met: npt.NDArray[np.int64] = cut[np.isin(keys[is_cut].ravel()[rows], keys[~is_cut])]
+    return met
 
 
 class LineEnv(CuttingEnv):
@@ -258,11 +273,6 @@ class LineEnv(CuttingEnv):
 
     skin, cut_color = (226.0, 178.0, 150.0), (178.0, 40.0, 44.0)
 
-    def _line_on_top(self) -> Floats:
-        fine = line.resampled(self._line, 400)
-        height = np.full(len(fine), self.size[2] + 0.0003)
-        return np.column_stack([fine, height])
-
     def _scene(self) -> Any:
         world = self.world
         positions = world.positions
@@ -270,20 +280,17 @@ class LineEnv(CuttingEnv):
         colors = np.where(surface.is_cut[:, None], np.array(self.cut_color), np.array(self.skin))
         top = np.array(self._tip) + [0.0, 0.0, TIP_TO_HANDLE]
         points, triangles = renderer.rod(np.array(self._tip), top, 0.0012)
-        # A closed wound is a line on the surface: the edges of the cut faces that are seen.
-        corners = positions[surface.triangles[surface.is_cut]]
-        share = np.linspace(0.0, 1.0, 12)[:, None, None, None]
-        wound = (corners + share * (np.roll(corners, 1, axis=1) - corners)).reshape(-1, 3)
-        marks = ((self._line_on_top(), (30, 60, 160)),
-                 (wound + [0.0, 0.0, 0.0002], (190, 20, 24)))
+        marked = np.column_stack([self._line, np.full(len(self._line), self.size[2])])
+        # The lips of a closed wound hide its faces. So their edges are drawn.
+        lips = positions[rims(surface.triangles, surface.is_cut)]
+        lines = ((np.stack([marked[:-1], marked[1:]], axis=1), MARK_WIDTH, (30, 60, 160)),
+                 (lips, WOUND_WIDTH, (190, 20, 24)))
         return (np.concatenate([positions, points]),
                 np.concatenate([surface.triangles, triangles + len(positions)]),
-                np.concatenate([colors, np.full((len(triangles), 3), 120.0)]), marks)
+                np.concatenate([colors, np.full((len(triangles), 3), 120.0)]), lines)
 
     def _camera(self, shape: tuple[int, int]) -> renderer.Camera:
         x, y, z = self.size
         reach = 1.15 * max(x, y)
         return renderer.Camera([0.5 * x, 0.5 * y - 0.95 * reach, z + 1.15 * reach],
                                [0.5 * x, 0.5 * y, 0.5 * z], shape)
-
-

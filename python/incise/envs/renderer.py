@@ -1,9 +1,13 @@
-"""A small software renderer: triangles with a depth buffer, in numpy."""
+"""A small software renderer: triangles and lines with a depth buffer, in numpy."""
 # SPDX-License-Identifier: LGPL-3.0-or-later
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 import numpy.typing as npt
+
+from . import line
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -38,88 +42,137 @@ class Camera:
 
 LIGHT = np.array([0.3, -0.45, 0.84])
 BACKGROUND = (222, 228, 233)
+MIN_LINE_WIDTH = 2.0  # pixels
+LINE_REACH = 1.01     # a line is hidden by what is nearer by more than this factor
+CHUNK = 1 << 14       # pixels that are drawn at once: larger arrays are slower
+
+# Until a large block is freed, the allocator of glibc gives each freed piece of memory back to the
+# system, and small pictures take three times as long.
+np.empty(1 << 20)
+
+# Lines on a picture: segments, shape (M, 2, 3), m; their width, m; their colour.
+Lines = tuple[Floats, float, tuple[int, int, int]]
 
 
-def draw(camera: Camera, points: Floats, triangles: Integers, colors: npt.NDArray[np.float64],
-         marks: tuple[tuple[Floats, tuple[int, int, int]], ...] = ()) -> npt.NDArray[np.uint8]:
+def pixels(corners: Floats, shape: tuple[int, int]) -> Iterator[tuple[Integers, Integers, Floats]]:
+    """Yield the pixels of triangles in pieces: rows of triangles, pixels, and 1 / distance.
+
+    Pixels are numbered row by row. Each has the point of the triangle at its centre.
+
+    corners: pixel column, pixel row and 1 / distance of each corner, shape (T, 3, 3).
+    shape: height and width of the picture, pixels.
+    """
+    height, width = shape
+    column, row, near = corners[:, :, 0], corners[:, :, 1], corners[:, :, 2]
+    ab, ac = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    # Twice the area of the triangle in the picture; a triangle that is seen edge-on has no pixels.
+    area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    top = np.ceil(np.clip(row.min(axis=1) - 0.5, 0, height)).astype(np.int64)
+    bottom = np.floor(np.clip(row.max(axis=1) + 0.5, 0, height)).astype(np.int64)
+    is_in = ((np.abs(area) > 1e-9) & (bottom > top)
+             & (column.max(axis=1) > 0) & (column.min(axis=1) < width))
+    used = np.flatnonzero(is_in)
+    # A span is one row of pixels of one triangle.
+    counts = bottom[used] - top[used]
+    which = np.repeat(np.arange(len(used)), counts)
+    span_row = np.arange(len(which)) + (top[used] - np.cumsum(counts) + counts)[which]
+    y = span_row + 0.5
+    # Inside is where turn * (x - at) >= 0 for each side; at is where the side crosses the row.
+    first, last = np.zeros(len(y)), np.full(len(y), float(width))
+    sign = np.sign(area[used])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for i, j in ((0, 1), (1, 2), (2, 0)):
+            x0, y0 = column[used, i], row[used, i]
+            rise = row[used, j] - y0
+            slope = (column[used, j] - x0) / rise
+            at = (x0 - slope * y0)[which] + slope[which] * y
+            turn = (-sign * rise)[which]
+            np.fmax(first, np.where(turn > 0, at, -np.inf), out=first)
+            np.fmin(last, np.where(turn < 0, at, np.inf), out=last)
+    # The small number leaves no gap between neighbours.
+    start = np.ceil(first - 0.5 - 1e-9).astype(np.int64)
+    counts = np.minimum(np.floor(last - 0.5 + 1e-9).astype(np.int64) + 1, width) - start
+    kept = np.flatnonzero(counts > 0)
+    counts, start, which, y = counts[kept], start[kept], which[kept], y[kept]
+    # 1 / distance is linear in the picture.
+    along = (ab[used, 2] * ac[used, 1] - ac[used, 2] * ab[used, 1]) / area[used]
+    down = (ac[used, 2] * ab[used, 0] - ab[used, 2] * ac[used, 0]) / area[used]
+    change = along[which]
+    value = (near[used, 0][which] + change * (start + 0.5 - column[used, 0][which])
+             + down[which] * (y - row[used, 0][which]))
+    begin = span_row[kept] * width + start
+    triangle = used[which]
+    ends = np.cumsum(counts)
+    i = 0
+    while i < len(counts):
+        before = ends[i] - counts[i]
+        j = max(i + 1, int(np.searchsorted(ends, before + CHUNK, side="right")))
+        span = np.repeat(np.arange(i, j), counts[i:j])
+        step = np.arange(len(span)) - (ends[i:j] - counts[i:j] - before)[span - i]
+        yield triangle[span], begin[span] + step, value[span] + change[span] * step
+        i = j
+
+
+def ribbons(camera: Camera, segments: Floats, width: float) -> Floats:
+    """Return flat triangles, as those of pixels(), that stand for lines. Shape (6 M, 3, 3).
+
+    segments: ends of each, shape (M, 2, 3), m.  width: m, drawn as MIN_LINE_WIDTH at least.
+    """
+    ends = camera.project(segments.reshape(-1, 3)).reshape(-1, 2, 3)
+    near = 1.0 / ends[:, :, 2]
+    half = np.maximum(0.5 * MIN_LINE_WIDTH, 0.5 * width * camera.focal_length * near)
+    way = ends[:, 1, :2] - ends[:, 0, :2]
+    length = np.linalg.norm(way, axis=1)
+    is_dot = length < 1e-6
+    way[is_dot] = 1.0, 0.0
+    way /= np.where(is_dot, 1.0, length)[:, None]
+    left = np.stack([-way[:, 1], way[:, 0]], axis=1)
+    shape = np.empty((len(segments), 8, 3))
+    for i in range(8):
+        # A round end is half an octagon, so that lines join at any angle.
+        angle = (i + 0.5) * np.pi / 4
+        end = 1 if i in (0, 1, 6, 7) else 0
+        offset = np.cos(angle) * way + np.sin(angle) * left
+        shape[:, i, :2] = ends[:, end, :2] + half[:, end, None] / np.cos(np.pi / 8) * offset
+        shape[:, i, 2] = near[:, end]
+    return shape[:, [[0, i, i + 1] for i in range(1, 7)]].reshape(-1, 3, 3)
+
+
+def draw(camera: Camera, points: Floats, triangles: Integers, colors: Floats,
+         lines: Sequence[Lines] = ()) -> npt.NDArray[np.uint8]:
     """Return a picture, uint8, shape (height, width, 3).
 
     points: shape (N, 3), m.  triangles: rows of points, shape (T, 3); both sides are seen.
     colors: one a triangle, shape (T, 3), 0 to 255.
-    marks: points (M, 3), each a pixel with a colour, hidden by triangles that are 2 % nearer.
+    lines: on surfaces, each over those before it. Triangles that are 1 % nearer hide them. A
+        segment of no length is a dot.
     """
     height, width = camera.shape
-    picture = np.empty((height * width, 3), np.uint8)
-    picture[:] = BACKGROUND
     seen = camera.project(points)
-    corners = seen[triangles]
-    low = np.floor(corners[:, :, :2].min(axis=1) + 0.5).astype(np.int64)
-    high = np.floor(corners[:, :, :2].max(axis=1) - 0.5).astype(np.int64) + 1
-    np.clip(low, 0, [width, height], out=low)
-    np.clip(high, 0, [width, height], out=high)
-    size = np.maximum(high - low, 0)
-    counts = size[:, 0] * size[:, 1]
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    # Twice the area of the triangle in the picture; a triangle that is seen edge-on has no pixels.
-    ab, ac = b - a, c - a
-    area: Floats = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
-    counts[np.abs(area) < 1e-9] = 0
-    used = np.flatnonzero(counts)
-    depth = np.full(height * width, np.inf)
-    if used.size:
-        counts = counts[used]
-        # Each pixel of the box round each triangle, one after the other.
-        tri = np.repeat(used, counts)
-        offset = np.arange(tri.size) - np.repeat(np.cumsum(counts) - counts, counts)
-        columns = size[tri, 0]
-        row = offset // columns
-        x = low[tri, 0] + (offset - row * columns)
-        y = low[tri, 1] + row
-        # Barycentric coordinates are linear in the picture: value = u . (x, y, 1).
-        inverse = 1.0 / area[used]
-        weights = np.empty((len(triangles), 2, 3))
-        a, b, c = a[used], b[used], c[used]
-        weights[used, 0] = (np.stack([c[:, 1] - a[:, 1], a[:, 0] - c[:, 0],
-                                      c[:, 0] * a[:, 1] - a[:, 0] * c[:, 1]], 1)
-                            * inverse[:, None])
-        weights[used, 1] = (np.stack([a[:, 1] - b[:, 1], b[:, 0] - a[:, 0],
-                                      a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]], 1)
-                            * inverse[:, None])
-        w = weights[tri]
-        middle_x, middle_y = x + 0.5, y + 0.5
-        v1 = w[:, 0, 0] * middle_x + w[:, 0, 1] * middle_y + w[:, 0, 2]
-        v2 = w[:, 1, 0] * middle_x + w[:, 1, 1] * middle_y + w[:, 1, 2]
-        inside = np.flatnonzero((v1 >= 0) & (v2 >= 0) & (v1 + v2 <= 1))
-        tri, v1, v2 = tri[inside], v1[inside], v2[inside]
-        pixel = y[inside] * width + x[inside]
-        z = corners[:, :, 2]
-        # 1/depth is linear in the picture.
-        near = 1.0 / z
-        value = near[tri, 0] + v1 * (near[tri, 1] - near[tri, 0]) + v2 * (near[tri, 2]
-                                                                          - near[tri, 0])
-        # Of equal indices the last one stays: the nearest comes last, and at equal depth the
-        # triangle with the higher number, as the sort is stable.
-        order = np.argsort(value, kind="stable")
-        winner = np.full(height * width, -1, np.int64)
-        winner[pixel[order]] = order
-        hit = np.flatnonzero(winner >= 0)
-        front = winner[hit]
-        depth[hit] = 1.0 / value[front]
-        normals = np.cross(points[triangles[:, 1]] - points[triangles[:, 0]],
-                           points[triangles[:, 2]] - points[triangles[:, 0]])
-        length = np.linalg.norm(normals, axis=1)
-        facing = np.abs(normals @ LIGHT) / np.maximum(length, 1e-30)
-        shaded = np.minimum(colors * (0.45 + 0.55 * facing)[:, None], 255).astype(np.uint8)
-        picture[hit] = shaded[tri[front]]
-    for mark_points, color in marks:
-        if len(mark_points) == 0:
-            continue
-        spots = camera.project(mark_points)
-        x, y = np.floor(spots[:, 0]).astype(np.int64), np.floor(spots[:, 1]).astype(np.int64)
-        is_in = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height))
-        pixel = y[is_in] * width + x[is_in]
-        picture[pixel[spots[is_in, 2] <= 1.02 * depth[pixel]]] = color
-    return picture.reshape(height, width, 3)
+    seen[:, 2] = 1.0 / seen[:, 2]
+    # Of what is in front at each pixel: 1 / distance, and the row of its colour.
+    front = np.zeros(height * width)
+    owner = np.zeros(height * width, np.int32)
+    for triangle, pixel, near in pixels(seen[triangles], camera.shape):
+        left = np.flatnonzero(near >= front[pixel])
+        triangle, pixel, near = triangle[left] + 1, pixel[left], near[left]
+        # Of equal pixels the last one is written. So those that are nearer come again.
+        while left.size:
+            front[pixel], owner[pixel] = near, triangle
+            left = np.flatnonzero(near > front[pixel])
+            triangle, pixel, near = triangle[left], pixel[left], near[left]
+    corners = points[triangles]
+    normals = line.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normals, axis=1)
+    facing = np.abs(normals @ LIGHT) / np.maximum(length, 1e-30)
+    paint = np.empty((1 + len(triangles) + len(lines), 3), np.uint8)
+    paint[0] = BACKGROUND
+    paint[1:1 + len(triangles)] = np.minimum(colors * (0.45 + 0.55 * facing)[:, None], 255)
+    for i, (segments, line_width, color) in enumerate(lines):
+        paint[1 + len(triangles) + i] = color
+        for _, pixel, near in pixels(ribbons(camera, segments, line_width), camera.shape):
+            owner[pixel[LINE_REACH * near >= front[pixel]]] = 1 + len(triangles) + i
+    return paint[owner].reshape(height, width, 3)
 
 
 def rod(start: npt.ArrayLike, end: npt.ArrayLike, radius: float,
