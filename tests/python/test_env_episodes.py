@@ -53,6 +53,63 @@ class Refusals(unittest.TestCase):
                     env.step(env.action_space.sample())
 
 
+class Options(unittest.TestCase):
+    """Constructors refuse values at once, and say which, and what is allowed."""
+
+    common = {"num_threads": (0, 257, 1.5), "young": (-5, 0, math.inf, "soft"),
+              "image_shape": ((64, 64, 3), (0, 64), 96, (64.5, 64), "ab"),
+              "time_step": (0, math.nan, None), "frame_skip": (0, 1.5), "damping": (-1.0,),
+              "max_episode_steps": (0,), "stiffness_range": (0.5, math.inf),
+              "num_stiffness_levels": (0,), "cells": ((0, 1, 1), (4, 4), 4, (2.5, 1, 1)),
+              "observation_type": ("smell",), "render_mode": ("human",)}
+    blade = {"size": ((0.1, 0.1), (0.1, 0.1, -0.1), 0.1), "toughness": (-5, 0), "max_speed": (0,),
+             "max_turn": (-1,), "tolerance": (0,), "depth": (0, 1.0, "deep")}
+    of_kind = {envs.PathIncisionEnv: blade,
+               envs.WedgeResectionEnv: {**blade, "width": (0, 1.0), "curvature": (math.nan,)},
+               envs.DissectionEnv: {
+                   "rows_to_cut": (0, 9, 1.5), "thickness": (0,), "connective_thickness": (-1,),
+                   "cutting_radius": (0,), "retraction_force": (math.nan,),
+                   "action_type": ("hop",), "maximum_state_velocity": ((1, 2, 3), 1),
+                   "discrete_action_magnitude": ((1, 2, 3, "x"),), "activation_deadzone": (-1,),
+                   "num_tracking_points_tissue": (-1,), "settle_steps": (-1,),
+                   "num_tracking_points_connective_tissue": (0.5,)}}
+
+    def test_wrong_ones_are_named(self) -> None:
+        for kind, own in self.of_kind.items():
+            for name, values in {**self.common, **own}.items():
+                for value in values:
+                    with self.subTest(kind=kind.__name__, name=name, value=value):
+                        with self.assertRaises(ValueError) as caught:
+                            kind(**{name: value})
+                        self.assertRegex(str(caught.exception), f"^{name} is .*: it must be")
+                        self.assertIn(str(value), str(caught.exception))
+        with self.assertRaisesRegex(ValueError, "multiple of 10"):
+            envs.DissectionEnv(cells=(4, 7, 1))
+        with self.assertRaisesRegex(ValueError, "cut_tissue.*is 'much'"):
+            envs.DissectionEnv(reward_amounts={"cut_tissue": "much"})
+
+    def test_numbers_of_numpy_are_accepted(self) -> None:
+        env = envs.PathIncisionEnv(cells=np.array([4, 1, 2]), young=np.float32(1e3),
+                                   image_shape=[20, 30], max_episode_steps=1e3)
+        self.assertEqual((env.cells, env.image_shape, env.max_episode_steps),
+                         ((4, 1, 2), (20, 30), 1000))
+        env.reset(seed=0)
+        self.assertEqual(env.picture().shape, (20, 30, 3))
+
+    def test_shapes_of_pictures(self) -> None:
+        env = envs.PathIncisionEnv()
+        env.reset(seed=0)
+        for shape in ((0, 5), (), 96, (5, 5, 3), "ab"):
+            with self.subTest(shape=shape), self.assertRaisesRegex(
+                    ValueError, "shape is .*: it must be 2 whole numbers"):
+                env.picture(shape)
+        self.assertEqual(env.picture((5, 7)).shape, (5, 7, 3))
+
+    def test_stiffness_of_an_episode(self) -> None:
+        with self.assertRaisesRegex(ValueError, "stiffness is 'soft': it must be a number"):
+            envs.PathIncisionEnv().reset(options={"stiffness": "soft"})
+
+
 class FailingWorld:
     """A world of which a step raises an error, or leaves a short stable step."""
 
@@ -230,6 +287,14 @@ class Checker(unittest.TestCase):
     def refuses(self, kind: Any, text: str) -> None:
         with self.subTest(kind=kind.__name__), self.assertRaisesRegex(AssertionError, text):
             envs.check_env(kind, seeds=[0], num_steps=4)
+
+    def test_says_what_it_needs(self) -> None:
+        for make in (envs.PathIncisionEnv(), lambda: 3, lambda: envs.PathIncisionEnv()):
+            with self.subTest(make=make), self.assertRaisesRegex(
+                    ValueError, "make is .*: it must .*render_mode"):
+                envs.check_env(make)
+        with self.assertRaisesRegex(AssertionError, "returns 3, which is no Env"):
+            envs.check_env(lambda render_mode=None: 3)
 
     def test_finds_steps_that_do_not_ask_for_a_reset(self) -> None:
         class Early(envs.PathIncisionEnv):

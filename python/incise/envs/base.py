@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, renderer
+from . import gym, options as checks, renderer
 
 Floats = npt.NDArray[np.float64]
 OBSERVATIONS = ("state", "rgb")
@@ -81,24 +81,22 @@ class CuttingEnv(gym.Env):
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}: it must be None, 'rgb_array' or "
                              "'ansi'")
-        if not (time_step > 0 and frame_skip >= 1 and max_episode_steps >= 1):
-            raise ValueError("time_step must be above 0, frame_skip and max_episode_steps at "
-                             "least 1")
-        if not (stiffness_range >= 1 and num_stiffness_levels >= 1):
-            raise ValueError("stiffness_range and num_stiffness_levels must be at least 1")
         self.observation_type = observation_type
-        self.image_shape = (int(image_shape[0]), int(image_shape[1]))
+        self.image_shape = checks.picture_shape("image_shape", image_shape)
         self.render_mode = render_mode
-        self.time_step = float(time_step)
-        self.frame_skip = int(frame_skip)
-        self.max_episode_steps = int(max_episode_steps)
-        self.young = float(self._default_young if young is None else young)
-        self.stiffness_range = float(stiffness_range)
-        self.num_stiffness_levels = int(num_stiffness_levels)
+        self.time_step = checks.number("time_step", time_step, above=0, unit="s")
+        self.frame_skip = checks.whole("frame_skip", frame_skip, least=1)
+        self.max_episode_steps = checks.whole("max_episode_steps", max_episode_steps, least=1)
+        self.young = checks.number("young", self._default_young if young is None else young,
+                                   above=0, unit="Pa")
+        self.stiffness_range = checks.number("stiffness_range", stiffness_range, least=1)
+        self.num_stiffness_levels = checks.whole("num_stiffness_levels", num_stiffness_levels,
+                                                 least=1)
         self.randomize = bool(randomize)
-        self.num_threads = int(num_threads)
+        self.num_threads = checks.whole("num_threads", num_threads, least=1,
+                                        most=checks.MAX_THREADS)
         self.metadata = {**type(self).metadata,
-                         "render_fps": max(1, round(1 / (time_step * frame_skip)))}
+                         "render_fps": max(1, round(1 / (self.time_step * self.frame_skip)))}
         self._seconds = self.time_step * self.frame_skip
         self._worlds: dict[float, World] = {}
         self._ready: Optional[World] = None
@@ -181,9 +179,9 @@ class CuttingEnv(gym.Env):
         share = 0.0
         if is_random and self.num_stiffness_levels > 1:
             share = 2.0 * level / (self.num_stiffness_levels - 1) - 1.0
-        young = float(given.get("stiffness", self.young * self.stiffness_range ** share))
-        if not (math.isfinite(young) and young > 0):
-            raise ValueError(f"stiffness is {young}: it must be above 0, Pa")
+        young = checks.number(
+            "stiffness", given.get("stiffness", self.young * self.stiffness_range ** share),
+            above=0, unit="Pa")
         ready = self._world_of(young)
         world = ready.world
         world.restore(ready.state)
@@ -263,8 +261,9 @@ class CuttingEnv(gym.Env):
 
         shape: height and width, pixels; None: image_shape.
         """
+        size = self.image_shape if shape is None else checks.picture_shape("shape", shape)
         points, triangles, colors, lines = self._scene()
-        return renderer.draw(self._camera(shape or self.image_shape), points, triangles, colors,
+        return renderer.draw(self._camera(size), points, triangles, colors,
                              lines)
 
     @property

@@ -114,8 +114,17 @@ def check_env(make: Callable[..., Any], *, seeds: Sequence[int] = range(3),
     make: a class of environments, or a function that takes render_mode and returns one.
     seeds: of the episodes that are run twice, in one environment and in another.
     """
+    if not callable(make):
+        raise ValueError(f"make is {make!r}: it must be a class of environments, or a function "
+                         "that takes render_mode and returns one: give the class, not an object")
+    try:
+        inspect.signature(make).bind(render_mode=None)
+    except TypeError as error:
+        raise ValueError(f"make is {make!r}: it must take render_mode, as in "
+                         "lambda render_mode=None: PathIncisionEnv(render_mode=render_mode)"
+                         ) from error
     env = make()
-    _require(isinstance(env, gym.Env), "the environment is no Env")
+    _require(isinstance(env, gym.Env), f"make() returns {env!r}, which is no Env")
     _require(env.unwrapped is env, "unwrapped is not the environment")
     _require(env.spec is None or hasattr(env.spec, "id"), "spec is no specification")
     _check_space(env.action_space, "action_space")

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, renderer
+from . import gym, options as checks, renderer
 from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels, strained
 
 MM = 0.001
@@ -168,37 +168,44 @@ class DissectionEnv(CuttingEnv):
             young=young, stiffness_range=stiffness_range,
             num_stiffness_levels=num_stiffness_levels, randomize=randomize,
             num_threads=num_threads)
-        if min(cells) < 1 or cells[1] % NUM_ROWS:
-            raise ValueError("cells are at least 1, and those along y a multiple of 10")
-        if not 1 <= rows_to_cut <= NUM_ROWS - NUM_FREE_ROWS:
-            raise ValueError("rows_to_cut must be from 1 to 8")
+        self.cells = checks.wholes("cells", cells, "bricks along x, y, z")
+        if self.cells[1] % NUM_ROWS:
+            raise ValueError(f"cells is {cells!r}: those along y must be a multiple of {NUM_ROWS}")
+        self.rows_to_cut = checks.whole("rows_to_cut", rows_to_cut, least=1,
+                                        most=NUM_ROWS - NUM_FREE_ROWS)
         if action_type not in ("continuous", "discrete"):
-            raise ValueError("action_type must be 'continuous' or 'discrete'")
+            raise ValueError(f"action_type is {action_type!r}: it must be 'continuous' or "
+                             "'discrete'")
         if action_type == "discrete" and control_retraction_force:
-            raise ValueError("the retraction force can be controlled by continuous actions only")
-        self.cells = tuple(int(n) for n in cells)
-        self.rows_to_cut = int(rows_to_cut)
-        self.thickness, self.gap = float(thickness), float(connective_thickness)
-        self.cutting_radius = float(cutting_radius)
+            raise ValueError("control_retraction_force is True: it needs action_type 'continuous'")
+        self.thickness = checks.number("thickness", thickness, above=0, unit="m")
+        self.gap = checks.number("connective_thickness", connective_thickness, above=0, unit="m")
+        self.cutting_radius = checks.number("cutting_radius", cutting_radius, above=0, unit="m")
         self.with_shaft = bool(with_shaft)
-        self.retraction_force = float(retraction_force)
+        self.retraction_force = checks.number("retraction_force", retraction_force, unit="N")
         self.action_type = action_type
         self.control_retraction_force = bool(control_retraction_force)
-        self.activation_deadzone = float(activation_deadzone)
-        self.num_tissue_points = int(num_tracking_points_tissue)
-        self.num_connective_points = int(num_tracking_points_connective_tissue)
+        self.activation_deadzone = checks.number("activation_deadzone", activation_deadzone,
+                                                 least=0)
+        self.num_tissue_points = checks.whole("num_tracking_points_tissue",
+                                              num_tracking_points_tissue, least=0)
+        self.num_connective_points = checks.whole("num_tracking_points_connective_tissue",
+                                                  num_tracking_points_connective_tissue, least=0)
         unknown = sorted(set(reward_amounts or {}) - set(self.default_amounts))
         if unknown:
             raise ValueError(f"reward_amounts has unknown names {unknown}; known are "
                              f"{sorted(self.default_amounts)}")
-        self.reward_amounts = {**self.default_amounts, **(reward_amounts or {})}
-        self.settle_steps = int(settle_steps)
-        self.damping = float(damping)
+        self.reward_amounts = {
+            name: checks.number(f"reward_amounts[{name!r}]", amount)
+            for name, amount in {**self.default_amounts, **(reward_amounts or {})}.items()}
+        self.settle_steps = checks.whole("settle_steps", settle_steps, least=0)
+        self.damping = checks.number("damping", damping, least=0, unit="1/s")
         dt = self.time_step
-        self._velocity = [dt * v for v in maximum_state_velocity]
-        self._discrete = [dt * v for v in discrete_action_magnitude]
-        if len(self._velocity) != 4 or len(self._discrete) != 4:
-            raise ValueError("velocities of pan, tilt, spin and depth are four numbers")
+        what = "pan, tilt, spin in degrees/s, depth in mm/s"
+        self._velocity = [dt * v for v in checks.numbers("maximum_state_velocity",
+                                                         maximum_state_velocity, what)]
+        self._discrete = [dt * v for v in checks.numbers("discrete_action_magnitude",
+                                                         discrete_action_magnitude, what)]
         self._tool = "shaft" if with_shaft else None
         num = 8 if control_retraction_force else 5
         self.action_space = (gym.Box(-1.0, 1.0, (num,), np.float32)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, line, renderer
+from . import gym, line, options as checks, renderer
 from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
 from .target import Target
 
@@ -53,13 +53,13 @@ class LineEnv(CuttingEnv):
                  max_speed: float, max_turn: float, tolerance: float, toughness: float,
                  damping: float, **common: Any) -> None:
         super().__init__(**common)
-        self.size = tuple(float(x) for x in size)
-        self.cells = tuple(int(n) for n in cells)
-        self.max_speed = float(max_speed)
-        self.max_turn = float(max_turn)
-        self.tolerance = float(tolerance)
-        self.toughness = float(toughness)
-        self.damping = float(damping)
+        self.size = checks.numbers("size", size, "along x, y, z in m", above=0)
+        self.cells = checks.wholes("cells", cells, "bricks along x, y, z")
+        self.max_speed = checks.number("max_speed", max_speed, above=0, unit="m/s")
+        self.max_turn = checks.number("max_turn", max_turn, least=0, unit="rad/s")
+        self.tolerance = checks.number("tolerance", tolerance, above=0, unit="m")
+        self.toughness = checks.number("toughness", toughness, above=0, unit="J/m2")
+        self.damping = checks.number("damping", damping, least=0, unit="1/s")
         self._stride = self.max_speed * self.time_step
         self._turn = self.max_turn * self.time_step
         self._heading = 0.0

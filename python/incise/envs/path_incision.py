@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from . import line
+from . import line, options as checks
 from .base import Floats
 from .incision import ACCURACY, LineEnv
 
@@ -86,10 +86,10 @@ class PathIncisionEnv(LineEnv):
             max_episode_steps=max_episode_steps, young=young, stiffness_range=stiffness_range,
             num_stiffness_levels=num_stiffness_levels, randomize=randomize,
             num_threads=num_threads)
-        if not 0 < depth < self.size[2]:
+        self.depth = checks.number("depth", depth, above=0, unit="m")
+        if not self.depth < self.size[2]:
             raise ValueError(f"depth is {depth}: it must be above 0 and below the height of the "
                              f"block, {self.size[2]} m")
-        self.depth = float(depth)
         self._depth = self.depth
 
     def _constraints(self) -> list[dict[str, Any]]:

@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from . import line
+from . import line, options as checks
 from .base import Floats
 from .incision import LineEnv
 
@@ -75,10 +75,14 @@ class WedgeResectionEnv(LineEnv):
             max_episode_steps=max_episode_steps, young=young, stiffness_range=stiffness_range,
             num_stiffness_levels=num_stiffness_levels, randomize=randomize,
             num_threads=num_threads)
-        if not (0 < width < 0.8 * self.size[0] and 0 < depth < 0.8 * self.size[1]):
-            raise ValueError("width and depth of the wedge must be above 0 and at most 0.8 of the "
-                             "slab")
-        self.width, self.depth, self.curvature = float(width), float(depth), float(curvature)
+        self.width = checks.number("width", width, above=0, unit="m")
+        self.depth = checks.number("depth", depth, above=0, unit="m")
+        self.curvature = checks.number("curvature", curvature)
+        for name, value, whole in (("width", self.width, self.size[0]),
+                                   ("depth", self.depth, self.size[1])):
+            if not value < 0.8 * whole:
+                raise ValueError(f"{name} is {value}: it must be below 0.8 of the slab there, "
+                                 f"{0.8 * whole:g} m")
         self._removed = 0.0
         self._target_area = 1.0
         # The blade stays in front of the part that is held, and its edge goes right through.
