@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 from typing import Any
@@ -439,9 +440,20 @@ class Guide(unittest.TestCase):
         examples = [example for example in re.findall(r"```python\n(.*?)```", text, re.S)
                     if "gymnasium" not in example]
         self.assertGreaterEqual(len(examples), 3)
-        names: dict[str, Any] = {"print": lambda *values: None}
-        for example in examples:
-            exec(example, names)  # noqa: S102 - the page of this repository
+        said: list[str] = []
+        names: dict[str, Any] = {"print": lambda *values: said.append(" ".join(map(str, values)))}
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                for example in examples:
+                    exec(example, names)  # noqa: S102 - the page of this repository
+                self.assertEqual(pathlib.Path("cut.ppm").stat().st_size, 15 + 480 * 640 * 3)
+            finally:
+                os.chdir(before)
+        # The page says what the first one prints.
+        self.assertRegex(said[0], "^return [0-9.]+, success True$")
+        self.assertIn(f"It prints `{said[0]}`", text)
 
 
 class Learning(unittest.TestCase):

@@ -38,15 +38,17 @@ class PathIncisionEnv(LineEnv):
                   to reach and every second one after it
         All values are cut off at -10 and 10.
     observation "rgb": uint8, shape image_shape + (3,).
-    reward: 20 for the whole line, in equal parts, each less by its lateral and depth errors; 0.2 a
-        mm of approach to the next point at the depth that is asked for; -0.02 a step; -0.03 a step
-        in which the tip is in the tissue off the line or too deep by half; at the end 5 times
-        coverage, and 5 more for success. A point of the line is done if the tip passes it at three
-        quarters of the depth that is asked for, or deeper.
+    reward: 20 for the whole line, in equal parts for its points, each less by the shares
+        (distance of the tip from the line) / tolerance and (error of the depth) / depth, the latter
+        at most a half; 0.2 for each mm nearer to the next point at the depth that is asked for;
+        -0.02 a step; -0.03 a step in which the tip is in the tissue off the line or too deep by
+        half; at the end 5 times coverage, and 5 more for success. A point of the line is done if
+        the tip passes it at three quarters of the depth that is asked for, or deeper.
     end: terminated when the tip has passed the last point of the line, truncated after
         max_episode_steps.
-    success: at the end, at least 80 % of the target surface has a cut within 1 mm, the cut faces
-        are at most 1 mm on the mean from the target, and no cut is more than 1 mm too deep.
+    success: at the end, at least 80 % of the target surface has a cut within 1 mm, the mean
+        distance of the cut faces from the target is at most 1 mm, and no cut is more than 1 mm too
+        deep.
     metrics: coverage, the share of the target surface that has a cut within 1 mm; excess_depth, how
         far the cut goes below the target at most, m; mean_distance and max_distance are infinite
         while there is no cut. The target surface is upright, below the line, to the depth that is

@@ -27,7 +27,7 @@ class WedgeResectionEnv(LineEnv):
         2, 3      force of the tissue on the blade, forwards and to the left, N
         4         share of the line that is done
         5         1 if the blade is in the slab, else 0
-        6, 7      share of the wedge that is off, and of the rest that is off
+        6, 7      share of the wedge that is cut off, and of the rest that is cut off
         8         area_cut over the area of the target
         9, 10     cosine and sine of the heading, the angle of the blade from the x axis
         11 to 20  (forwards, left) of five points of the line from the blade on, 10 mm: the next one
@@ -36,10 +36,10 @@ class WedgeResectionEnv(LineEnv):
     observation "rgb": uint8, shape image_shape + (3,).
     reward: 5 for the whole line, in equal parts, each less by its lateral error; 0.2 a mm of
         approach to the next point; -0.02 a step; -0.1 a step in the slab off the line; at the end
-        10 times (share of the wedge that is off - 5 times the share of the rest that is off).
-    end: terminated when half of the wedge or a tenth of the rest is off; truncated after
+        10 times (share of the wedge that is cut off - 5 times the share of the rest).
+    end: terminated when half of the wedge or a tenth of the rest is cut off; truncated after
         max_episode_steps.
-    success: at least 90 % of the wedge is off, and at most 5 % of the rest.
+    success: at least 90 % of the wedge is cut off, and at most 5 % of the rest.
     metrics: coverage, the share of the target surface, which is upright below the line, that has a
         cut within 1 mm; mean_distance and max_distance are infinite while there is no cut.
     options of reset(): line, points (N, 2), m, from front to front; start, x, y
