@@ -9,9 +9,11 @@ SPDX-License-Identifier: LGPL-3.0-or-later
 
 import subprocess
 import sys
+import time
 import timeit
 
 import incise
+from incise import envs
 
 
 def small_world(cells: list[int]) -> incise.World:
@@ -51,7 +53,29 @@ def state_and_arrays() -> None:
           f"{len(state)} bytes, positions {1e6 * copy:.2f} us")
 
 
+def environments() -> None:
+    for kind in (envs.DissectionEnv, envs.PathIncisionEnv, envs.WedgeResectionEnv):
+        env = kind()
+        env.reset(seed=1)
+        env.action_space.seed(1)
+        actions = [env.action_space.sample() for _ in range(2000)]
+        least = float("inf")
+        for _ in range(3):
+            begin = time.process_time()
+            for action in actions:
+                *_, terminated, truncated, _ = env.step(action)
+                if terminated or truncated:
+                    env.reset()
+            least = min(least, time.process_time() - begin)
+        pictures = [min(timeit.repeat(lambda: env.picture(shape), number=5, repeat=5)) / 5
+                    for shape in ((96, 96), (400, 600))]
+        print(f"{kind.__name__}, {env.world.num_cells} elements: {len(actions) / least:.0f} random "
+              f"steps a second of one core, pictures of 96 x 96 {1e3 * pictures[0]:.1f} ms, of "
+              f"400 x 600 {1e3 * pictures[1]:.1f} ms")
+
+
 if __name__ == "__main__":
     step_of_the_smallest_world(sys.argv[1])
     many_steps_at_once()
     state_and_arrays()
+    environments()

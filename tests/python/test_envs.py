@@ -10,7 +10,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from typing import Any
 
@@ -422,16 +421,6 @@ class Parts(unittest.TestCase):
                     # The share of the picture, were it as wide as it is high.
                     shares.append(np.count_nonzero(is_red) / shape[0] ** 2)
             self.assertLess(max(shares), 2.0 * min(shares), shares)
-
-    def test_large_pictures_take_no_long_time(self) -> None:
-        env = envs.DissectionEnv()
-        env.reset(seed=0)
-        times = []
-        for _ in range(3):
-            begin = time.process_time()
-            env.picture((400, 600))
-            times.append(time.process_time() - begin)
-        self.assertLess(min(times), 0.08)  # it was 0.19, and is 0.007
 
 
 class Guide(unittest.TestCase):
