@@ -86,7 +86,7 @@ void declare_run(CLI::App& app, Action& action) {
         "had not been; with the SCENARIO, --out and --set that it began with. A later end makes a "
         "finished run longer. Begin if nothing is there");
     verb->add_option("--replay", options->replay,
-                     "Do what hands did in a session of incise live, from its recording, to the "
+                     "Repeat what was done in a session of incise live, from its recording, to the "
                      "same bits; the folder is then named after the recording")
         ->type_name("FILE")
         ->excludes(resume)
@@ -107,7 +107,7 @@ void declare_run(CLI::App& app, Action& action) {
 
 void declare_live(CLI::App& app, Action& action) {
     auto options = std::make_shared<LiveOptions>();
-    auto* verb = app.add_subcommand("live", "Simulate in real time, with hands in the browser");
+    auto* verb = app.add_subcommand("live", "Simulate in real time, and use tools in the browser");
     verb->add_option("SCENARIO", options->scenario, "Scenario file (.toml)")
         ->required()
         ->type_name("PATH");
@@ -121,13 +121,13 @@ void declare_live(CLI::App& app, Action& action) {
         ->type_name("ADDRESS")
         ->capture_default_str();
     verb->add_option("--record", options->record,
-                     "Write what hands do to this file, for incise run --replay")
+                     "Write what you do to this file, for incise run --replay")
         ->type_name("FILE.jsonl");
     verb->add_flag("--force", options->force, "Replace a recording that is there");
     declare_overrides(verb, options->overrides);
     declare_threads(verb, options->num_threads);
     verb->add_option("--tick", options->tick,
-                     "Simulated time between two looks at the hands, in seconds")
+                     "Simulated time after which new orders count, in seconds")
         ->type_name("SECONDS")
         ->check(CLI::Range(1e-5, 1.0).description(""))
         ->capture_default_str();
