@@ -157,7 +157,10 @@ std::vector<app::CutTool> tools_from(const py::sequence& planes, const py::seque
 CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
               const py::sequence& surfaces, const py::sequence& sweeps, const py::sequence& spheres,
               const py::sequence& boxes, const py::sequence& capsules,
-              const std::optional<std::string>& mode, double snap) {
+              const std::optional<std::string>& mode, double snap, const py::kwargs& unknown) {
+    refuse_unknown(unknown, "cut",
+                   {"planes", "surfaces", "sweeps", "remove_spheres", "remove_boxes",
+                    "remove_capsules", "mode", "snap"});
     if (!given) throw py::type_error("mesh must be an incise.Mesh");
     if (mode && *mode != "split" && *mode != "separate")
         throw InputError("mode is '" + *mode + "': it must be 'split' or 'separate'");

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "incise/base/error.h"
+#include "incise/scenario/diagnostics.h"
 
 namespace incise::python {
 
@@ -89,6 +90,19 @@ std::vector<Vec3> points_from(const py::handle& object, const std::string& name)
     if (!points.empty())
         std::memcpy(static_cast<void*>(points.data()), array.data(), points.size() * sizeof(Vec3));
     return points;
+}
+
+void refuse_unknown(const py::kwargs& unknown, const char* function,
+                    std::initializer_list<const char*> known) {
+    if (unknown.empty()) return;
+    const auto name = py::str(unknown.begin()->first).cast<std::string>();
+    std::string text = std::string(function) + "() has no argument '" + name + "'";
+    for (const char* meant : known)
+        if (scenario::is_misspelt(name, meant))
+            throw py::type_error(text + "; did you mean '" + meant + "'?");
+    text += ". Known are:";
+    for (const char* one : known) text += std::string(" ") + one;
+    throw py::type_error(text);
 }
 
 Pose given_pose(const py::handle& object) {

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -120,6 +121,10 @@ void forbid_copies(Class& type, const char* remedy) {
 /// Returns points as an array of shape (N, 3).
 py::array_t<double> matrix_of(std::span<const Vec3> points);
 py::array_t<double> array_of(const Vec3& v);
+/// Throws TypeError that names an argument that the function does not have, and the one that may be
+/// meant.
+void refuse_unknown(const py::kwargs& unknown, const char* function,
+                    std::initializer_list<const char*> known);
 /// Returns the pose that Python passed. Throws TypeError for anything else.
 Pose given_pose(const py::handle& object);
 /// Returns rows of an array of points as nodes of a world. Throws InputError for other rows.

@@ -15,6 +15,7 @@ World make_world(const py::object& scenario, const py::object& mesh, const py::o
                  const py::object& constraints, const py::object& loads, const py::object& tools,
                  const py::object& obstacles, const py::object& dynamics, const py::object& contact,
                  const py::object& output, const py::object& gravity, const py::object& damping,
-                 const py::object& overrides, const py::object& folder, int num_threads);
+                 const py::object& overrides, const py::object& folder, int num_threads,
+                 const py::kwargs& unknown);
 
 }  // namespace incise::python

@@ -88,6 +88,10 @@ class Texts(unittest.TestCase):
         refused("three numbers", lambda: incise.Pose([0, 0]))
         refused("not zero", lambda: incise.Pose([0, 0, 0], [0, 0, 0, 0]))
         refused("must be numbers", lambda: incise.Pose("here"), TypeError)
+        refused("did you mean 'gravity'?", lambda: support.world(gravit=[0, 0, 0]), TypeError)
+        refused("Known are: scenario mesh", lambda: support.world(xyz=1), TypeError)
+        refused("did you mean 'planes'?",
+                lambda: incise.cut(incise.Mesh.box([1, 1, 1], [1, 1, 1]), plane=[]), TypeError)
         refused("or from sections", lambda: incise.World("a.toml", mesh={"box": BOX}))
         refused("add a section [mesh]", lambda: incise.World())
         refused("given twice", lambda: support.world(dynamics={"damping": 1}))
