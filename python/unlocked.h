@@ -4,17 +4,20 @@
 
 #include <pybind11/pybind11.h>
 
+#include <thread>
+
 namespace incise::python {
 
 /// Lets other threads of Python run during its lifetime.
 ///
 /// While Python ends, a thread that takes the lock again is ended, in the middle of C++. So the end
-/// waits for all such work, and no more of it begins: the constructor, and stop_at_end(), raise
-/// SystemExit then, which ends a thread without a word. All is called with the lock held.
+/// waits for all such work of other threads, and no more of theirs begins: the constructor, and
+/// stop_at_end(), raise SystemExit then, which ends a thread without a word. The thread that ends
+/// Python goes on: functions of atexit and __del__ work. All is called with the lock held.
 class Unlocked {
   public:
     static void stop_at_end() {
-        if (!is_ending_) return;
+        if (!is_ending_ || std::this_thread::get_id() == ending_) return;
         PyErr_SetNone(PyExc_SystemExit);
         throw pybind11::error_already_set();
     }
@@ -23,6 +26,7 @@ class Unlocked {
 
   private:
     static void wait_for_all();
+    static void forget_all();
 
     struct Counted {
         Counted() {
@@ -34,6 +38,7 @@ class Unlocked {
         Counted& operator=(const Counted&) = delete;
     };
     static inline bool is_ending_ = false;
+    static inline std::thread::id ending_ = {};  // the thread that ends Python
     static inline int count_ = 0;
 
     Counted counted_;  // until after the lock is taken again

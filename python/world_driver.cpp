@@ -231,14 +231,16 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
                              dynamics.integrator == scenario::TimeIntegrator::semi_implicit_euler;
     constexpr double rounding = 1e-9;
     if (dt && is_explicit && !(*dt <= (1.0 + rounding) * world_.rest_stable_step())) {
-        std::ostringstream text;
-        text.precision(4);
-        text << "a step of " << *dt << " s is above the stable step of "
-             << world_.rest_stable_step() << " s";
-        if (*dt >= 1.0 && *dt == std::floor(*dt))
-            text << "; for " << *dt << (*dt > 1.0 ? " steps" : " step") << " write step(n=" << *dt
-                 << ")";
-        throw InputError(text.str());
+        std::string text = "a step of " + io::format_number(*dt) +
+                           " s is above the stable step of " +
+                           io::format_number(world_.rest_stable_step()) + " s";
+        constexpr double most_steps = 1e9;
+        if (*dt >= 1.0 && *dt < most_steps && *dt == std::floor(*dt)) {
+            const std::string count = std::to_string(static_cast<std::uint64_t>(*dt));
+            text += "; for " + count + (*dt > 1.0 ? " steps" : " step") + " write step(n=" + count +
+                    ")";
+        }
+        throw InputError(text);
     }
     return call(
         [&](std::uint64_t i) {

@@ -13,7 +13,8 @@ import tomllib
 
 STATUS = {0: "finished", 1: "expectation failed", 2: "refused", 3: "failed"}
 # Entries of summary.json about the run itself: the others are quantities of [expect] too.
-OF_THE_RUN = "threads frames wall_time steps_per_second real_time_factor".split()
+OF_THE_RUN = ("title scenario scenario_hash version command directory started threads frames "
+              "wall_time steps_per_second real_time_factor").split()
 KEYS = "program threads scenario results sweep set quantities plots labels".split()
 
 
@@ -137,7 +138,7 @@ class Study:
         for line in told.splitlines():
             # What else is wrong with this one combination, its own run will say.
             found = re.search(r"key 'expect\.(\S+)': (is not known.*)", line)
-            if found:
+            if found and found[1] in self.quantities:
                 raise StudyError(f"quantities: '{found[1]}' {found[2]}")
 
     def inputs(self, run):

@@ -271,19 +271,26 @@ class IgtlLink::Parts {
     void read_message(Connection& connection, const Header& header, std::string& body) {
         if (header.type != "TRANSFORM" && header.type != "STRING") return;
         const auto complain = [&](const std::string& text) {
-            if (!connection.complaints.insert(text).second) return;
+            constexpr std::size_t most = 64;  // of a connection, and that wait
+            const std::string whole = "OpenIGTLink: device '" + header.device + "': " + text;
+            if (connection.complaints.size() >= most || !connection.complaints.insert(whole).second)
+                return;
             const std::scoped_lock lock(mutex);
-            complaints.push_back("OpenIGTLink: device '" + header.device + "': " + text);
+            if (complaints.size() < most) complaints.push_back(whole);
         };
         const auto bytes = reinterpret_cast<unsigned char*>(body.data());
         if (crc64(bytes, body.size(), 0) != header.checksum)
             return complain("the checksum of a message is wrong");
         const auto content = content_of(header.version, body);
-        if (!content) return complain("its messages are of an unknown version of the protocol");
+        if (!content)
+            return complain(header.version == 2
+                                ? "the sizes in a message do not fit together"
+                                : "its messages are of an unknown version of the protocol");
         if (!options.tools.contains(header.device)) {
             std::string known;
-            for (const auto& [name, definition] : options.tools) known += " '" + name + "'";
-            return complain("no --tool has this name, but" + known);
+            for (const auto& [name, definition] : options.tools)
+                known += (known.empty() ? "'" : ", '") + name + "'";
+            return complain("no --tool has this name; there are: " + known);
         }
         if (header.type == "TRANSFORM") {
             const auto pose = content->size() == 48 ? pose_of(*content) : std::nullopt;
@@ -398,9 +405,12 @@ std::vector<Order> IgtlLink::orders(const Session& session) {
         std::string& name = parts_->names[device];
         const LedTool* tool = session.find(name);
         bool is_in_hand = tool && tool->is_in_hand && !tool->is_to_be_withdrawn;
+        bool is_used = tool != nullptr;  // the name
         for (const Parts::Event& event : all) {
             if (event.kind == Kind::pose && !is_in_hand) {
-                const int number = ++parts_->numbers[device];
+                int& number = parts_->numbers[device];
+                if (number == 0 || is_used) ++number;  // else the last one was refused
+                is_used = true;
                 name = number == 1 ? device : device + "_" + std::to_string(number);
                 orders.push_back(AddTool{name, parts_->options.tools.at(device), event.pose});
                 is_in_hand = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/live/loop/downloads.h"
 
+#include <exception>
 #include <map>
 #include <utility>
 
@@ -15,7 +16,13 @@ void Downloads::answer() {
     std::map<std::string, File> files;
     for (const Request& request : std::exchange(waiting_, {})) {
         const auto [file, is_new] = files.try_emplace(request.text);
-        if (is_new) file->second = make(request.text);
+        try {
+            if (is_new) file->second = make(request.text);
+        } catch (const std::exception& error) {
+            server_.fail(request.page, std::string("the file cannot be made: ") + error.what());
+            files.erase(file);
+            continue;
+        }
         server_.answer(request.page, file->second.content, file->second.type, file->second.name);
     }
     const auto end = Clock::now();

@@ -21,8 +21,7 @@ class Downloads {
         : session_(session), recorder_(recorder), server_(server) {}
 
     void add(const Request& request) { waiting_.push_back(request); }
-    /// Answers those that wait, if it is time: those of one kind with the same file. Throws
-    /// std::exception if a file cannot be made; then none waits any more.
+    /// Answers those that wait, if it is time: those of one kind with the same file.
     void answer();
 
   private:

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
@@ -46,20 +48,19 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
     auto due = Pace::Clock::now();
     while (!is_to_stop()) {
         handle_requests(is_to_stop);
-        try {
-            downloads_.answer();
-        } catch (const std::exception& error) {
-            tell("error", std::string("a file could not be made: ") + error.what());
-        }
+        downloads_.answer();
         was_opened = was_opened || !pages_.empty();
         const auto now = Pace::Clock::now();
         const bool rests = !was_opened || (is_paused_ && steps_wanted_ == 0);
         if (rests || now < due) {
             if (rests) rest(now);
-            if (rests && is_changed_) show();
-            if (requests_.empty())
-                server_.wait_for_request(rests ? now + milliseconds(100)
-                                               : std::min(due, now + milliseconds(100)));
+            // However much pages say in a pause, they are told of it as often as in motion.
+            constexpr auto between_pictures = milliseconds(16);
+            const bool is_to_show = rests && is_changed_;
+            if (is_to_show && now >= last_shown_ + between_pictures) show();
+            const auto until = rests ? now + milliseconds(is_changed_ ? 16 : 100)
+                                     : std::min(due, now + milliseconds(100));
+            if (requests_.empty()) server_.wait_for_request(until);
             continue;
         }
         if (!tick(is_to_stop)) return;
@@ -72,7 +73,10 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
 
 void LiveLoop::rest(Pace::Clock::time_point now) {
     pace_.rest(now);
-    for (Device* device : devices_) device->rest();
+    for (Device* device : devices_) {
+        device->rest();
+        tell_complaints(*device);
+    }
 }
 
 /// Handles what pages want, for a part of a tick at most: the rest waits for the next one.
@@ -90,18 +94,21 @@ void LiveLoop::handle_requests(const std::function<bool()>& is_to_stop) {
 }
 
 void LiveLoop::handle(const Request& request) {
-    is_changed_ = true;
     try {
         switch (request.kind) {
             case Request::Kind::opened:
-                return open(request.page);
+                open(request.page);
+                break;
             case Request::Kind::closed:
-                return close(request.page);
+                close(request.page);
+                break;
             case Request::Kind::download:
                 return downloads_.add(request);
             case Request::Kind::text:
-                return read(request);
+                read(request);
+                break;
         }
+        is_changed_ = true;
     } catch (const std::exception& error) {  // whatever a page wants, the session goes on
         server_.send(request.page, message_text("error", error.what()));
     }
@@ -171,6 +178,11 @@ void LiveLoop::obey(std::uint64_t page, const Json& wish) {
 
 void LiveLoop::execute(const Order& order) {
     for (const std::string& warning : session_.execute(order)) tell("warning", warning);
+    const auto* added = std::get_if<AddTool>(&order);
+    const bool is_of_blade_or_probe = std::holds_alternative<MoveTool>(order) ||
+                                      std::holds_alternative<WithdrawTool>(order) ||
+                                      (added && session_.find(added->name)->kind != "suture");
+    has_changed_hold_ = has_changed_hold_ || !is_of_blade_or_probe;
 }
 
 const std::string& LiveLoop::in_hand(std::uint64_t page) const {
@@ -194,15 +206,15 @@ void LiveLoop::take(std::uint64_t page, const Json& wish) {
     const Json& definition = member(wish, "tool");
     if (!definition.is_object()) throw InputError("'tool': must be an object");
     const std::string kind = text_in(definition, "kind");
+    require_few_tools();
     if (kind == "suture") throw InputError("a suture is sewn, not led by hand");
     refuse_files(definition);
-    AddTool order{"new", value_of(definition), pose_in(member(wish, "pose"))};
+    const AddTool order{new_name(kind), value_of(definition), pose_in(member(wish, "pose"))};
     session_.check(order);  // a state is costly
-    order.name = new_name(kind);
     auto before = moment_before_stroke();
     execute(order);
     drop(page);  // what was in the hand
-    if (before) moments_.keep_stroke(std::move(*before));
+    keep_stroke(std::move(before));
     hands_[page] = order.name;
 }
 
@@ -210,18 +222,35 @@ void LiveLoop::sew(const Json& wish) {
     Json definition = {{"kind", "suture"},
                        {"points", member(wish, "points")},
                        {"stiffness", number_in(wish, "stiffness")}};
-    AddTool order{"new", value_of(definition), {}};
+    require_few_tools();
+    const AddTool order{new_name("suture"), value_of(definition), {}};
     session_.check(order);
-    order.name = new_name("suture");
     auto before = moment_before_stroke();
     execute(order);
-    if (before) moments_.keep_stroke(std::move(*before));
+    keep_stroke(std::move(before));
+    has_changed_hold_ = true;
 }
 
-/// Returns the present state, if undo does not lead to it already: nothing has moved since the
-/// last stroke began.
+/// A session keeps all tools that were taken: a page that takes them for ever would fill the
+/// memory.
+void LiveLoop::require_few_tools() const {
+    constexpr std::size_t most_tools = 2000;
+    if (session_.tools().size() >= most_tools)
+        throw InputError(std::to_string(most_tools) +
+                         " tools were taken in this session, and it takes no more: reset it, or "
+                         "begin another one");
+}
+
+void LiveLoop::keep_stroke(std::optional<Session::Moment> before) {
+    if (!before) return;
+    moments_.keep_stroke(std::move(*before));
+    has_changed_hold_ = false;
+}
+
+/// Returns the present state, if undo does not lead to it already: nothing has moved since the last
+/// stroke began, and no jaws or threads have taken hold or let go.
 std::optional<Session::Moment> LiveLoop::moment_before_stroke() const {
-    if (moments_.is_stroke_at(session_.num_ticks())) return std::nullopt;
+    if (moments_.is_stroke_at(session_.num_ticks()) && !has_changed_hold_) return std::nullopt;
     return session_.save();
 }
 
@@ -249,6 +278,7 @@ void LiveLoop::go_back(const Session::Moment& moment) {
     moments_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
     messages_.forget_edits();
+    has_changed_hold_ = true;
     num_warnings_told_ = session_.simulation().warnings().size();
     hands_.clear();
     for (const LedTool& tool : session_.tools())
@@ -306,16 +336,25 @@ void LiveLoop::keep_good_moment() {
 /// told once.
 void LiveLoop::obey_devices() {
     for (Device* device : devices_) {
+        std::set<std::string> refused;  // tools that are not there: what else they do is not asked
         for (const Order& order : device->orders(session_)) {
+            const std::string& name =
+                std::visit([](const auto& one) -> const std::string& { return one.name; }, order);
+            if (refused.contains(name)) continue;
             try {
                 execute(order);
             } catch (const InputError& error) {
-                if (error.what() != last_complaint_) tell("error", error.what());
-                last_complaint_ = error.what();
+                if (std::holds_alternative<AddTool>(order)) refused.insert(name);
+                const std::string text = "tool '" + name + "' of a device: " + error.what();
+                if (std::exchange(last_complaints_[device], text) != text) tell("error", text);
             }
         }
-        for (const std::string& complaint : device->complaints()) tell("warning", complaint);
+        tell_complaints(*device);
     }
+}
+
+void LiveLoop::tell_complaints(Device& device) {
+    for (const std::string& complaint : device.complaints()) tell("warning", complaint);
 }
 
 /// Goes back to the last state of now and then; if that leads to the same end, farther back.
@@ -373,6 +412,7 @@ void LiveLoop::say_hello_to_all() {
 
 void LiveLoop::show() {
     is_changed_ = false;
+    last_shown_ = Pace::Clock::now();
     if (pages_.empty()) return;
     const auto hand = hands_.find(operator_);
     auto picture = pictures_.make(session_);

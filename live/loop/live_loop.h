@@ -58,7 +58,9 @@ class LiveLoop {
     void sew(const Json& wish);
     void tighten(const Json& wish);
     void drop(std::uint64_t page);
+    void require_few_tools() const;
     std::optional<Session::Moment> moment_before_stroke() const;
+    void keep_stroke(std::optional<Session::Moment> before);
     void undo();
     void reset();
     void execute(const Order& order);
@@ -68,6 +70,7 @@ class LiveLoop {
     bool tick(const std::function<bool()>& is_to_stop);
     void note(const std::function<void()>& in_recording);
     void obey_devices();
+    void tell_complaints(Device& device);
     void keep_good_moment();
     void go_back(const Session::Moment& moment);
     void recover(const std::string& reason);
@@ -86,16 +89,17 @@ class LiveLoop {
     Downloads downloads_;
     Pace pace_;
     Moments moments_;
-    Pace::Clock::time_point next_moment_ = {};
+    Pace::Clock::time_point next_moment_ = {}, last_shown_ = {};
     std::deque<Request> requests_;  // not handled yet
     std::vector<Device*> devices_;
-    std::string last_complaint_;                  // about orders of devices
-    std::vector<std::uint64_t> pages_;            // in the order of opening
-    std::uint64_t operator_ = 0;                  // 0: none
-    std::map<std::uint64_t, std::string> hands_;  // the tool in the hand of a page
-    std::map<std::string, int> last_numbers_;     // of tools, by kind
+    std::map<const Device*, std::string> last_complaints_;  // about their orders
+    std::vector<std::uint64_t> pages_;                      // in the order of opening
+    std::uint64_t operator_ = 0;                            // 0: none
+    std::map<std::uint64_t, std::string> hands_;            // the tool in the hand of a page
+    std::map<std::string, int> last_numbers_;               // of tools, by kind
     bool is_paused_ = false, is_changed_ = true;
-    int steps_wanted_ = 0;  // while paused
+    int steps_wanted_ = 0;           // while paused
+    bool has_changed_hold_ = false;  // since the last stroke: jaws, or a thread
     std::size_t num_warnings_told_;
     bool has_told_pace_ = false;
     std::uint64_t last_failure_ = 0;  // tick

@@ -52,9 +52,13 @@ class Moments {
     static void keep(List& list, Session::Moment moment, std::size_t most, std::size_t most_bytes) {
         list.push_back(std::move(moment));
         std::size_t bytes = 0;
-        for (const auto& kept : list) bytes += kept.state.size();
+        constexpr std::size_t of_tool = 512;  // with its definition, about
+        const auto size_of = [](const Session::Moment& kept) {
+            return kept.state.size() + of_tool * kept.tools.size();
+        };
+        for (const auto& kept : list) bytes += size_of(kept);
         while (list.size() > 1 && (list.size() > most || bytes > most_bytes)) {
-            bytes -= list.front().state.size();
+            bytes -= size_of(list.front());
             list.pop_front();
         }
     }

@@ -125,7 +125,8 @@ class Server::Parts {
         asio::post(*io, std::move(f));
     }
     bool is_host_allowed(std::string_view host) const {
-        return is_open_to_all || is_loopback_name(without_port(host));
+        const std::string_view name = without_port(host);
+        return is_open_to_all || is_loopback_name(name) || name == options.host;
     }
 
     ServerOptions options;
@@ -345,9 +346,10 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
             socket_.expires_never();  // until the simulation is between two ticks
             return parts_.note({Request::Kind::download, number, path});
         }
-        if (target.path == "/" && !parts_.key_for_once.empty() &&
+        if (target.path == "/" && request.method() == http::verb::get &&
+            !parts_.key_for_once.empty() &&
             is_equal_in_constant_time(target.once, parts_.key_for_once)) {
-            if (request.method() == http::verb::get) parts_.key_for_once.clear();
+            parts_.key_for_once.clear();
             return respond(http::status::see_other, "text/plain", "/?token=" + parts_.token);
         }
         for (const PageFile& file : parts_.options.files) {
@@ -502,6 +504,16 @@ void Server::answer(std::uint64_t download, std::string content, std::string_vie
         const auto found = parts->downloads.find(download);
         if (found == parts->downloads.end()) return;
         found->second->respond(http::status::ok, type, std::move(content), name);
+        parts->downloads.erase(found);
+    });
+}
+
+void Server::fail(std::uint64_t download, std::string text) {
+    parts_->later([parts = parts_.get(), download, text = std::move(text)]() mutable {
+        const auto found = parts->downloads.find(download);
+        if (found == parts->downloads.end()) return;
+        found->second->respond(http::status::internal_server_error, "text/plain; charset=utf-8",
+                               std::move(text));
         parts->downloads.erase(found);
     });
 }

@@ -90,6 +90,8 @@ class Server {
     /// Answers a download with a file.
     void answer(std::uint64_t download, std::string content, std::string_view type,
                 std::string_view file_name);
+    /// Answers a download with a failure.
+    void fail(std::uint64_t download, std::string text);
 
   private:
     class Parts;

@@ -217,7 +217,7 @@ class Link(unittest.TestCase):
         time.sleep(0.2)
         self.program.send_signal(signal.SIGINT)
         _, told = self.program.communicate(timeout=PATIENCE)
-        for cause in ("no --tool has this name, but 'jaws' 'knife'", "is scaled",
+        for cause in ("no --tool has this name; there are: 'jaws', 'knife'", "is scaled",
                       "neither close, open nor drop", "unknown version of the protocol"):
             self.assertEqual(told.count(cause), 1, told)
 

@@ -67,7 +67,8 @@ TEST_F(LiveLoopTest, TellsARefusedOrderOnceAndGoesOn) {
     run(20);
     EXPECT_EQ(session.num_ticks(), 20u);
     EXPECT_EQ(messages.size(), 1u);
-    EXPECT_THAT(messages.at(0), HasSubstr("error: there is no tool 'nobody'"));
+    EXPECT_THAT(messages.at(0),
+                HasSubstr("error: tool 'nobody' of a device: there is no tool 'nobody'"));
 }
 
 /// Loses the motion in some ticks.

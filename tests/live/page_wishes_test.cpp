@@ -83,6 +83,33 @@ TEST_F(PageWishes, UndoLeadsBackToBeforeAStroke) {
     EXPECT_TRUE(session.tools().empty());
 }
 
+TEST_F(PageWishes, UndoTakesBackOneThreadInAPause) {
+    run([&] {
+        WebPage page(server.address());
+        page.wait_for("hello");
+        page.say(R"({"do":"pause","on":true})");
+        const auto has_threads = [](std::size_t count) {
+            return [count](const Json& m) {
+                return is_state(m) && m["paused"] == true && m["tools"].size() == count;
+            };
+        };
+        for (const char* y : {"0.03", "0.05", "0.07"})
+            page.say(R"({"do":"sew","stiffness":20,"points":[[0.03,)" + std::string(y) +
+                     R"(,0.05],[0.07,)" + y + R"(,0.05]]})");
+        page.wait_for(has_threads(3));
+        page.say(take("blade", 0.2));
+        page.wait_for(has_threads(4));
+        page.say(R"({"do":"undo"})");
+        page.wait_for(has_threads(3));
+        page.say(R"({"do":"undo"})");
+        EXPECT_EQ(page.wait_for(has_threads(2))["can_undo"], true);
+        page.say(take("blade", 0.2));
+        page.wait_for(has_threads(3));
+        page.say(R"({"do":"undo"})");
+        page.wait_for(has_threads(2));
+    });
+}
+
 TEST_F(PageWishes, UndoTakesBackWhatACutOpened) {
     run([&] {
         WebPage page(server.address());

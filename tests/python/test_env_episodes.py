@@ -29,6 +29,18 @@ class Refusals(unittest.TestCase):
                 for _ in range(3):
                     self.assertTrue(same(env.step(action), other.step(action)))
 
+    def test_a_refused_reset_changes_no_later_random_numbers(self) -> None:
+        for kind, option in ((envs.PathIncisionEnv, "line"), (envs.PathIncisionEnv, "depth"),
+                             (envs.WedgeResectionEnv, "stiffness"), (envs.DissectionEnv, "state"),
+                             (envs.DissectionEnv, "nothing")):
+            with self.subTest(kind=kind.__name__, option=option):
+                env, other = kind(), kind()
+                env.reset(seed=5)
+                other.reset(seed=5)
+                with self.assertRaises((ValueError, TypeError)):
+                    env.reset(options={option: "x"})
+                self.assertTrue(same(env.reset(), other.reset()))
+
     def test_a_refused_reset_ends_the_episode(self) -> None:
         for kind, options in ((envs.PathIncisionEnv, {"start": [0.0, 0.0]}),
                               (envs.PathIncisionEnv, {"line": [[0.0, 0.0]]}),

@@ -71,6 +71,7 @@ class Texts(unittest.TestCase):
         refused("must be above 0", lambda: body.step(float("nan")))
         refused("is above the stable step", lambda: body.step(1.0))
         refused("for 10 steps write step(n=10)", lambda: body.step(10))
+        refused("write step(n=12345)", lambda: body.step(12345.0))
         refused("numpy.flatnonzero", lambda: body.grasp("h", body.positions[:, 0] > 0), TypeError)
         refused("a list of texts", lambda: support.world(overrides="dynamics.damping=3"), TypeError)
         refused("a list of texts", lambda: support.world(overrides={"damping": 3}), TypeError)

@@ -1,8 +1,10 @@
 """Worlds and threads."""
 # SPDX-License-Identifier: LGPL-3.0-or-later
+import os
 import signal
 import subprocess
 import sys
+import tempfile
 import textwrap
 import threading
 import time
@@ -158,6 +160,50 @@ class Threads(unittest.TestCase):
                 process = subprocess.run([sys.executable, "-c", script], capture_output=True,
                                          text=True, timeout=60)
                 self.assertEqual((process.returncode, process.stderr), (0, ""), work)
+
+    def test_worlds_work_while_python_ends(self) -> None:
+        script = textwrap.dedent("""
+            import atexit
+            def late():  # runs after what incise does at the end
+                body.step()
+                body.write_vtu("late.vtu")
+            atexit.register(late)
+            import incise, support
+            def early():
+                body.step()
+                body.write_vtu("early.vtu")
+            atexit.register(early)
+            class Holder:
+                def __del__(self):
+                    self.body.step()
+                    self.body.write_vtu("last.vtu")
+            body = support.world()
+            holder = Holder()
+            holder.body = body
+        """)
+        with tempfile.TemporaryDirectory() as folder:
+            paths = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])
+            done = subprocess.run([sys.executable, "-c", script], cwd=folder, text=True,
+                                  capture_output=True, timeout=60,
+                                  env={**os.environ, "PYTHONPATH": paths})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(sorted(os.listdir(folder)), ["early.vtu", "last.vtu", "late.vtu"])
+
+    def test_a_child_ends_though_a_thread_of_its_parent_steps(self) -> None:
+        script = textwrap.dedent("""
+            import os, threading, time
+            import incise, support
+            body = support.world()
+            threading.Thread(target=lambda: body.step(n=10**9), daemon=True).start()
+            time.sleep(0.2)
+            child = os.fork()
+            if child == 0:
+                raise SystemExit(7)
+            print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+        """)
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stdout), (0, "7\n"), done.stderr)
 
 
 if __name__ == "__main__":

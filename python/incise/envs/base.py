@@ -168,36 +168,13 @@ class CuttingEnv(gym.Env):
         self._can_step = False
         self._ready = None
         super().reset(seed=seed)
-        given = dict(options or {})
-        unknown = sorted(set(given) - set(self._option_names))
-        if unknown:
-            raise ValueError(f"reset() knows no options {unknown}; it knows "
-                             f"{list(self._option_names)}")
-        is_random = bool(given.get("randomize", self.randomize))
-        # A level is drawn in each case: options do not change the numbers that follow.
-        level = int(self.np_random.integers(self.num_stiffness_levels))
-        share = 0.0
-        if is_random and self.num_stiffness_levels > 1:
-            share = 2.0 * level / (self.num_stiffness_levels - 1) - 1.0
-        young = checks.number(
-            "stiffness", given.get("stiffness", self.young * self.stiffness_range ** share),
-            above=0, unit="Pa")
-        ready = self._world_of(young)
-        world = ready.world
-        world.restore(ready.state)
-        self._start = world.time
-        self._num_steps = 0
-        self._version = world.topology_version
-        self._area = self._lost = self._mean_distance = self._max_distance = 0.0
-        self._largest_force, self._force = 0.0, NO_FORCE
-        self._is_unstable = self._is_success = False
-        self._error = ""
-        self._ready = ready
+        drawn = self.np_random.bit_generator.state
         try:
-            self._begin(given, is_random)
-            result = self._observation(), self._info()
+            result = self._begin_episode(dict(options or {}))
         except BaseException:
+            # Nothing of a refused episode is left, so that the next one is as without it.
             self._ready = None
+            self.np_random.bit_generator.state = drawn
             raise
         self._can_step = True
         return result
@@ -275,6 +252,34 @@ class CuttingEnv(gym.Env):
 
     # --- Common parts
 
+    def _begin_episode(self, given: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """Draw what is random, and go to the start. Return (observation, info)."""
+        unknown = sorted(set(given) - set(self._option_names), key=str)
+        if unknown:
+            raise ValueError(f"reset() knows no options {unknown}; it knows "
+                             f"{list(self._option_names)}")
+        is_random = bool(given.get("randomize", self.randomize))
+        # A level is drawn in each case: options do not change the numbers that follow.
+        level = int(self.np_random.integers(self.num_stiffness_levels))
+        share = 0.0
+        if is_random and self.num_stiffness_levels > 1:
+            share = 2.0 * level / (self.num_stiffness_levels - 1) - 1.0
+        young = checks.number(
+            "stiffness", given.get("stiffness", self.young * self.stiffness_range ** share),
+            above=0, unit="Pa")
+        self._ready = self._world_of(young)
+        world = self._ready.world
+        world.restore(self._ready.state)
+        self._start = world.time
+        self._num_steps = 0
+        self._version = world.topology_version
+        self._area = self._lost = self._mean_distance = self._max_distance = 0.0
+        self._largest_force, self._force = 0.0, NO_FORCE
+        self._is_unstable = self._is_success = False
+        self._error = ""
+        self._begin(given, is_random)
+        return self._observation(), self._info()
+
     def _least_step(self, at_start: float) -> float:
         """Return the stable step below which the simulation is given up, s.
 
@@ -285,7 +290,7 @@ class CuttingEnv(gym.Env):
     def _world_of(self, young: float) -> World:
         found = self._worlds.get(young)
         if found is None:
-            # Levels of the constructor stay; others come from options, and the oldest goes.
+            # Options may ask for any stiffness: the oldest world goes.
             limit = self.num_stiffness_levels + self._num_spare_worlds
             if len(self._worlds) >= limit:
                 self._worlds.pop(next(iter(self._worlds)))
