@@ -77,7 +77,7 @@ void require_tools(const LiveOptions& options, const live::Session& session) {
         session.world().mesh().rest_position(*session.world().mesh().nodes().begin());
     for (const auto& [name, definition] : tools_of(options)) {
         try {
-            if (session.kind_of({name, definition, at_body}) == "suture")
+            if (session.check({name, definition, at_body}) == "suture")
                 throw InputError("a suture is sewn, not led");
         } catch (const InputError& error) {
             refuse(name, error.what());

@@ -56,10 +56,9 @@ class Session {
     /// Executes an order at the present time. Returns warnings. Throws InputError, and changes
     /// nothing, if it is refused: a name that is taken or not known, an invalid definition or pose.
     std::vector<std::string> execute(const Order& order);
-    /// Throws InputError if execute() would refuse to add the tool. Changes nothing.
-    void check(const AddTool& order) const { checked(order); }
-    /// Returns the kind of a tool. Throws InputError if execute() would refuse to add it.
-    std::string kind_of(const AddTool& order) const { return checked(order).kind; }
+    /// Returns the kind of a tool, such as "blade". Throws InputError if execute() would refuse to
+    /// add it. Changes nothing.
+    std::string check(const AddTool& order) const { return checked(order).kind; }
     /// Advances by one tick. Throws as runner::Simulation::step(). The session must then be
     /// restored.
     /// @param is_to_stop  asked after each step: if it returns true, the tick is given up

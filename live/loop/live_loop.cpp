@@ -179,10 +179,10 @@ void LiveLoop::obey(std::uint64_t page, const Json& wish) {
 void LiveLoop::execute(const Order& order) {
     for (const std::string& warning : session_.execute(order)) tell("warning", warning);
     const auto* added = std::get_if<AddTool>(&order);
-    const bool is_of_blade_or_probe = std::holds_alternative<MoveTool>(order) ||
-                                      std::holds_alternative<WithdrawTool>(order) ||
-                                      (added && session_.find(added->name)->kind != "suture");
-    has_changed_hold_ = has_changed_hold_ || !is_of_blade_or_probe;
+    const bool keeps_holds = std::holds_alternative<MoveTool>(order) ||
+                             std::holds_alternative<WithdrawTool>(order) ||
+                             (added && session_.find(added->name)->kind != "suture");
+    has_changed_hold_ = has_changed_hold_ || !keeps_holds;
 }
 
 const std::string& LiveLoop::in_hand(std::uint64_t page) const {

@@ -18,12 +18,12 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <random>
 #include <thread>
 #include <utility>  // before Boost 1.74, which uses std::exchange without it
 #include <variant>
 
 #include "incise/base/error.h"
+#include "incise/live/server/access.h"
 
 namespace incise::live {
 
@@ -39,51 +39,7 @@ using HttpResponse = http::response<http::string_body>;
 using beast::error_code;
 using std::chrono::seconds;
 
-/// Returns 128 random bits as 32 hexadecimal digits.
-std::string make_token() {
-    std::random_device random;
-    std::string token;
-    for (int i = 0; i < 4; ++i) {
-        std::array<char, 9> digits;
-        std::snprintf(digits.data(), digits.size(), "%08x", static_cast<unsigned>(random()));
-        token += digits.data();
-    }
-    return token;
-}
-
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
-/// The target of a request: its path, and the values of its parameters `token` and `once`.
-struct Target {
-    std::string_view path, token, once;
-    explicit Target(std::string_view target) : path(target.substr(0, target.find('?'))) {
-        std::string_view query = target.substr(std::min(path.size() + 1, target.size()));
-        while (!query.empty()) {
-            const std::string_view parameter = query.substr(0, query.find('&'));
-            if (parameter.starts_with("token=")) token = parameter.substr(6);
-            if (parameter.starts_with("once=")) once = parameter.substr(5);
-            query.remove_prefix(std::min(parameter.size() + 1, query.size()));
-        }
-    }
-};
-
-/// Returns a host without its port.
-std::string_view without_port(std::string_view host) {
-    if (host.starts_with("[")) return host.substr(0, host.find(']') + 1);
-    return host.substr(0, host.rfind(':'));
-}
-
-bool is_loopback_name(std::string_view host) {
-    return host == "127.0.0.1" || host == "localhost" || host == "[::1]";
-}
-
-bool is_equal_in_constant_time(std::string_view a, std::string_view b) {
-    if (a.size() != b.size()) return false;
-    unsigned difference = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        difference |= static_cast<unsigned>(a[i]) ^ static_cast<unsigned>(b[i]);
-    return difference == 0;
-}
 
 constexpr const char* no_token_page =
     "<!doctype html><title>Incise</title><p>This address has no valid token. Open the address that "

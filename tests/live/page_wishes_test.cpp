@@ -234,7 +234,7 @@ TEST(ToolJson, HasAllShapesThatAPageDraws) {
     EXPECT_EQ(json_of(ToolShape(cutting::Suture{})), std::nullopt);
 }
 
-TEST_F(PageWishes, ManyDownloadsAtOnceAreOneFile) {
+TEST_F(PageWishes, ManyDownloadsAtOnceAreAllAnswered) {
     run([&] {
         WebPage page(server.address());
         page.say(R"({"do":"pause","on":true})");

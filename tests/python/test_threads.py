@@ -99,6 +99,17 @@ class Threads(unittest.TestCase):
         self.assertLessEqual(kinds, {"Error", "BufferError"})
         body.step()
 
+    def interrupted(self, script: str) -> str:
+        """Run a script, and interrupt it after it has printed 'begun'. Return what follows."""
+        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
+                                   text=True)
+        assert process.stdout is not None
+        self.assertEqual(process.stdout.readline(), "begun\n")
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        return out
+
     def test_an_interrupt_ends_a_long_call_between_steps(self) -> None:
         script = textwrap.dedent("""
             import support
@@ -110,14 +121,7 @@ class Threads(unittest.TestCase):
                 body.step()
                 print("stopped", body.has_failed)
         """)
-        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
-                                   text=True)
-        assert process.stdout is not None
-        self.assertEqual(process.stdout.readline(), "begun\n")
-        time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=60)
-        self.assertEqual(out, "stopped False\n")
+        self.assertEqual(self.interrupted(script), "stopped False\n")
 
     def test_after_an_interrupt_a_grasp_goes_on_from_where_it_is(self) -> None:
         script = textwrap.dedent("""
@@ -137,14 +141,7 @@ class Threads(unittest.TestCase):
                 body.step(n=2)
                 print(0 < z < 1e3, bool(abs(body.velocities[held]).max() < 1e-3), body.has_failed)
         """)
-        process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
-                                   text=True)
-        assert process.stdout is not None
-        self.assertEqual(process.stdout.readline(), "begun\n")
-        time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=60)
-        self.assertEqual(out, "True True False\n")
+        self.assertEqual(self.interrupted(script), "True True False\n")
 
     def test_python_ends_while_a_daemon_steps_a_world(self) -> None:
         for work in ("body.step(n=10**9)", "[body.step(n=3) for _ in iter(int, 1)]",
