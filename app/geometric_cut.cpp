@@ -223,18 +223,14 @@ class CountingCutter {
             const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
             const auto rest = mesh_.rest_positions();
             if (mode_ == CutMode::split)
-                split_by([&](std::span<const Vec3> positions) {
-                    return cutter_.split(cut, mesh_, positions, before, after);
-                });
+                split_by([&] { return cutter_.split(cut, mesh_, before, after); });
             else
                 open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
         }
         SweepCut followed = sweep;
         if (cutter_.is_in_tissue(cut)) {
             const cutting::BladeEnd end = end_of(sweep);
-            split_by([&](std::span<const Vec3> positions) {
-                return cutter_.end_cut(cut, mesh_, fragments_, positions, end);
-            });
+            split_by([&] { return cutter_.end_cut(cut, mesh_, fragments_, end); });
             // The cut may end up to half an element ahead of the edge, on this continuation.
             followed.poses.push_back(end.edge_after(longest_edge(fragments_)));
         }
@@ -246,8 +242,7 @@ class CountingCutter {
 
     void cut(const ShapeRemoval& removal) {
         const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
-        const auto changes =
-            cutter_.carve(mesh_, mesh_.rest_positions(), removal.shape, pose, pose).changes;
+        const auto changes = cutter_.carve(mesh_, removal.shape, pose, pose).changes;
         long double removed = 0.0;
         for (const topology::ElementRecord& record : changes.elements_removed)
             removed += volume_of(record, mesh_);
@@ -256,20 +251,15 @@ class CountingCutter {
     }
 
     void split(const cutting::CutSurface& surface) {
-        split_by([&](std::span<const Vec3> positions) {
-            return cutter_.split(mesh_, positions, surface, snap_);
-        });
+        split_by([&] { return cutter_.split(mesh_, surface, snap_); });
     }
 
-    /// Makes a split and counts its changes. edit(positions) makes the split and returns a
-    /// cutting::Split.
+    /// Makes a split and counts its changes. edit() makes the split and returns a cutting::Split.
     template <class Edit>
     void split_by(Edit edit) {
-        // A copy, because the split adds nodes and with them positions to the mesh.
-        const std::vector<Vec3> rest(mesh_.rest_positions().begin(), mesh_.rest_positions().end());
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
-        const cutting::Split result = edit(rest);
+        const cutting::Split result = edit();
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;

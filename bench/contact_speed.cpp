@@ -56,7 +56,7 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
         {.gravity = Vec3::Zero(), .damping = 20.0, .constraints = plates(mesh), .loads = {}});
     cutting::Cutter cutter(mesh, model.mesh_positions());
     const cutting::Plane plane(side * Vec3(0.5, 0.5, 0.49), Vec3(0.1, 0.05, 1.0));
-    const auto cut = cutter.split(mesh, model.mesh_positions(), plane, cutting::default_snap);
+    const auto cut = cutter.split(mesh, plane, cutting::default_snap);
     model.apply(mesh, cut.changes);
 
     const topology::BoundarySurface surface(mesh);

@@ -123,7 +123,7 @@ void split(benchmark::State& state) {
         state.ResumeTiming();
         std::vector<std::pair<topology::ChangeSet, physics::ModelChanges>> history;
         for (int step = 0; step < num_steps; ++step) {
-            auto done = cutter.split(cut, mesh, model.mesh_positions(), edge(step), edge(step + 1));
+            auto done = cutter.split(cut, mesh, edge(step), edge(step + 1));
             auto of_model = model.apply(mesh, done.changes);
             cutter.apply(mesh, done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);

@@ -207,8 +207,7 @@ EditRate time_tool(std::string_view kind, std::string_view item, CutCube& cube, 
 EditRate measure_split(CutCube& cube) {
     const cutting::CutId cut = cube.cutter.begin_cut(cutting::default_snap);
     return time_tool("split", "element crossed", cube, [&](CutCube& c, int step) {
-        const auto done = c.cutter.split(cut, c.mesh, c.model.mesh_positions(), edge_of_blade(step),
-                                         edge_of_blade(step + 1));
+        const auto done = c.cutter.split(cut, c.mesh, edge_of_blade(step), edge_of_blade(step + 1));
         c.follow(done.changes);
         return done.report.elements_crossed;
     });
@@ -216,10 +215,8 @@ EditRate measure_split(CutCube& cube) {
 
 EditRate measure_separation(CutCube& cube) {
     return time_tool("separate", "face opened", cube, [](CutCube& c, int step) {
-        const auto changes = c.cutter
-                                 .separate(c.mesh, c.model.mesh_positions(), edge_of_blade(step),
-                                           edge_of_blade(step + 1))
-                                 .changes;
+        const auto changes =
+            c.cutter.separate(c.mesh, edge_of_blade(step), edge_of_blade(step + 1)).changes;
         c.follow(changes);
         return changes.faces_opened.size();
     });
@@ -234,8 +231,7 @@ EditRate measure_carving(CutCube& cube) {
     };
     return time_tool("carve", "element removed", cube, [&](CutCube& c, int step) {
         const cutting::Sphere ball{0.12 * cube_size};
-        const auto changes =
-            c.cutter.carve(c.mesh, c.model.mesh_positions(), ball, at(step), at(step + 1)).changes;
+        const auto changes = c.cutter.carve(c.mesh, ball, at(step), at(step + 1)).changes;
         c.follow(changes);
         return changes.elements_removed.size();
     });

@@ -2,6 +2,8 @@
 #include "incise/cutting/cutter.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "incise/base/error.h"
@@ -40,15 +42,16 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
 }  // namespace
 
 Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions)
-    : boxes_(mesh, positions), before_(mesh, positions) {}
+    : boxes_(mesh, positions), before_(mesh, positions), now_(mesh, positions) {}
 
-void Cutter::begin_motion(std::span<const Vec3> positions) {
-    before_.assign(positions);
+void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
+    std::swap(before_, now_);
+    now_.assign(positions);
+    double largest = 0.0;
+    for (std::size_t n = 0; n < positions.size(); ++n)
+        largest = std::max(largest, (positions[n] - before_.values()[n]).squaredNorm());
+    boxes_.move(mesh, positions, std::sqrt(largest));
     for (Cut& cut : cuts_) cut.has_moved = false;
-}
-
-void Cutter::end_motion(const Mesh& mesh, std::span<const Vec3> positions, double largest_move) {
-    boxes_.move(mesh, positions, largest_move);
 }
 
 std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
@@ -103,10 +106,10 @@ Split Cutter::noted(Split done, std::optional<std::size_t> worker) {
     return done;
 }
 
-Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
-                    const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after) {
+Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
+                    const std::vector<Vec3>& edge_after) {
     Cut& cut = cut_of(id);
-    const TissueMotion tissue = motion(mesh, positions);
+    const TissueMotion tissue = motion(mesh);
     Split done;
     if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
         auto resting = suspended_cuts(id.index);
@@ -120,35 +123,34 @@ Split Cutter::split(CutId id, Mesh& mesh, std::span<const Vec3> positions,
 }
 
 Split Cutter::end_cut(CutId id, Mesh& mesh, const topology::FragmentMesh& fragments,
-                      std::span<const Vec3> positions, const BladeEnd& blade) {
+                      const BladeEnd& blade) {
     Cut& cut = cut_of(id);
     auto resting = suspended_cuts(id.index);
-    boxes_.refresh(mesh, positions);
-    return noted(finish(mesh, fragments, {mesh, positions, positions, &boxes_}, blade, cut.front,
-                        {cut.snap}, snap_history_, resting),
-                 id.index);
+    TissueMotion tissue = motion(mesh);
+    tissue.before = tissue.after;  // it rests
+    return noted(
+        finish(mesh, fragments, tissue, blade, cut.front, {cut.snap}, snap_history_, resting),
+        id.index);
 }
 
-Split Cutter::split(Mesh& mesh, std::span<const Vec3> positions, const CutSurface& surface,
-                    double snap) {
+Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
     CutFront front;
     auto resting = suspended_cuts(std::nullopt);
-    return noted(cutting::split(mesh, motion(mesh, positions), surface, front, {snap},
-                                snap_history_, resting),
+    return noted(cutting::split(mesh, motion(mesh), surface, front, {snap}, snap_history_, resting),
                  std::nullopt);
 }
 
-Split Cutter::separate(Mesh& mesh, std::span<const Vec3> positions,
-                       const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after) {
-    const TissueMotion tissue = motion(mesh, positions);
+Split Cutter::separate(Mesh& mesh, const std::vector<Vec3>& edge_before,
+                       const std::vector<Vec3>& edge_after) {
+    const TissueMotion tissue = motion(mesh);
     if (!tissue.may_meet(box_round(edge_before, edge_after))) return {};
     return noted(carry_out({{}, faces_to_open(tissue, edge_before, edge_after)}, mesh),
                  std::nullopt);
 }
 
-Split Cutter::carve(Mesh& mesh, std::span<const Vec3> positions, const CarverShape& shape,
-                    const Pose& pose_before, const Pose& pose_after) {
-    const auto covered = covered_elements(motion(mesh, positions), shape, pose_before, pose_after);
+Split Cutter::carve(Mesh& mesh, const CarverShape& shape, const Pose& pose_before,
+                    const Pose& pose_after) {
+    const auto covered = covered_elements(motion(mesh), shape, pose_before, pose_after);
     return noted(carry_out({covered, {}}, mesh), std::nullopt);
 }
 
@@ -156,6 +158,7 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
     const OwnEdit own = changes.epoch_after == own_edit_.epoch ? own_edit_ : OwnEdit{};
     before_.apply(mesh, changes);  // throws, before any change, for an edit out of turn
+    now_.apply(mesh, changes);
     own_edit_ = {};
     if (!own.history_followed) snap_history_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
@@ -163,8 +166,29 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     boxes_.apply(mesh, changes);
 }
 
+std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {
+    const Cut& cut = cut_of(id);
+    std::vector<FaceId> found;
+    if (cut.front.is_empty()) return found;
+    const SweptEdge edge(cut.edge, cut.edge);
+    for (const ElementId e : mesh.elements())
+        for (int k = 0; k < traits(mesh.kind(e)).num_faces; ++k) {
+            const FaceId face{e, k};
+            if (mesh.face_size(face) != 3) continue;
+            std::array<MovingPoint, 3> triangle;
+            bool is_odd = false;
+            for (int p = 0; p < 3; ++p) {
+                const NodeId n = mesh.face_corner(face, p);
+                triangle[static_cast<std::size_t>(p)] = {now_[n], now_[n]};
+                is_odd ^= cut.front.is_crossed(n, mesh.face_corner(face, (p + 1) % 3));
+            }
+            if (is_odd != edge.ends_inside(triangle)) found.push_back(face);
+        }
+    return found;
+}
+
 bool Cutter::is_on(const Mesh& mesh) const {
-    return boxes_.cover(mesh) &&
+    return boxes_.cover(mesh) && now_.values().size() == mesh.node_capacity() &&
            std::ranges::all_of(cuts_, [&](const Cut& cut) { return cut.front.is_on(mesh); });
 }
 

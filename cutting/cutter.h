@@ -33,31 +33,29 @@ struct CutId {
 /// Each function that cuts makes one edit of the mesh and returns it. The caller passes the edit to
 /// all parts that keep values of the body, and calls apply() of the cutter last:
 ///
-///     cutter.begin_motion(positions);                   // the tissue before its motion
-///     ...                                               // the tissue moves
-///     cutter.end_motion(mesh, positions, largest_move);
-///     const Split done = cutter.split(cut, mesh, positions, edge_before, edge_after);
+///     ...                                               // the tissue moves to `positions`
+///     cutter.follow_motion(mesh, positions);
+///     const Split done = cutter.split(cut, mesh, edge_before, edge_after);
 ///     model.apply(mesh, done.changes);
 ///     cutter.apply(mesh, done.changes);
 ///
-/// Positions are current ones by node id, m. Functions that cut take the positions before their
-/// edit. apply() takes the positions after the edit, with those of the new nodes.
+/// Positions are current ones by node id, m. The cutter has its own record of them, and all cuts
+/// read that record. Each motion begins where the last one has ended. A node may be anywhere, but
+/// it must not change its position between two motions: a blade's edge would not sweep that change,
+/// and would cross an edge of the mesh twice, or never. The owner of the body gives nodes other
+/// positions after an edit, by rounding or because fragments have joined. Such a change is a part
+/// of the next motion here.
 class Cutter {
   public:
     /// Starts without cuts. Cost: O(n).
     Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
-    /// Begins a motion of the tissue from `positions`. Without this call, the next motion begins
-    /// where the previous one began. Cost: O(n).
-    void begin_motion(std::span<const Vec3> positions);
-    /// Ends a motion of the tissue at `positions`.
-    /// @pre  no node has moved by more than `largest_move`, m
-    /// Cost: O(n) when boxes are rebuilt, else O(1).
-    void end_motion(const topology::Mesh& mesh, std::span<const Vec3> positions,
-                    double largest_move);
+    /// Follows a motion of the tissue to `positions`. Cuts take it as straight.
+    /// Cost: O(n).
+    void follow_motion(const topology::Mesh& mesh, std::span<const Vec3> positions);
 
     /// Returns the point of the tissue that lies at `x`, m; nothing if there is none.
-    /// @param moved  how far a node may have moved since the last end_motion(), m
+    /// @param moved  how far a node may have moved since the last follow_motion(), m
     /// Cost: O(n / 1000), and that of the elements near `x`.
     std::optional<topology::CellPoint> tissue_at(const topology::Mesh& mesh,
                                                  std::span<const Vec3> positions, const Vec3& x,
@@ -69,8 +67,8 @@ class Cutter {
     /// edit, which may be empty.
     /// Throws InputError for an unknown cut, and UndividableElement for an element that is no
     /// tetrahedron. In both cases the mesh is unchanged. Cost: see cutting::split.
-    Split split(CutId cut, topology::Mesh& mesh, std::span<const Vec3> positions,
-                const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after);
+    Split split(CutId cut, topology::Mesh& mesh, const std::vector<Vec3>& edge_before,
+                const std::vector<Vec3>& edge_after);
     /// True if the cut ends inside the body. If false, end_cut() does nothing.
     bool is_in_tissue(CutId cut) const { return !cut_of(cut).front.is_empty(); }
     /// Ends a cut at the present edge of its blade, in tissue at rest. split() can begin the same
@@ -78,24 +76,23 @@ class Cutter {
     /// @param fragments  of the mesh
     /// Throws InputError for an unknown cut. Cost: see cutting::finish.
     Split end_cut(CutId cut, topology::Mesh& mesh, const topology::FragmentMesh& fragments,
-                  std::span<const Vec3> positions, const BladeEnd& blade);
+                  const BladeEnd& blade);
     /// Removes a cut. Its number may be given to a later cut. Throws InputError for an unknown cut.
     void remove_cut(CutId cut) { cut_of(cut) = {}; }
 
     /// Cuts along a whole surface at once.
     /// Throws UndividableElement, and leaves the mesh unchanged, for an element that is no
     /// tetrahedron.
-    Split split(topology::Mesh& mesh, std::span<const Vec3> positions, const CutSurface& surface,
-                double snap);
+    Split split(topology::Mesh& mesh, const CutSurface& surface, double snap);
     /// Opens the faces that lie nearest to what the edge of a blade sweeps: see faces_to_open().
-    Split separate(topology::Mesh& mesh, std::span<const Vec3> positions,
-                   const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edge_after);
+    Split separate(topology::Mesh& mesh, const std::vector<Vec3>& edge_before,
+                   const std::vector<Vec3>& edge_after);
     /// Removes the elements that a shape covers on its way from one pose to another: see
     /// covered_elements().
-    Split carve(topology::Mesh& mesh, std::span<const Vec3> positions, const CarverShape& shape,
-                const Pose& pose_before, const Pose& pose_after);
+    Split carve(topology::Mesh& mesh, const CarverShape& shape, const Pose& pose_before,
+                const Pose& pose_after);
 
-    /// Follows an edit of the mesh, whoever has made it.
+    /// Follows an edit of the mesh, whoever has made it. New nodes are where their sources are.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
@@ -107,8 +104,17 @@ class Cutter {
     bool is_on(const topology::Mesh& mesh) const;
     /// True if begin_cut() has returned this number and the cut has not been removed.
     bool has_cut(CutId id) const { return id.index < cuts_.size() && cuts_[id.index].is_in_use; }
-    /// Archives everything except the present motion.
-    static void archive(auto& ar, auto& self) { ar(self.cuts_, self.boxes_, self.snap_history_); }
+    /// Returns the triangles that contradict a cut in progress; there are none unless there is a
+    /// fault. The cut crosses an odd number of edges of a triangle if the blade's edge pierces it,
+    /// and in no other case. A triangle with another number would stay joined for ever.
+    /// @pre  the blade has come from outside, its ends have stayed outside, and no motion has been
+    ///       followed since split()
+    /// Throws InputError for an unknown cut. Cost: O(n).
+    std::vector<FaceId> contradictory_faces(CutId cut, const topology::Mesh& mesh) const;
+    /// Archives everything except where the present motion began.
+    static void archive(auto& ar, auto& self) {
+        ar(self.cuts_, self.boxes_, self.snap_history_, self.now_);
+    }
 
   private:
     struct Cut {
@@ -132,16 +138,18 @@ class Cutter {
     const Cut& cut_of(CutId id) const;
     /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     std::vector<SuspendedCut> suspended_cuts(std::optional<std::size_t> worker);
-    TissueMotion motion(const topology::Mesh& mesh, std::span<const Vec3> positions) {
-        boxes_.refresh(mesh, positions);
-        return {mesh, before_.values(), positions, &boxes_};
+    /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
+    TissueMotion motion(const topology::Mesh& mesh) {
+        boxes_.refresh(mesh, now_.values());
+        return {mesh, before_.values(), now_.values(), &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);
 
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;
-    std::vector<Cut> cuts_;             // by CutId
-    topology::NodeField<Vec3> before_;  // positions before the present motion, by node id
+    std::vector<Cut> cuts_;  // by CutId
+    // Positions before and after the last motion, by node id.
+    topology::NodeField<Vec3> before_, now_;
     OwnEdit own_edit_;
 };
 

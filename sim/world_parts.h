@@ -104,9 +104,8 @@ struct World::Parts {
     /// 0 the difference of the times is another one.
     const StepReport& checked_step(double end, double dt);
     void step_to(double end);
-    /// Moves the body to the time `end`, in equal parts that are not above the stable step. Returns
-    /// the largest distance that a node of the mesh moved, m, at most.
-    double move_to(double end);
+    /// Moves the body to the time `end`, in equal parts that are not above the stable step.
+    void move_to(double end);
     /// Returns the bound on steps for the present strain and motion, s.
     double present_bound() const;
     /// Follows a step with the stable step.
@@ -131,11 +130,6 @@ struct World::Parts {
     topology::BoundarySurface& built_surface();
     void require_sound_pose(ToolId id, const Pose& pose) const;
     void require_pose(ToolId id) const;
-    bool is_any_cutter_present() const {
-        return std::ranges::any_of(tools, [](const Tool& tool) {
-            return tool.is_present && cutting::cuts(tool.def.shape);
-        });
-    }
 
     topology::Mesh mesh;
     double time = 0.0;

@@ -75,13 +75,10 @@ void World::Parts::step_to(double end) {
     report.to = end;
     report.edits.clear();
     report.tools.clear();
-    double largest_move = 0.0;
-    const auto begin_motion = [&] {
-        if (is_any_cutter_present()) cutter.begin_motion(model.mesh_positions());
-    };
-    const auto end_motion = [&] {
+    const auto cut = [&] {
         has_moved = true;
-        cutter.end_motion(mesh, model.mesh_positions(), largest_move);
+        cutter.follow_motion(mesh, model.mesh_positions());
+        for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
     };
 
     if (loads_have_changed) model.compute_forces(time);
@@ -91,21 +88,16 @@ void World::Parts::step_to(double end) {
                        physics::TimeCurve<Pose>({{time, grasp.pose}, {end, grasp.target}}));
         grasp.pose = grasp.target;
     }
-    begin_motion();
-    largest_move = move_to(end);
+    move_to(end);
     time = end;
     ++num_steps;
-    end_motion();
-    for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
+    cut();
     // Tissue that crosses a tool during the motion to the new equilibrium is cut too. The tools do
     // not move during this motion.
     for (std::size_t num_followed = 0; num_followed < report.edits.size();) {
         num_followed = report.edits.size();
-        begin_motion();
         if (!integrator->equilibrate(model, end)) break;
-        largest_move = model.largest_mesh_move();
-        end_motion();
-        for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
+        cut();
     }
     model.compute_forces(end);
     if (contact && !report.edits.empty()) contact->follow(model, built_surface());
@@ -214,24 +206,23 @@ void World::Parts::move_touching_tools(double from, double to, double moved) {
     }
 }
 
-double World::Parts::move_to(double end) {
+void World::Parts::move_to(double end) {
     const double from = time, dt = end - time;
     const std::size_t n = report.num_parts = num_parts(dt);
-    double largest_move = 0.0;
+    double moved = 0.0;  // how far a node has moved, at most
     for (std::size_t i = 0; i < n; ++i) {
         const double next =
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
         if (i > 0) model.compute_forces(time);
         if (contact)
             move_touching_tools(static_cast<double>(i) / static_cast<double>(n),
-                                static_cast<double>(i + 1) / static_cast<double>(n), largest_move);
+                                static_cast<double>(i + 1) / static_cast<double>(n), moved);
         integrator->step(model, time, next - time);
         if (contact) contact->book_work(model);
-        largest_move += model.largest_mesh_move();
+        moved += model.largest_mesh_move();
         bound_interval.moved += model.largest_move();
         time = next;
     }
-    return largest_move;
 }
 
 /// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.
@@ -267,10 +258,8 @@ void World::Parts::cut_with(ToolId id, double end) {
                 tool.motion[i] = tool.edge_after[i] - tool.edge_before[i];
         }
         const cutting::BladeEnd blade(tool.edge_after, tool.motion);
-        follow(id, carry_out([&] {
-                   return cutter.end_cut(*tool.cut, mesh, model.fragments(), model.mesh_positions(),
-                                         blade);
-               }),
+        follow(id,
+               carry_out([&] { return cutter.end_cut(*tool.cut, mesh, model.fragments(), blade); }),
                end);
     }
     tool.has_just_left = cutting::feels_force(tool.def.shape);
@@ -278,13 +267,12 @@ void World::Parts::cut_with(ToolId id, double end) {
 }
 
 cutting::Split World::Parts::split_with(Tool& tool) {
-    const auto now = model.mesh_positions();
     if (const auto* carver = std::get_if<Carver>(&tool.def.shape))
-        return cutter.carve(mesh, now, carver->shape, tool.pose, tool.target);
+        return cutter.carve(mesh, carver->shape, tool.pose, tool.target);
     if (const auto* plane = std::get_if<cutting::PlaneCut>(&tool.def.shape))
-        return cutter.split(mesh, now, *tool.surface, plane->snap);
+        return cutter.split(mesh, *tool.surface, plane->snap);
     if (const auto* cut = std::get_if<cutting::SurfaceCut>(&tool.def.shape))
-        return cutter.split(mesh, now, *tool.surface, cut->snap);
+        return cutter.split(mesh, *tool.surface, cut->snap);
     const Blade& blade = std::get<Blade>(tool.def.shape);
     cutting::place_edge(blade, tool.pose, tool.edge_before);
     cutting::place_edge(blade, tool.target, tool.edge_after);
@@ -292,8 +280,8 @@ cutting::Split World::Parts::split_with(Tool& tool) {
     if (tool.edge_before != tool.edge_after)
         for (std::size_t i = 0; i < tool.motion.size(); ++i)
             tool.motion[i] = tool.edge_after[i] - tool.edge_before[i];
-    if (tool.cut) return cutter.split(*tool.cut, mesh, now, tool.edge_before, tool.edge_after);
-    return cutter.separate(mesh, now, tool.edge_before, tool.edge_after);
+    if (tool.cut) return cutter.split(*tool.cut, mesh, tool.edge_before, tool.edge_after);
+    return cutter.separate(mesh, tool.edge_before, tool.edge_after);
 }
 
 void World::Parts::follow(ToolId id, cutting::Split done, double end) {

@@ -63,6 +63,9 @@ class NodeField {
         values_.resize(changes.node_capacity_after);
     }
 
+    /// Archives the values. A field that is read must be one of the same mesh.
+    static void archive(auto& ar, auto& self) { ar(self.values_); }
+
   private:
     FollowedEpoch epoch_;
     std::vector<T> values_;

@@ -128,15 +128,14 @@ inline std::optional<std::string> failure_at_rest_steps(StrainedCut c, double sa
             const double dt = safety * model.rest_stable_step();
             const bool is_time = !was_cut && time >= StrainedCut::cut_at;
             if (is_time && c.is_released) model.remove_constraint(1);
-            if (is_time) cutter.begin_motion(model.mesh_positions());
             model.integrate(time, dt);
             time += dt;
+            cutter.follow_motion(mesh, model.mesh_positions());
             if (is_time) {
                 was_cut = true;
-                cutter.end_motion(mesh, model.mesh_positions(), model.largest_mesh_move());
                 if (c.is_cut) {
-                    const auto done = cutter.split(mesh, model.mesh_positions(),
-                                                   *cutting::cut_surface_of(c.cut), c.cut.snap);
+                    const auto done =
+                        cutter.split(mesh, *cutting::cut_surface_of(c.cut), c.cut.snap);
                     model.apply(mesh, done.changes);
                     cutter.apply(mesh, done.changes);
                 }

@@ -4,19 +4,25 @@
 namespace incise::topology {
 
 ElementBoxes::ElementBoxes(const Mesh& mesh, std::span<const Vec3> positions) : epoch_(mesh) {
-    build(mesh, positions);
+    build(mesh, positions, 0.0);
 }
 
-void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions) {
-    margin_ = 0.0;
+void ElementBoxes::build(const Mesh& mesh, std::span<const Vec3> positions, double margin) {
     stale_.clear();
     groups_.assign(num_groups(mesh.element_capacity()), Box());
     supergroups_.assign(num_supergroups(groups_.size()), Box());
-    double sum = 0.0;
+    double sum = 0.0, largest_coordinate = 0.0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         update_group(mesh, positions, g);
-        if (!groups_[g].isEmpty()) sum += groups_[g].sizes().maxCoeff();
+        const Box& box = groups_[g];
+        if (box.isEmpty()) continue;
+        sum += box.sizes().maxCoeff();
+        largest_coordinate = std::max(
+            {largest_coordinate, box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()});
     }
+    // Far above the rounding of distances and of grown boxes: a tool that only touches an element
+    // must find it.
+    margin_ = margin + 1e-12 * largest_coordinate;
     // At this margin, a search visits twice to a few times as many elements as with new boxes.
     if (!groups_.empty()) largest_margin_ = 0.4 * sum / static_cast<double>(groups_.size());
 }
@@ -35,8 +41,7 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
 void ElementBoxes::move(const Mesh& mesh, std::span<const Vec3> positions, double distance) {
     margin_ += distance;
     if (margin_ <= largest_margin_) return refresh(mesh, positions);
-    build(mesh, positions);
-    margin_ = distance;  // the boxes must also contain the elements before the motion
+    build(mesh, positions, distance);  // the elements before the motion are in them, too
 }
 
 bool ElementBoxes::may_meet(const Box& swept) const {

@@ -65,7 +65,8 @@ class ElementBoxes {
         return (n + supergroup_size - 1) / supergroup_size;
     }
 
-    void build(const topology::Mesh& mesh, std::span<const Vec3> positions);
+    /// @param margin  of the new boxes, m
+    void build(const topology::Mesh& mesh, std::span<const Vec3> positions, double margin);
     void update_group(const topology::Mesh& mesh, std::span<const Vec3> positions, std::size_t g);
     Box grown(const Box& box) const {
         const Vec3 margin = Vec3::Constant(margin_);
@@ -75,8 +76,9 @@ class ElementBoxes {
     std::vector<Box> groups_;         // of elements
     std::vector<Box> supergroups_;    // of groups
     std::vector<std::size_t> stale_;  // groups whose boxes edits have changed, in ascending order
-    double margin_ = 0.0;             // how far nodes may have moved since the boxes were built
-    double largest_margin_ = 0.0;     // above it, the boxes are rebuilt
+    // How far nodes may have moved since the boxes were built, and the rounding of that.
+    double margin_ = 0.0;
+    double largest_margin_ = 0.0;  // above it, the boxes are rebuilt
     FollowedEpoch epoch_;
 };
 
