@@ -15,8 +15,9 @@ namespace incise::cutting {
 /// Puts nodes of earlier cuts on the front if the surface passes by them at the same place. It need
 /// not cross an edge of theirs.
 ///
-/// A node is frozen if an earlier cut had the same surface, the node has not moved since, and
-/// neither it nor a neighbour moves in this step. The cut then has nothing to add there.
+/// A node is frozen if an earlier cut had the same surface in space, and the node has not moved
+/// across it by more than a tenth of an edge since. The cut then has nothing to add there. Tissue
+/// under load moves after each cut, and its cut faces leave the surface.
 /// @param tissue        the positions of the nodes
 /// @param surface       what the cut follows
 /// @param edges         of the elements near the surface, in any order
