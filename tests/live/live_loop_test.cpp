@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <functional>
 
@@ -17,7 +16,9 @@
 namespace incise::live {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Leads tools as a test says, tick by tick.
 class Hand : public Device {
@@ -53,6 +54,14 @@ class LiveLoopTest : public testing::Test {
         loop.run([&] { return hand.num_looks >= num_looks; });
     }
 
+    /// What was told, without warnings: there is one where the machine is slow.
+    std::vector<std::string> errors() const {
+        std::vector<std::string> found;
+        for (const std::string& message : messages)
+            if (message.starts_with("error: ")) found.push_back(message);
+        return found;
+    }
+
     BlockFolder folder;
     Session session;
     Recorder recorder;
@@ -66,9 +75,9 @@ TEST_F(LiveLoopTest, TellsARefusedOrderOnceAndGoesOn) {
     hand.act = [](const Session&) { return std::vector<Order>{WithdrawTool{"nobody"}}; };
     run(20);
     EXPECT_EQ(session.num_ticks(), 20u);
-    EXPECT_EQ(messages.size(), 1u);
-    EXPECT_THAT(messages.at(0),
-                HasSubstr("error: tool 'nobody' of a device: there is no tool 'nobody'"));
+    EXPECT_THAT(errors(),
+                ElementsAre("error: tool 'nobody' of a device: there is no tool 'nobody' that a "
+                            "hand leads"));
 }
 
 /// Loses the motion in some ticks.
@@ -94,8 +103,7 @@ TEST_F(LiveLoopTest, GoesBackByItselfAndGoesOn) {
         return {move("knife", 0.05, -0.01 + 0.002 * static_cast<double>(s.num_ticks()), 0.03)};
     };
     loop.run([&] { return fault.num_losses > 0 && session.world().time() > 0.08; });
-    ASSERT_FALSE(messages.empty());
-    EXPECT_THAT(messages.at(0), HasSubstr("the motion is lost. The body went back to t = "));
+    EXPECT_THAT(errors(), ElementsAre(HasSubstr("the motion is lost. The body went back to t = ")));
     for (const LedTool& tool : session.tools()) EXPECT_FALSE(tool.is_in_hand);
     // What was recorded plays to the end.
     Replay replay(folder.scenario(), read_recording(folder.file("hands.jsonl")), false);
@@ -108,14 +116,10 @@ TEST_F(LiveLoopTest, PausesIfItHappensAgainAndAgain) {
     Fault fault;
     fault.is_lost = [](double time) { return time > 0.05; };
     session.simulation().add_observer(fault);
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    const auto is_paused = [&] {
-        return std::ranges::any_of(messages,
-                                   [](const auto& m) { return m.find("it pauses") != m.npos; });
-    };
-    loop.run([&] { return is_paused() || std::chrono::steady_clock::now() > until; });
-    EXPECT_TRUE(is_paused());
+    loop.run([&] { return fault.num_losses == 4 || errors().size() == 3; });
     EXPECT_EQ(fault.num_losses, 3);
+    EXPECT_THAT(errors(), ElementsAre(Not(HasSubstr("it pauses")), Not(HasSubstr("it pauses")),
+                                      HasSubstr("it pauses")));
 }
 
 /// What a page reads of a picture.

@@ -21,6 +21,9 @@
 
 namespace incise::live {
 
+/// How long what must come is waited for. No test depends on it: it ends a test that has failed.
+inline constexpr std::chrono::minutes patience{5};
+
 /// A client that knows nothing of HTTP but bytes.
 class Client {
   public:
@@ -45,7 +48,7 @@ class Client {
     }
     /// Reads until the end, or until `is_enough`.
     const std::string& read(const std::function<bool(const std::string&)>& is_enough = {}) {
-        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        const auto until = std::chrono::steady_clock::now() + patience;
         while (!(is_enough && is_enough(received_)) && std::chrono::steady_clock::now() < until) {
             pollfd waits{socket_, POLLIN, 0};
             if (::poll(&waits, 1, 100) <= 0) continue;
