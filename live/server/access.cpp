@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <random>
+#include <system_error>
 
 namespace incise::live {
 
@@ -30,9 +33,24 @@ Target::Target(std::string_view target) : path(target.substr(0, target.find('?')
     }
 }
 
-std::string_view without_port(std::string_view host) {
-    if (host.starts_with("[")) return host.substr(0, host.find(']') + 1);
-    return host.substr(0, host.rfind(':'));
+std::string_view host_without_port(std::string_view header) {
+    const bool is_ipv6 = header.starts_with("[");
+    const std::size_t end_of_host = is_ipv6 ? header.find(']') + 1 : header.find(':');
+    const std::string_view host = header.substr(0, end_of_host);  // empty without that bracket
+    if (host.empty()) return {};
+    const bool is_host =
+        is_ipv6 ? host.find_first_not_of("0123456789abcdefABCDEF:.", 1) == host.size() - 1
+                : host.find_first_not_of(
+                      "0123456789abcdefghijklmnopqrstuvwxyz"
+                      "ABCDEFGHIJKLMNOPQRSTUVWXYZ-_.") == host.npos;
+    if (!is_host) return {};
+    const std::string_view rest = header.substr(host.size());
+    if (rest.empty()) return host;
+    std::uint16_t port = 0;
+    const char* const end = rest.data() + rest.size();
+    const auto read = std::from_chars(rest.data() + 1, end, port);
+    const bool is_port = rest.front() == ':' && read.ec == std::errc() && read.ptr == end;
+    return is_port ? host : std::string_view();
 }
 
 bool is_loopback_name(std::string_view host) {

@@ -18,8 +18,9 @@ struct Target {
     explicit Target(std::string_view target);
 };
 
-/// Returns a host of a header without its port. An IPv6 address keeps its brackets.
-std::string_view without_port(std::string_view host);
+/// Returns the name or address in a Host header, without the port. An IPv6 address keeps its
+/// brackets. Empty if the header is anything but a host, or a host, a colon and a port.
+std::string_view host_without_port(std::string_view header);
 
 /// True for the names of this machine that no other machine can have.
 bool is_loopback_name(std::string_view host);

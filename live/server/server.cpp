@@ -80,9 +80,9 @@ class Server::Parts {
     void later(F f) {
         asio::post(*io, std::move(f));
     }
-    bool is_host_allowed(std::string_view host) const {
-        const std::string_view name = without_port(host);
-        return is_open_to_all || is_loopback_name(name) || name == options.host;
+    bool is_host_allowed(std::string_view header) const {
+        const std::string_view host = host_without_port(header);
+        return !host.empty() && (is_open_to_all || is_loopback_name(host) || host == options.host);
     }
 
     ServerOptions options;
@@ -275,7 +275,7 @@ class Server::Parts::Connection : public std::enable_shared_from_this<Connection
     void answer() {
         const HttpRequest& request = parser_->get();
         const std::string_view host = view(request[http::field::host]);
-        if (!parts_.is_host_allowed(host))
+        if (request.count(http::field::host) != 1 || !parts_.is_host_allowed(host))
             return refuse(http::status::misdirected_request, "this host is not served here");
         const Target target(view(request.target()));
         const bool knows_token = is_equal_in_constant_time(target.token, parts_.token);

@@ -97,17 +97,82 @@ TEST_F(ServerTest, GivesItsAddressAwayOnceOnly) {
     EXPECT_THAT(get("/?once="), StartsWith("HTTP/1.1 403"));
 }
 
-TEST_F(ServerTest, RefusesOtherHostsPathsAndMethods) {
-    EXPECT_THAT(get("/?token=" + token, "evil.example"), StartsWith("HTTP/1.1 421"));
-    EXPECT_THAT(get("/?token=" + token, ""), StartsWith("HTTP/1.1 421"));
-    EXPECT_THAT(get("/?token=" + token, "127.0.0.1.evil.example:80"), StartsWith("HTTP/1.1 421"));
-    // A forwarded port is another one here and there.
-    EXPECT_THAT(get("/?token=" + token, "localhost:9999"), StartsWith("HTTP/1.1 200"));
+TEST_F(ServerTest, RefusesOtherPathsAndMethods) {
     EXPECT_THAT(get("/../etc/passwd"), StartsWith("HTTP/1.1 404"));
     EXPECT_THAT(get("/%2e%2e/app.js"), StartsWith("HTTP/1.1 404"));
     EXPECT_THAT(get("/app.js", {}, "POST"), StartsWith("HTTP/1.1 405"));
     EXPECT_THAT(get("/" + std::string(20000, 'a')), Not(HasSubstr("200 OK")));
     EXPECT_THAT(get("/app.js", {}, "\xff\x01 rubbish"), Not(HasSubstr("200 OK")));
+}
+
+TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnly) {
+    const auto answer = [&](const std::string& as_host) {
+        return get("/?token=" + token, as_host).substr(0, 12);
+    };
+    // A forwarded port is another one here and there.
+    for (const std::string& own :
+         {host, std::string("localhost:9999"), std::string("localhost"), std::string("[::1]:80"),
+          std::string("[::1]"), std::string("127.0.0.1:65535")})
+        EXPECT_EQ(answer(own), "HTTP/1.1 200") << own;
+    for (const std::string machine : {"127.0.0.1", "localhost", "[::1]"})
+        for (const std::string rest : {":80.evil.example",
+                                       ":80:evil.example",
+                                       ".evil.example:80",
+                                       ".evil.example",
+                                       ".",
+                                       ".:80",
+                                       ":",
+                                       ":80.",
+                                       ":8o",
+                                       ":+80",
+                                       ":-80",
+                                       ":65536",
+                                       ":80 evil.example",
+                                       ":80/",
+                                       "@evil.example",
+                                       ":80@evil.example:80",
+                                       "]",
+                                       "]:80",
+                                       "[",
+                                       "%lo:80",
+                                       "\t.evil"})
+            EXPECT_EQ(answer(machine + rest), "HTTP/1.1 421") << machine << rest;
+    for (const std::string other : {"",
+                                    ":80",
+                                    "evil.example",
+                                    "evil.example:80",
+                                    "user@127.0.0.1:80",
+                                    "@127.0.0.1",
+                                    "[",
+                                    "[]",
+                                    "]",
+                                    "[::1",
+                                    "::1",
+                                    "::1:80",
+                                    "[127.0.0.1]:80",
+                                    "[[::1]]:80",
+                                    "[::1%lo]:80",
+                                    "[::2]:80",
+                                    "127.0.0.2:80",
+                                    "0.0.0.0:80",
+                                    "127.1:80",
+                                    "2130706433:80"})
+        EXPECT_EQ(answer(other), "HTTP/1.1 421") << other;
+    EXPECT_EQ(answer("localhost\r\nHost: evil.example"), "HTTP/1.1 421");
+    EXPECT_EQ(answer("evil.example\r\nHost: localhost"), "HTTP/1.1 421");
+}
+
+TEST_F(ServerTest, ThatListensForAllReadsHostsStrictlyToo) {
+    const Server open({.host = "0.0.0.0", .port = 0, .files = {{"/", "text/html", "the page"}}});
+    const auto answer = [&](const std::string& as_host) {
+        Client client(open.port());
+        client.send("GET / HTTP/1.1\r\nHost: " + as_host + "\r\nConnection: close\r\n\r\n");
+        return client.read().substr(0, 12);
+    };
+    for (const std::string any : {"box.example", "box.example:8080", "192.168.0.7", "[fe80::1]:80"})
+        EXPECT_EQ(answer(any), "HTTP/1.1 403") << any;  // it asks for the token
+    for (const std::string wrong : {"", ":80", "box:80.evil", "me@box:80", "[fe80::1", "box:"})
+        EXPECT_EQ(answer(wrong), "HTTP/1.1 421") << wrong;
 }
 
 TEST_F(ServerTest, LetsOnlyItsOwnPageConnect) {
