@@ -1,6 +1,6 @@
 // The live page in a browser, with the program behind it.
-// The environment names the program (INCISE_PROGRAM), a scenario (INCISE_SCENARIO) and the folder
-// with playwright-core (INCISE_NODE_MODULES). The tests want both cores of a small machine.
+// The environment names the program (INCISE_PROGRAM) and the folder with playwright-core
+// (INCISE_NODE_MODULES). The tests want both cores of a small machine, and wait as long as they must.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,12 +10,12 @@ import { after, afterEach, before, beforeEach, describe, test } from 'node:test'
 import { HandCheck } from '../../live/page/src/hand_check.js';
 import { between, beyond, launch, LivePage } from './page.mjs';
 import { colourAt, countChanged, difference } from './picture.mjs';
-import { run, scenario, startLive } from './program.mjs';
+import { block, liver, patience, run, startLive } from './program.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'incise-live-'));
-/** Milliseconds for one test, and for a group of them. */
-const timeout = 180000;
-const whole = 1800000;
+/** Milliseconds for one test, and for a group of them: more than a single wait. */
+const timeout = 2 * patience;
+const whole = 20 * patience;
 /** A block on a table, with a blade that stays above it. */
 const onTable = `
 [mesh]
@@ -123,10 +123,8 @@ describe('the hand and the states', () => {
 
 describe('loading', { timeout: whole }, () => {
     test('BodyComesWithoutErrors', { timeout }, async () => {
-        const started = performance.now();
-        const live = await LivePage.open(browser, session.address);
-        assert.ok(performance.now() - started < 30000);
-        await live.until(() => document.getElementById('loading')?.hidden);
+        const own = await startLive(join(folder, 'liver.jsonl'), liver);
+        const live = await LivePage.open(browser, own.address);
         const icon = await live.ask(async () => (await fetch('/favicon.svg')).status);
         assert.equal(icon, 200);
         assert.deepEqual(live.errors, []);
@@ -134,7 +132,9 @@ describe('loading', { timeout: whole }, () => {
         const { x, y } = await live.middle();
         const corner = colourAt(picture, 200, picture.height - 8);
         assert.ok(difference(colourAt(picture, x, y), corner) > 30, 'the body is not seen');
+        await cutAcross(live);
         await live.close();
+        await own.stop();
     });
 
     test('PageFollowsReload', { timeout }, async () => {
@@ -261,8 +261,6 @@ describe('hands', { timeout: whole }, () => {
         for (const part of [0.4, 0.6]) {
             const at = between(from, to, part);
             await live.page.mouse.click(at.x, at.y);
-            // Two clicks in short order would be a double click.
-            await live.page.waitForTimeout(400);
         }
         await live.until(() => document.getElementById('thread')?.textContent === '2 points laid');
         await live.press('Enter');
@@ -328,14 +326,13 @@ describe('hands', { timeout: whole }, () => {
         await live.press('2');
         const target = await live.middle();
         await live.press('ArrowLeft');
-        const start = await live.ask(() => {
+        const cursor = () => live.ask(() => {
             const { left, top, width, height } = /** @type {Element} */ (document.getElementById('cursor')).getBoundingClientRect();
             return { x: left + width / 2, y: top + height / 2 };
         });
-        const steps = (/** @type {number} */ pixels, /** @type {string} */ less, /** @type {string} */ more) =>
-            Array(Math.round(Math.abs(pixels) / 6)).fill(pixels < 0 ? less : more);
-        const way = [...steps(target.x - start.x, 'ArrowLeft', 'ArrowRight'), ...steps(target.y - start.y, 'ArrowUp', 'ArrowDown')];
-        for (const key of way) await live.press(key);
+        // A key that a slow page sees down for long moves the cursor farther: so each looks where it is.
+        for (const [axis, less, more] of [['x', 'ArrowLeft', 'ArrowRight'], ['y', 'ArrowUp', 'ArrowDown']])
+            for (let way = 1; Math.abs((way = target[axis] - (await cursor())[axis])) > 6; ) await live.press(way < 0 ? less : more);
         await live.press('Enter');
         await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.present));
         for (let i = 0; i < 14; ++i) {
@@ -400,8 +397,7 @@ describe('hands', { timeout: whole }, () => {
             return { outside, parts, size: Math.max(box.right - box.left, box.bottom - box.top) };
         });
         for (const [width, height] of [[1280, 800], [760, 520], [480, 460], [375, 700]]) {
-            await live.page.setViewportSize({ width, height });
-            await live.drawn();
+            await live.resize(width, height);
             const { outside, parts, size } = await hidden();
             assert.ok(!outside, `the body leaves a page of ${width} x ${height}`);
             assert.deepEqual(parts, [], `panels cover the body on ${width} x ${height}`);
@@ -409,7 +405,7 @@ describe('hands', { timeout: whole }, () => {
         }
         await live.page.mouse.move(187, 300);
         for (let i = 0; i < 6; ++i) await live.page.mouse.wheel(0, -200);
-        await live.page.waitForFunction(() => {
+        await live.until(() => {
             const xs = window.incise.corners().map(({ x }) => x);
             return Math.max(...xs) - Math.min(...xs) > innerWidth;
         });
@@ -430,9 +426,11 @@ describe('hands', { timeout: whole }, () => {
         });
         await live.press('2');
         await live.press('ArrowLeft');
-        // After some busy seconds the page takes the tool, and only then reads the states of these seconds.
+        // A busy page takes the tool, and only then reads the states that came meanwhile: hundreds.
+        await live.send({ do: 'speed', factor: 4 });
+        await live.until(() => window.incise.state().speed === 4);
         await live.ask(() => {
-            const end = performance.now() + 5000;
+            const end = performance.now() + 1200;
             while (performance.now() < end);
             document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
         });
@@ -440,12 +438,12 @@ describe('hands', { timeout: whole }, () => {
         for (let i = 0; i < 3; ++i) {
             await live.press('ArrowRight');
             await live.ask(() => {
-                const end = performance.now() + 1000;
+                const end = performance.now() + 300;
                 while (performance.now() < end);
             });
         }
         const { tick } = await live.state();
-        await live.until((before) => window.incise.state().tick > before + 150, tick);
+        await live.until((before) => window.incise.state().tick > before + 30, tick);
         assert.ok((await live.state()).tools.some((tool) => tool.mine && tool.present), 'the tool is dropped');
         // The way to where the tool is dropped belongs to the stroke, though no picture comes between.
         await live.ask(() => {
@@ -470,15 +468,13 @@ describe('hands', { timeout: whole }, () => {
             return window.incise.ordersSent();
         });
         await live.page.mouse.move(middle.x + 10, middle.y - 20, { steps: 4 });
-        const often = { polling: 50, timeout: 40000 };
-        await live.page.waitForFunction((before) => window.incise.ordersSent() > before, sent, often);
+        await live.until((before) => window.incise.ordersSent() > before, sent, 50);
         await live.page.mouse.up();
-        await live.page.waitForFunction(() => !window.incise.state().tools.some((tool) => tool.mine), null, often);
+        await live.until(() => !window.incise.state().tools.some((tool) => tool.mine), null, 50);
     });
 
     test('NarrowPageLeavesTheMiddleFree', { timeout }, async () => {
-        await live.page.setViewportSize({ width: 375, height: 700 });
-        await live.drawn();
+        await live.resize(375, 700);
         const look = () => live.ask(() =>
             ['top', 'readings', 'tools', 'transport', 'more', 'settings', 'corner', 'legend', 'notice']
                 .map((id) => ({ id, part: /** @type {HTMLElement} */ (document.getElementById(id)) }))
@@ -529,7 +525,7 @@ describe('hands', { timeout: whole }, () => {
     });
 
     test('HostileMessagesAreAnswered', { timeout }, async () => {
-        const answers = await live.ask(async () => {
+        const answers = await live.ask(async (longest) => {
             const pose = { at: [0, 0, 0], rotation: [0, 0, 0, 1] };
             const blade = { kind: 'blade', edge: [[0, 0, 0.01], [0, 0, -0.01]] };
             const texts = [
@@ -570,7 +566,7 @@ describe('hands', { timeout: whole }, () => {
             for (const text of texts) {
                 const answered = new Promise((done) => {
                     heard = () => done(true);
-                    setTimeout(() => done(false), 8000);
+                    setTimeout(() => done(false), longest);
                 });
                 socket.send(text);
                 results.push([text.slice(0, 80), Boolean(await answered)]);
@@ -578,13 +574,13 @@ describe('hands', { timeout: whole }, () => {
             const refused = new Promise((done) => {
                 heard = () => done(true);
                 socket.onclose = () => done(true);
-                setTimeout(() => done(false), 8000);
+                setTimeout(() => done(false), longest);
             });
             socket.send(`{"do":"show","field":"${'x'.repeat(100 * 1024)}"}`);
             results.push(['100 KiB', Boolean(await refused)]);
             socket.close();
             return results;
-        });
+        }, patience);
         assert.deepEqual(answers.filter(([, answered]) => !answered).map(([text]) => text), []);
         const { tick } = await live.state();
         await live.until((before) => window.incise.state().tick > before + 2, tick);
@@ -640,7 +636,7 @@ describe('records', { timeout: whole }, () => {
         } finally {
             await own.stop();
         }
-        const again = await run(['run', scenario, '--replay', record, '--out', join(folder, 'again.out')]);
+        const again = await run(['run', block, '--replay', record, '--out', join(folder, 'again.out')]);
         assert.equal(again.code, 0, again.said);
     });
 });

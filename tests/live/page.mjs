@@ -3,11 +3,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
-import { nodeModules } from './program.mjs';
+import { nodeModules, patience } from './program.mjs';
 import { readPng } from './picture.mjs';
 
 const { chromium } = createRequire(join(nodeModules, 'x.js'))('playwright-core');
-const patience = { timeout: 40000 };
 
 export async function launch() {
     return chromium.launch({
@@ -45,6 +44,7 @@ export class LivePage {
     /** @param {any} page of playwright */
     constructor(page) {
         this.page = page;
+        page.setDefaultTimeout(patience);
         page.on('console', (/** @type {any} */ message) => {
             if (message.type() === 'error') this.errors.push(message.text());
         });
@@ -79,9 +79,10 @@ export class LivePage {
         await this.until((before) => window.incise.greetings() > before && window.incise.state()?.edits === 0 && !window.incise.state().can_undo, greeted);
         await this.send({ do: 'pause', on: false });
         await this.send({ do: 'show', field: 'none' });
+        await this.send({ do: 'speed', factor: 1 });
         await this.until(() => {
             const state = window.incise.state();
-            return state && !state.paused && state.field === 'none' && window.incise.hello();
+            return state && !state.paused && state.field === 'none' && state.speed === 1 && window.incise.hello();
         });
     }
 
@@ -95,10 +96,14 @@ export class LivePage {
         return this.page.evaluate(question, argument);
     }
 
-    /** Waits until a function of the page gives something true. @param {Function} condition @param {any} [argument] */
-    async until(condition, argument) {
+    /**
+     * Waits until a function of the page gives something true, and returns that.
+     * @param {Function} condition @param {any} [argument]
+     * @param {'raf'|number} [polling] number: milliseconds, for a page that draws nothing
+     */
+    async until(condition, argument, polling = 'raf') {
         try {
-            return await this.page.waitForFunction(condition, argument, patience);
+            return await (await this.page.waitForFunction(condition, argument, { polling })).jsonValue();
         } catch (error) {
             const facts = await this.ask(() => [window.incise?.mode(), window.incise?.state(), window.incise?.messages()]).catch(String);
             throw new Error(`${error}\nwaiting for ${condition}\nwith ${JSON.stringify(facts)}`);
@@ -206,6 +211,19 @@ export class LivePage {
             await this.page.mouse.move(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
             await this.until((count) => window.incise.framesReceived() > count || window.incise.state().paused, before);
         }
+    }
+
+    /** Gives the page another size, and waits until it is drawn in it. @param {number} width @param {number} height */
+    async resize(width, height) {
+        await this.page.setViewportSize({ width, height });
+        await this.until(
+            ([wanted, tall]) => {
+                const { clientWidth } = /** @type {Element} */ (document.querySelector('canvas'));
+                return innerWidth === wanted && innerHeight === tall && clientWidth === wanted;
+            },
+            [width, height]
+        );
+        await this.drawn();
     }
 
     close() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { fileURLToPath } from 'node:url';
 
 const need = (/** @type {string} */ name) => {
     const value = process.env[name];
@@ -10,19 +11,23 @@ const need = (/** @type {string} */ name) => {
 };
 
 export const program = need('INCISE_PROGRAM');
-export const scenario = need('INCISE_SCENARIO');
 export const nodeModules = need('INCISE_NODE_MODULES');
 
-/** Seconds in which the program must name its address. */
-const startWithin = 60;
+const file = (/** @type {string} */ name) => fileURLToPath(new URL(name, import.meta.url));
+/** A small body, so that the time of a test is that of the page; and one of the size that users have. */
+export const block = file('soft_block.toml');
+export const liver = file('../../data/scenarios/liver_live.toml');
 
-/** @param {string} record file for what is done @param {string} [body] another scenario */
-export async function startLive(record, body = scenario) {
+/** Milliseconds after which what is waited for is given up. No test depends on it: it ends a test that has failed. */
+export const patience = 240000;
+
+/** @param {string} record file for what is done @param {string} [body] scenario */
+export async function startLive(record, body = block) {
     const args = ['live', body, '--port', '0', '--no-open', '--record', record];
     const child = spawn(program, args, { stdio: ['ignore', 'ignore', 'pipe'] });
     let said = '';
     const address = await new Promise((found, failed) => {
-        const late = setTimeout(() => failed(new Error(`no address in ${startWithin} s: ${said}`)), 1000 * startWithin);
+        const late = setTimeout(() => failed(new Error(`no address in ${patience} ms: ${said}`)), patience);
         child.stderr.on('data', (data) => {
             said += data;
             const url = /http:\/\/\S+/.exec(said)?.[0];
