@@ -35,8 +35,6 @@ const modeNames = ['look', 'scalpel', 'probe', 'grasper', 'suture', 'burr'];
 /** The kind of tool that a mode takes. @type {Record<ModeName, string>} */
 const kinds = { look: '', scalpel: 'blade', probe: 'probe', grasper: 'grasper', suture: 'suture', burr: 'carver' };
 const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
-/** Milliseconds in which a reset has to be asked for again. */
-const resetWithin = 4000;
 /** Milliseconds after which a tool in the hand moves on, though no picture was drawn. */
 const moveWithin = 30;
 
@@ -57,7 +55,8 @@ export class App {
     #range = new FieldRange();
     #cursor = new Cursor();
     #lost = false;
-    #resetAsked = 0;
+    /** The page asks whether to reset. Any other key or press is a no. */
+    #asksReset = false;
     #check = new HandCheck();
     /** When the tool in the hand was moved last. */
     #movedHand = 0;
@@ -163,12 +162,13 @@ export class App {
         this.#showStatus();
     }
 
-    /** Forgets what was in the hand, without an order. */
+    /** Forgets what was in the hand, and what was asked, without an order. */
     #letGo() {
         this.hand.forget();
         this.pointer.stop();
         this.suture.forget();
         this.#cursor.hide();
+        this.#showReset(false);
     }
 
     /** What the program does until the body is there, and since when. */
@@ -395,6 +395,7 @@ export class App {
         const field = /** @type {HTMLSelectElement} */ (element('field'));
         field.onchange = () => this.send({ do: 'show', field: field.value });
         addEventListener('blur', () => this.pointer.stop());
+        for (const input of ['keydown', 'pointerdown']) addEventListener(input, (event) => this.#doubtReset(event), true);
     }
 
     #tellSaved() {
@@ -500,18 +501,21 @@ export class App {
 
     #askReset() {
         if (!this.isOperator) return;
-        const now = performance.now();
-        const sure = now - this.#resetAsked < resetWithin;
-        this.#resetAsked = sure ? 0 : now;
-        if (sure) {
-            this.#letGo();
-            this.send({ do: 'reset' });
-        } else setTimeout(() => this.#showReset(), resetWithin + 50);
-        this.#showReset();
+        if (!this.#asksReset) return this.#showReset(true);
+        this.#letGo();
+        this.send({ do: 'reset' });
     }
 
-    #showReset() {
-        const asks = this.#resetAsked > 0 && performance.now() - this.#resetAsked < resetWithin;
+    /** @param {Event} event a key or a press of the pointer */
+    #doubtReset(event) {
+        const onButton = event.target instanceof Element && event.target.closest('#reset') !== null;
+        const again = event instanceof KeyboardEvent && event.key.toLowerCase() === 'r';
+        if (this.#asksReset && !onButton && !again) this.#showReset(false);
+    }
+
+    /** @param {boolean} asks */
+    #showReset(asks) {
+        this.#asksReset = asks;
         element('reset-ask').hidden = !asks;
         button('reset').classList.toggle('asks', asks);
         button('reset').setAttribute('aria-label', asks ? 'Press again to reset' : 'Reset');
