@@ -485,7 +485,7 @@ describe('hands', { timeout: whole }, () => {
     test('NarrowPageLeavesTheMiddleFree', { timeout }, async () => {
         await live.resize(375, 700);
         const look = () => live.ask(() =>
-            ['top', 'readings', 'tools', 'transport', 'more', 'settings', 'corner', 'legend', 'notice']
+            ['top', 'readings', 'tools', 'transport', 'more', 'settings', 'corner', 'legend', 'strip']
                 .map((id) => ({ id, part: /** @type {HTMLElement} */ (document.getElementById(id)) }))
                 .filter(({ part }) => part.offsetParent !== null || getComputedStyle(part).position === 'fixed')
                 .map(({ id, part }) => {
@@ -508,6 +508,41 @@ describe('hands', { timeout: whole }, () => {
                 }
             }
         }
+    });
+
+    test('MessagesLeaveTheBodyToTheTools', { timeout }, async () => {
+        await live.send({ do: 'pause', on: true });
+        const other = await LivePage.open(browser, session.address);
+        /** Makes the page show messages, and returns what of them lies over the picture. @param {LivePage} page @param {number} count */
+        const told = async (page, [width, height], count) => {
+            await page.resize(width, height);
+            for (let i = 0; i < 4; ++i) await page.send({ do: `${i} ${'a wish that nobody knows '.repeat(20)}` });
+            return page.until((least) => {
+                if (document.querySelectorAll('.message').length < least) return false;
+                const { left, top, right, bottom } = /** @type {Element} */ (document.querySelector('canvas')).getBoundingClientRect();
+                const over = new Set();
+                for (let x = left + 1; x < right; x += 16)
+                    for (let y = top + 1; y < bottom; y += 16) {
+                        const part = document.elementFromPoint(x, y)?.closest('.message, #notice');
+                        if (part) over.add(part.className || part.id);
+                    }
+                return { over: [...over], notice: !document.getElementById('notice')?.hidden };
+            }, count);
+        };
+        const [narrow, wide] = [[375, 700], [1000, 680]];
+        for (const size of [narrow, wide]) assert.deepEqual(await told(other, size, 1), { over: [], notice: true }, `${size}`);
+        await other.close();
+        for (const size of [[760, 520], [480, 460], narrow, wide])
+            assert.deepEqual(await told(live, size, 4), { over: [], notice: false }, `${size}`);
+        // A stroke through what lies where messages would hide the body.
+        const from = await live.ask(() => {
+            const x = innerWidth / 2 - 90;
+            for (let y = 100; y < 500; ++y) if (window.incise.pick(x, y)) return { x, y };
+        });
+        await live.send({ do: 'pause', on: false });
+        await live.press('2');
+        await live.drag(from, { x: from.x, y: from.y + 60 });
+        await live.until(() => window.incise.state().edits > 0);
     });
 
     test('TwoPagesSeeOneBody', { timeout }, async () => {

@@ -1,4 +1,4 @@
-// Messages over the picture. They stay long enough to be read, and longer under the pointer.
+// Messages below the picture, the newest first. They stay long enough to be read, and longer under the pointer.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 
 /** @typedef {'info'|'warning'|'error'} Level */
@@ -25,7 +25,7 @@ export class Messages {
         const short = text.length > 600 ? `${text.slice(0, 600)} …` : text;
         for (const old of this.#list.children)
             if (old instanceof HTMLElement && old.dataset.text === short) old.remove();
-        while (this.#list.children.length >= most) this.#list.children[0].remove();
+        while (this.#list.children.length >= most) this.#list.lastElementChild?.remove();
 
         const item = document.createElement('div');
         item.className = `message ${level}`;
@@ -38,7 +38,7 @@ export class Messages {
         close.setAttribute('aria-label', 'Dismiss');
         close.onclick = () => item.remove();
         item.append(body, close);
-        this.#list.append(item);
+        this.#list.prepend(item);
 
         const leave = () => {
             if (item.matches(':hover, :focus-within')) setTimeout(leave, 1500);
