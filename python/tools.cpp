@@ -150,7 +150,7 @@ Those of a scenario hold or move nodes as it says. A grasp carries nodes with a 
                 const auto id = find(constraint).id;
                 return array_of(driver_of(constraint.world).world().reaction(id).force);
             }),
-            R"(The force that the constraint exerted on the body in the last step, N. Shape (3,).
+            R"(The force that the constraint exerted on the body, mean over the last step, N. Shape (3,).
 
 A grasp on moving tissue stops it within one step: leave out that step, or take a mean.)")
         .def_property_readonly(

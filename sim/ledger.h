@@ -24,7 +24,7 @@ struct BodyTotals {
     double stable_step = 0.0;                             ///< bound at rest, s
     double external_work = 0.0, dissipated_energy = 0.0;  ///< J, since the start
     double min_volume_ratio = 0.0;                        ///< least current over rest volume
-    std::vector<physics::Reaction> reactions;             ///< by constraint, in the last step
+    std::vector<physics::Reaction> reactions;  ///< by constraint, means over the last step
     static void archive(auto& ar, auto& self) {
         ar(self.nodes, self.elements, self.components, self.totals, self.stable_step,
            self.external_work, self.dissipated_energy, self.min_volume_ratio, self.reactions);

@@ -253,8 +253,8 @@ class World {
     /// Removes a constraint, which may be a grasp. The nodes of the constraint keep their
     /// velocities.
     void release(ConstraintId constraint);
-    /// Returns the force, N, and the moment, N m, that a constraint exerted on the body in the last
-    /// step.
+    /// Returns the force, N, and the moment, N m, that a constraint exerted on the body, means over
+    /// the last step.
     const physics::Reaction& reaction(ConstraintId constraint) const;
 
     /// Adds a load. The loads of the definition have the first numbers.

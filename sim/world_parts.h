@@ -151,6 +151,8 @@ struct World::Parts {
     BoundInterval bound_interval;  // since then
     bool has_moved = true;         // since the last edit
     bool has_failed = false;
+
+    std::vector<physics::Reaction> reactions;  // scratch of move_to(), by constraint
 };
 
 }  // namespace incise::sim

@@ -210,6 +210,7 @@ void World::Parts::move_to(double end) {
     const double from = time, dt = end - time;
     const std::size_t n = report.num_parts = num_parts(dt);
     double moved = 0.0;  // how far a node has moved, at most
+    reactions.assign(model.num_constraints(), {});
     for (std::size_t i = 0; i < n; ++i) {
         const double next =
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
@@ -219,10 +220,13 @@ void World::Parts::move_to(double end) {
                                 static_cast<double>(i + 1) / static_cast<double>(n), moved);
         integrator->step(model, time, next - time);
         if (contact) contact->book_work(model);
+        for (std::size_t k = 0; k < reactions.size() && n > 1; ++k)
+            reactions[k] += (next - time) / dt * model.reactions()[k];
         moved += model.largest_mesh_move();
         bound_interval.moved += model.largest_move();
         time = next;
     }
+    if (n > 1) model.set_reactions(reactions);
 }
 
 /// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.

@@ -61,6 +61,9 @@ struct Reaction {
         moment += o.moment;
         return *this;
     }
+    friend Reaction operator*(double factor, const Reaction& r) {
+        return {factor * r.force, factor * r.moment};
+    }
     static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
 };
 
@@ -361,8 +364,13 @@ class Model {
 
     std::size_t num_constraints() const { return constraints_.size(); }
     const std::string& constraint_name(std::size_t i) const { return constraints_.name(i); }
-    /// Returns the reaction of each constraint in the last step, or in the last part of it.
+    /// Returns the reaction of each constraint, mean over the last step.
     std::span<const Reaction> reactions() const { return reactions_; }
+    /// Sets the reactions to the means over several steps, of which the last one was the last.
+    /// @pre  there is one for each constraint
+    void set_reactions(std::span<const Reaction> means) {
+        std::ranges::copy(means, reactions_.begin());
+    }
 
     const topology::Mesh& mesh() const { return mesh_; }
     const topology::FragmentMesh& fragments() const { return fragments_; }

@@ -168,6 +168,29 @@ TEST(Contact, OfAFastSmallBallIsNotMissed) {
               std::string::npos);
 }
 
+// Tools, constraints and gravity have changed the momentum, each by its mean force over the step.
+TEST(Contact, InAStepOfPartsBalancesMomentum) {
+    WorldDef def = soft_body();
+    def.damping = 0.0;
+    World world = held(World(std::move(def)));
+    constexpr double radius = 0.003, move = 0.002;
+    const ToolId ball = world.add_tool({"ball", cutting::Probe{cutting::Sphere{radius}}});
+    world.place_tool(ball, at({0.05, 0.05, size + radius}));
+    const double dt = 0.5 * world.stable_step();
+    double largest = 0.0;
+    for (int i = 1; i <= 10; ++i) {
+        const auto before = world.ledger().body_totals().totals;
+        world.set_tool_pose(ball, at({0.05, 0.05, size + radius - move * i}));
+        const StepReport& report = world.step(dt);
+        EXPECT_GT(report.num_parts, 1u);
+        const Vec3 force = world.reaction(ConstraintId{0}).force - report.tools[0].force +
+                           before.mass * Vec3(0, 0, -9.81);
+        const Vec3 change = world.ledger().body_totals().totals.momentum - before.momentum;
+        largest = std::max(largest, world.reaction(ConstraintId{0}).force.norm());
+        EXPECT_LT((change - dt * force).norm(), 1e-11 * dt * largest) << i;
+    }
+}
+
 // A tool that is put elsewhere meets what is there, and jaws open on the way.
 TEST(Contact, OfAToolThatIsPlacedAnewIsWithWhatIsThere) {
     auto [world, ball] = ball_above(0.0, 0.01);
