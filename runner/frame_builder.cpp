@@ -7,7 +7,6 @@
 #include <string>
 
 #include "incise/topology/carriers.h"
-#include "incise/topology/cut_faces.h"
 
 namespace incise::runner {
 
@@ -54,6 +53,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &elements_);
     frame_.mesh.carriers = topology::carriers_of(mesh, model.fragments());
     frame_.time = time;
+    frame_.mesh.cut_faces.resize(elements_.size());  // all frames of a run have the same arrays
 
     auto& points = frame_.point_fields;
     const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
@@ -86,12 +86,6 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     auto& cells = frame_.cell_fields;
     cells.push_back(field<std::int64_t>("element_id", 1, elements_,
                                         [&](ElementId e) { return mesh.label(e); }));
-    cells.push_back(field<std::int32_t>("cut_faces", 1, elements_, [&](ElementId e) {
-        std::int32_t faces = 0;
-        for (int f = 0; f < mesh.num_faces(e); ++f)
-            if (topology::is_on_cut(mesh, model.fragments(), {e, f})) faces |= 1 << f;
-        return faces;
-    }));
     const topology::FragmentMesh& fragments = model.fragments();
     if (const auto fibres = model.fibres(); !fibres.empty())
         cells.push_back(field<double>("fibre", 3, elements_, [&](ElementId e) {

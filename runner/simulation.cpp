@@ -19,7 +19,8 @@ namespace incise::runner {
 
 namespace {
 
-/// Returns a checksum of mesh, carriers and fibres at the start, and of the files of surfaces.
+/// Returns a checksum of mesh, carriers, cut faces and fibres at the start, and of the files of
+/// surfaces.
 std::uint64_t fingerprint_of(const physics::Model& model,
                              const std::vector<scenario::ToolSpec>& tools) {
     const topology::Mesh& mesh = model.mesh();
@@ -29,7 +30,10 @@ std::uint64_t fingerprint_of(const physics::Model& model,
         const ElementId e(i);
         ar(mesh.label(e), mesh.kind(e), mesh.region(e));
         for (const NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
-        for (int f = 0; f < mesh.num_faces(e); ++f) ar(mesh.neighbor({e, f}).element);
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            ar(mesh.neighbor({e, f}).element);
+            if (mesh.is_on_cut({e, f})) ar(f);
+        }
     }
     for (const std::int64_t row : mesh.source_carriers().of_cell) ar(row);
     for (const auto& corners : mesh.source_carriers().corners)

@@ -48,7 +48,7 @@ void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
             triangles_.push_back({mesh.face_corner(face, 0), mesh.face_corner(face, p - 1),
                                   mesh.face_corner(face, p)});
             faces_.push_back(face);
-            is_cut_.push_back(mesh.was_inside(face) ? 1 : 0);
+            is_cut_.push_back(mesh.is_on_cut(face) ? 1 : 0);
         }
     }
 }

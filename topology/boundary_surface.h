@@ -36,8 +36,7 @@ class BoundarySurface {
     std::span<const std::array<NodeId, 3>> triangles() const { return triangles_; }
     /// Returns the face of the mesh that each triangle belongs to. Shape (T).
     std::span<const FaceId> faces() const { return faces_; }
-    /// Returns 1 for each triangle of a cut face, else 0. The faces of a cut are those that lay
-    /// inside the body at first. Shape (T).
+    /// Returns 1 for each triangle of a face on a cut, else 0; see Mesh::is_on_cut(). Shape (T).
     std::span<const std::uint8_t> is_cut() const { return is_cut_; }
 
     /// Returns the epoch of the mesh that this surface belongs to.

@@ -8,7 +8,7 @@ namespace incise::topology {
 bool ChangeSet::is_empty() const {
     return epoch_before == epoch_after && nodes_added.empty() && nodes_removed.empty() &&
            elements_added.empty() && elements_removed.empty() && rewired.empty() &&
-           faces_opened.empty() && faces_closed.empty();
+           inside_changes.empty() && faces_opened.empty() && faces_closed.empty();
 }
 
 ChangeSet inverse(const ChangeSet& changes) {
@@ -20,6 +20,7 @@ ChangeSet inverse(const ChangeSet& changes) {
     std::swap(back.elements_added, back.elements_removed);
     std::swap(back.faces_opened, back.faces_closed);
     for (Rewiring& rewiring : back.rewired) std::swap(rewiring.from, rewiring.to);
+    for (InsideChange& change : back.inside_changes) std::swap(change.from, change.to);
     return back;
 }
 

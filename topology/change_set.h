@@ -61,6 +61,15 @@ struct Rewiring {
     static void archive(auto& ar, auto& self) { ar(self.element, self.corner, self.from, self.to); }
 };
 
+/// A change of Mesh::was_inside() at the faces of an element: bit f for face f. From 0 for an
+/// element that the edit added.
+struct InsideChange {
+    ElementId element;
+    std::uint8_t from = 0, to = 0;
+    bool operator==(const InsideChange&) const = default;
+    static void archive(auto& ar, auto& self) { ar(self.element, self.from, self.to); }
+};
+
 /// The two sides of a face, the one with the lower id first.
 struct FacePair {
     FaceId a, b;
@@ -78,6 +87,7 @@ struct ChangeSet {
     std::vector<NodeRecord> nodes_added, nodes_removed;
     std::vector<ElementRecord> elements_added, elements_removed;
     std::vector<Rewiring> rewired;
+    std::vector<InsideChange> inside_changes;
     std::vector<FacePair> faces_opened, faces_closed;
 
     /// True if nothing was edited. The record of an edit can have empty lists, but it leads to
@@ -88,7 +98,7 @@ struct ChangeSet {
         ar(self.epoch_before, self.epoch_after, self.node_capacity_before, self.node_capacity_after,
            self.element_capacity_before, self.element_capacity_after, self.nodes_added,
            self.nodes_removed, self.elements_added, self.elements_removed, self.rewired,
-           self.faces_opened, self.faces_closed);
+           self.inside_changes, self.faces_opened, self.faces_closed);
     }
 };
 

@@ -121,14 +121,8 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const NodeId>
     corner_begin_.push_back(corners_.size());
     neighbors_.resize(neighbors_.size() + static_cast<std::size_t>(traits(kind).num_faces));
     face_begin_.push_back(neighbors_.size());
-    was_inside_.resize(neighbors_.size(), 0);
+    inside_faces_.push_back(0);
     ++num_elements_;
-}
-
-void Mesh::inherit_inside(ElementId e, ElementId parent) {
-    std::copy_n(was_inside_.begin() + static_cast<std::ptrdiff_t>(face_begin_[parent.index()]),
-                num_faces(e),
-                was_inside_.begin() + static_cast<std::ptrdiff_t>(face_begin_[e.index()]));
 }
 
 void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
@@ -141,7 +135,7 @@ void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
     face_begin_.resize(element_capacity + 1);
     corners_.resize(corner_begin_.back());
     neighbors_.resize(face_begin_.back());
-    was_inside_.resize(face_begin_.back());
+    inside_faces_.resize(element_capacity);
     map_.truncate(node_capacity, element_capacity);
 }
 
@@ -150,6 +144,8 @@ void Mesh::glue(FaceId a, FaceId b, int shift) {
     map_.glue(a, b, shift);
     set_neighbor(a, b);
     set_neighbor(b, a);
+    for (const FaceId f : {a, b})
+        inside_faces_[f.element.index()] |= static_cast<std::uint8_t>(1 << f.face);
 }
 
 void Mesh::unglue(FaceId a) {
@@ -246,6 +242,12 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::ve
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));
         if (elements) elements->push_back(e);
+        std::int32_t cut_faces = 0;
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (mesh.is_on_cut({e, f})) cut_faces |= 1 << f;
+        if (cut_faces == 0 && data.cut_faces.empty()) continue;
+        data.cut_faces.resize(data.num_cells());
+        data.cut_faces.back() = cut_faces;
     }
     return data;
 }

@@ -108,12 +108,14 @@ class Mesh {
         return neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)];
     }
 
-    /// True if the face lay inside the body before any cut: it was joined to another face in the
-    /// source. Each part of a divided element takes the values of that element, by local face
-    /// number.
+    /// True if the face lay inside the body before any cut: it is, or was, joined to another face.
+    /// The parts of a face that is divided take its value. The source can name further faces:
+    /// MeshData::cut_faces.
     bool was_inside(FaceId f) const {
-        return was_inside_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)] != 0;
+        return (inside_faces_[f.element.index()] >> f.face & 1) != 0;
     }
+    /// True if the face is on a cut: it is on the boundary, and lay inside the body before any cut.
+    bool is_on_cut(FaceId f) const { return !neighbor(f).is_valid() && was_inside(f); }
 
     /// Writes the elements at a node (its star) to `elements`, in ascending order. A dead node has
     /// none. Cost: about a microsecond; see collect_star().
@@ -147,10 +149,9 @@ class Mesh {
     Mesh() = default;
 
     void append_element_row(CellKind kind, int region, std::span<const NodeId> corners);
-    void inherit_inside(ElementId e, ElementId parent);
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
-    /// Joins two faces in the map and in the arrays. The corner at position 0 of `a` meets the
-    /// corner at position `shift` of `b`.
+    /// Joins two faces in the map and in the arrays, which makes them inside for ever: see
+    /// was_inside(). The corner at position 0 of `a` meets the corner at position `shift` of `b`.
     void glue(FaceId a, FaceId b, int shift);
     void unglue(FaceId a);
     void set_neighbor(FaceId f, FaceId other) {
@@ -169,7 +170,7 @@ class Mesh {
     std::vector<std::size_t> corner_begin_{0}, face_begin_{0};
     std::vector<NodeId> corners_;
     std::vector<FaceId> neighbors_;
-    std::vector<std::uint8_t> was_inside_;  // by face
+    std::vector<std::uint8_t> inside_faces_;  // by element, bit f for face f: see was_inside()
 
     std::vector<std::int64_t> node_labels_, element_labels_;
     std::vector<NodeId> label_nodes_;                       ///< by label; the first node if pinched
@@ -218,7 +219,8 @@ Components components(const Mesh& mesh);
 /// Returns the faces of living elements that have no neighbour, in ascending order.
 std::vector<FaceId> boundary_faces(const Mesh& mesh);
 
-/// Returns the living nodes and elements as plain arrays, in ascending order of ids.
+/// Returns the living nodes and elements as plain arrays, in ascending order of ids, and which of
+/// their faces are on cuts.
 /// @param mesh       the mesh
 /// @param positions  by node id; the points of the result
 /// @param nodes      if not null, receives the node id of each point

@@ -14,8 +14,8 @@ class MeshArchive {
   public:
     static void list(auto& ar, auto& m) {
         ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.incident_elements_,
-           m.kinds_, m.alive_, m.regions_, m.corners_, m.neighbors_, m.was_inside_, m.node_labels_,
-           m.element_labels_, m.label_nodes_, m.pinched_);
+           m.kinds_, m.alive_, m.regions_, m.corners_, m.neighbors_, m.inside_faces_,
+           m.node_labels_, m.element_labels_, m.label_nodes_, m.pinched_);
     }
 
     static Mesh load(ArchiveReader& ar) {
@@ -49,7 +49,7 @@ class MeshArchive {
         require(mesh_.alive_.size() == num_elements && mesh_.regions_.size() == num_elements &&
                     mesh_.corners_.size() == mesh_.corner_begin_.back() &&
                     mesh_.neighbors_.size() == mesh_.face_begin_.back() &&
-                    mesh_.was_inside_.size() == mesh_.face_begin_.back() &&
+                    mesh_.inside_faces_.size() == num_elements &&
                     mesh_.incident_elements_.size() == mesh_.rest_positions_.size() &&
                     mesh_.element_labels_.size() <= num_elements &&
                     mesh_.node_labels_.size() <= mesh_.incident_elements_.size(),

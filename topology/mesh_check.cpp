@@ -55,6 +55,9 @@ std::string fault_of_lists(const MeshData& data) {
     if (data.regions.size() != num_cells)
         return "regions has " + std::to_string(data.regions.size()) + " entries for " +
                std::to_string(num_cells) + " cells";
+    if (!is_one_each(data.cut_faces.size(), num_cells))
+        return "cut_faces has " + std::to_string(data.cut_faces.size()) + " entries for " +
+               std::to_string(num_cells) + " cells";
     if (!is_one_each(data.welded_to.size(), data.points.size()))
         return "welded_to has " + std::to_string(data.welded_to.size()) + " entries for " +
                std::to_string(data.points.size()) + " points";
@@ -72,6 +75,10 @@ std::string fault_of_lists(const MeshData& data) {
         if (data.offsets[c + 1] != data.offsets[c] + static_cast<std::size_t>(t.num_corners))
             return "cell " + std::to_string(c) + " (" + t.name + ") needs " +
                    std::to_string(t.num_corners) + " corners, and offsets gives it another number";
+        if (!data.cut_faces.empty() && data.cut_faces[c] >> t.num_faces != 0)
+            return data.cell_name(c) + " has the cut_faces " + std::to_string(data.cut_faces[c]) +
+                   ", which must be one bit for each of its " + std::to_string(t.num_faces) +
+                   " faces; write the file again, or leave out its cell array 'cut_faces'";
     }
     return "";
 }

@@ -37,6 +37,9 @@ struct MeshData {
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
     Carriers carriers;                  ///< empty for a body that was never cut
+    /// By cell, bit f for each face f, in the order of cell_kind.h, that is on a cut. Empty if no
+    /// face is. See Mesh::is_on_cut().
+    std::vector<std::int32_t> cut_faces;
     /// For messages: the number of each cell and of each point in the source. Empty where these are
     /// the numbers used here.
     std::vector<std::int64_t> source_cells, source_points;
@@ -59,6 +62,7 @@ struct MeshData {
         corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
         offsets.push_back(corners.size());
         regions.push_back(region);
+        if (!cut_faces.empty()) cut_faces.push_back(0);
     }
 
     /// Multiplies all lengths, of points and of carriers.

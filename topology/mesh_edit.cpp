@@ -59,7 +59,7 @@ void MeshEdit::require_older(ElementId e, const char* what) const {
 void MeshEdit::save(ElementId e) {
     if (e.index() >= element_capacity_before_ || !is_saved_.insert(e).second) return;
     const auto corners = mesh_.corners(e);
-    SavedRow row{e, mesh_.is_alive(e), {}, {}};
+    SavedRow row{e, mesh_.is_alive(e), {}, {}, mesh_.inside_faces_[e.index()]};
     std::copy(corners.begin(), corners.end(), row.corners.begin());
     for (int f = 0; f < mesh_.num_faces(e); ++f)
         row.neighbors[static_cast<std::size_t>(f)] = mesh_.neighbor({e, f});
@@ -237,7 +237,9 @@ ElementId MeshEdit::divide(const RingElement& at, NodeId middle) {
     corners[corner_a] = middle;
     rewire(kept, at.corner_b, middle);
     mesh_.append_element_row(CellKind::tetrahedron, mesh_.region(kept), corners);
-    mesh_.inherit_inside(added, kept);
+    // Each half of a divided face takes its value, and the face that goes to the added half whole
+    // keeps its own. The new face between the halves is inside, as it is joined below.
+    mesh_.inside_faces_[added.index()] = mesh_.inside_faces_[kept.index()];
     mesh_.map_.add_element(added, CellKind::tetrahedron, corners, mesh_.rest_positions());
     parents_.push_back(kept);
 
@@ -391,6 +393,8 @@ ChangeSet MeshEdit::differences() const {
             for (std::size_t k = 0; k < corners.size(); ++k)
                 if (old_corners[k] != corners[k])
                     changes.rewired.push_back({e, static_cast<int>(k), old_corners[k], corners[k]});
+        if (const std::uint8_t inside = mesh_.inside_faces_[e.index()]; inside != row->inside_faces)
+            changes.inside_changes.push_back({e, row->inside_faces, inside});
         for (int f = 0; f < mesh_.num_faces(e); ++f) {
             const FaceId face{e, f};
             const FaceId before = row->neighbors[static_cast<std::size_t>(f)];
@@ -408,6 +412,7 @@ ChangeSet MeshEdit::differences() const {
                                           mesh_.region(e),
                                           parents_[i - element_capacity_before_],
                                           {corners.begin(), corners.end()}});
+        changes.inside_changes.push_back({e, 0, mesh_.inside_faces_[i]});
         for (int f = 0; f < mesh_.num_faces(e); ++f)
             if (const FaceId face{e, f}, now = mesh_.neighbor(face); face < now)
                 changes.faces_closed.push_back({face, now});

@@ -75,6 +75,7 @@ class MeshEdit {
         bool was_alive;
         std::array<NodeId, max_corners> corners;  // only as many as the element has; neighbors too
         std::array<FaceId, max_faces> neighbors;
+        std::uint8_t inside_faces;
     };
     struct TouchedCorner {
         NodeId node;

@@ -190,10 +190,10 @@ class MeshImport {
             const FaceId a{element_of_cell_[shared.a.cell], shared.a.face};
             const FaceId b{element_of_cell_[shared.b.cell], shared.b.face};
             mesh_.glue(a, b, shared.shift);
-            for (const FaceId f : {a, b})
-                mesh_.was_inside_[mesh_.face_begin_[f.element.index()] +
-                                  static_cast<std::size_t>(f.face)] = 1;
         }
+        for (std::size_t c = 0; c < data_.cut_faces.size(); ++c)
+            mesh_.inside_faces_[element_of_cell_[c].index()] |=
+                static_cast<std::uint8_t>(data_.cut_faces[c]);
     }
 
     bool has_carriers() const { return !data_.carriers.is_empty(); }

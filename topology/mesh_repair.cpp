@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -188,6 +189,24 @@ std::optional<std::string> coincidence_warning(const MeshData& data, const WeldA
 
 namespace {
 
+/// Returns the faces of a cell that is turned by CellTraits::mirrored, as bits by face.
+std::int32_t mirrored_faces(CellKind kind, std::int32_t faces) {
+    const CellTraits& t = traits(kind);
+    const auto corners_of = [&](int f, auto corner_before) {
+        int corners = 0;
+        for (const int k : t.face(f)) corners |= 1 << corner_before(k);
+        return corners;
+    };
+    std::int32_t mirrored = 0;
+    for (int f = 0; f < t.num_faces; ++f)
+        for (int before = 0; before < t.num_faces; ++before)
+            if ((faces >> before & 1) != 0 &&
+                corners_of(before, std::identity{}) ==
+                    corners_of(f, [&](int k) { return t.mirrored[static_cast<std::size_t>(k)]; }))
+                mirrored |= 1 << f;
+    return mirrored;
+}
+
 /// Moves the corners of carriers with the points at the same positions that are joined to others.
 void move_corners_of_carriers(MeshData& data, const std::vector<std::int64_t>& lowest) {
     const auto key = [](const Vec3& x) { return std::array{x.x(), x.y(), x.z()}; };
@@ -265,6 +284,8 @@ std::size_t turn_inverted_cells(MeshData& data) {
         const auto& mirrored = traits(data.kinds[c]).mirrored;
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
             data.corners[data.offsets[c] + k] = old[static_cast<std::size_t>(mirrored[k])];
+        if (!data.cut_faces.empty())
+            data.cut_faces[c] = mirrored_faces(data.kinds[c], data.cut_faces[c]);
     }
     const auto& mirrored = traits(CellKind::tetrahedron).mirrored;
     for (std::array<Vec3, 4>& corners : data.carriers.corners) {

@@ -35,6 +35,10 @@ class MeshReplay {
         }
         for (const FacePair& pair : changes_.faces_closed)
             mesh_.glue(pair.a, pair.b, matching_shift(mesh_, pair.a, pair.b));
+        // They do not follow from the faces that were joined: a face can have been made and opened
+        // in the same edit, and the inverse of an edit takes marks away.
+        for (const InsideChange& change : changes_.inside_changes)
+            mesh_.inside_faces_[change.element.index()] = change.to;
         for (const NodeRecord& record : changes_.nodes_removed) {
             mesh_.incident_elements_[record.id.index()] = {};
             --mesh_.num_nodes_;
@@ -53,7 +57,6 @@ class MeshReplay {
         const ElementId e = record.id;
         if (e.index() == mesh_.element_capacity()) {
             mesh_.append_element_row(record.kind, record.region, record.corners);
-            if (record.parent.is_valid()) mesh_.inherit_inside(e, record.parent);
         } else {
             mesh_.alive_[e.index()] = 1;
             ++mesh_.num_elements_;

@@ -39,6 +39,8 @@ std::vector<std::string> validate(const Mesh& mesh) {
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;
+            if (!mesh.was_inside(face))
+                report("element ", e.value, " has a joined face that was never inside");
             if (!mesh.is_alive(other.element))
                 report("element ", e.value, " has the dead neighbour ", other.element.value);
             else if (mesh.neighbor(other) != face)

@@ -29,7 +29,8 @@ struct Field {
 };
 
 /// A mesh with its fields. The regions of the mesh are written as the cell array "region" and need
-/// no field. Carriers are written as the cell array "carrier" and the field data "carrier_corners".
+/// no field. Carriers are written as the cell array "carrier" and the field data "carrier_corners",
+/// and the faces on cuts as the cell array "cut_faces".
 struct Frame {
     topology::MeshData mesh;          ///< its points are the current positions
     std::vector<Field> point_fields;  ///< with different names

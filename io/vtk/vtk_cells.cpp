@@ -184,9 +184,17 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
                              "region array");
         collector.keep(*form, first_cell + static_cast<std::int64_t>(c), nodes, *region, mesh);
         if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
+        if (!piece.cut_faces.empty() && piece.cut_faces[c] != 0) {
+            mesh.cut_faces.resize(mesh.num_cells());
+            mesh.cut_faces.back() = static_cast<std::int32_t>(piece.cut_faces[c]);
+            if (mesh.cut_faces.back() != piece.cut_faces[c])
+                throw InputError(here() + ": the cut_faces " + std::to_string(piece.cut_faces[c]) +
+                                 " are not a whole number of 32 bits");
+        }
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }
+    if (!mesh.cut_faces.empty()) mesh.cut_faces.resize(mesh.num_cells());
 }
 
 }  // namespace incise::io

@@ -19,6 +19,8 @@ namespace incise::io {
 /// an array of the field data with four positions a tuple.
 inline constexpr const char* carrier_array = "carrier";
 inline constexpr const char* carrier_corners_array = "carrier_corners";
+/// The cell array of .vtu files that contains topology::MeshData::cut_faces.
+inline constexpr const char* cut_faces_array = "cut_faces";
 
 /// The arrays of one piece of an unstructured grid. Their lengths are consistent. Their contents
 /// are not checked.
@@ -29,6 +31,7 @@ struct VtkPiece {
     std::vector<std::int64_t> connectivity;              ///< points of the cells
     std::vector<double> regions;                         ///< one a cell; if empty, all are 0
     std::vector<std::int64_t> carriers;                  ///< one a cell; if empty, all are whole
+    std::vector<std::int64_t> cut_faces;                 ///< one a cell; if empty, none is on a cut
     std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
     /// True for a frame of a run, in which the mesh may be cut. Its points have the arrays
     /// rest_position and node_id.

@@ -205,12 +205,16 @@ class VtuReader {
                 refuse_missing_regions(location, options_.region_array,
                                        whole_number_arrays(arrays, node.child("CellData")));
             }
-            if (const auto carriers = named(node.child("CellData"), carrier_array)) {
-                if (arrays.num_components(carriers) != 1)
-                    arrays.fail(carriers, "carriers need 1 component, this array has " +
-                                              std::to_string(arrays.num_components(carriers)));
-                piece.carriers = arrays.integers(carriers, num_cells);
-            }
+            const auto read_numbers = [&](const char* name, const std::string& what) {
+                const auto array = named(node.child("CellData"), name);
+                if (!array) return std::vector<std::int64_t>();
+                if (arrays.num_components(array) != 1)
+                    arrays.fail(array, what + " need 1 component, this array has " +
+                                           std::to_string(arrays.num_components(array)));
+                return arrays.integers(array, num_cells);
+            };
+            piece.carriers = read_numbers(carrier_array, "carriers");
+            piece.cut_faces = read_numbers(cut_faces_array, "cut faces");
             for (const auto& name : options_.vector_arrays) {
                 const auto array = named(node.child("CellData"), name);
                 if (!array)

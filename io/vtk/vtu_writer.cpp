@@ -160,6 +160,15 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     grid->GetCellData()->AddArray(regions);
 
     if (!mesh.carriers.is_empty()) add_carriers(*grid, mesh);
+    if (!mesh.cut_faces.empty()) {
+        if (mesh.cut_faces.size() != mesh.num_cells())
+            throw std::invalid_argument("there are cut_faces for " +
+                                        std::to_string(mesh.cut_faces.size()) + " cells, not " +
+                                        std::to_string(mesh.num_cells()));
+        const auto cut_faces = view_as_array<std::int32_t>(mesh.cut_faces, 1);
+        cut_faces->SetName(cut_faces_array);
+        grid->GetCellData()->AddArray(cut_faces);
+    }
     add_fields(*grid->GetPointData(), frame.point_fields, mesh.points.size(), "point");
     add_fields(*grid->GetCellData(), frame.cell_fields, mesh.num_cells(), "cell");
     set_active_vectors(*grid->GetPointData(), frame.active_vectors);

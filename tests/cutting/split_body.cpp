@@ -91,7 +91,8 @@ SplitReport sum(const std::vector<Split>& parts) {
 SplitBody::SplitBody(const topology::MeshData& data)
     : mesh(Mesh::build(data).mesh),
       fragments(mesh),
-      positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {}
+      positions(mesh.rest_positions().begin(), mesh.rest_positions().end()),
+      first_surface(mesh) {}
 
 Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
                      const std::vector<Vec3>& moved, std::span<SuspendedCut> resting) {
@@ -99,9 +100,11 @@ Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOpti
         split(mesh, {mesh, positions, moved}, surface, front, options, snap_history, resting);
     positions = followed(moved, done.changes);
     fragments.apply(mesh, done.changes);
+    first_surface.apply(done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
     if (!done.changes.is_empty()) {
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
+        EXPECT_EQ(first_surface.faults(mesh), std::vector<FaceId>{});
     }
     return done;
 }
@@ -124,7 +127,9 @@ Split SplitBody::finish(const BladeEnd& blade, CutFront& front, const SplitOptio
         cutting::finish(mesh, fragments, {mesh, here, here}, blade, front, options, snap_history);
     positions = followed(here, done.changes);
     fragments.apply(mesh, done.changes);
+    first_surface.apply(done.changes);
     EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
+    EXPECT_EQ(first_surface.faults(mesh), std::vector<FaceId>{});
     return done;
 }
 

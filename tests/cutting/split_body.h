@@ -11,6 +11,7 @@
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/surface_data.h"
+#include "support/first_surface.h"
 #include "support/surfaces.h"
 
 namespace incise::cutting {
@@ -46,6 +47,7 @@ class SplitBody {
     topology::FragmentMesh fragments;
     std::vector<Vec3> positions;  ///< by node id, m
     SnapHistory snap_history;     // of all cuts so far
+    test::FirstSurface first_surface;
 };
 
 SplitReport sum(const std::vector<Split>& parts);

@@ -167,6 +167,20 @@ TEST(VtuReader, TakesTheCarriersOfACutBody) {
     EXPECT_THAT(with_triangle.carriers.of_cell, ElementsAre(-1));
 }
 
+TEST(VtuReader, TakesTheFacesOnCuts) {
+    const auto text = [](const char* faces, const char* types = "10 10") {
+        return replaced(with("<CellData>\n", std::string("<CellData>\n<DataArray type=\"Int32\" "
+                                                         "Name=\"cut_faces\" format=\"ascii\">") +
+                                                 faces + "</DataArray>\n"),
+                        ">10 10<", std::string(">") + types + "<");
+    };
+    EXPECT_THAT(read_bytes("a.vtu", text("0 9")).mesh.cut_faces, ElementsAre(0, 9));
+    EXPECT_THAT(read_bytes("a.vtu", text("9 0")).mesh.cut_faces, ElementsAre(9, 0));
+    EXPECT_TRUE(read_bytes("a.vtu", text("0 0")).mesh.cut_faces.empty());
+    EXPECT_THAT(refusal("a.vtu", text("0 5000000000")), HasSubstr("a.vtu: cell 1: the cut_faces"));
+    EXPECT_THAT(refusal("a.vtu", text("0 0.5")), HasSubstr("not a whole number"));
+}
+
 TEST(VtuReader, RefusesCarriersWithoutCornersOrTheOtherWayRound) {
     const auto refused = [&](std::string_view from, std::string_view to) {
         return refusal("liver.vtu", cut_tetrahedra(from, to));

@@ -132,7 +132,7 @@ TEST(VtuWriter, VtkReadsBackTheSameValues) {
     }
 }
 
-TEST(VtuWriter, KeepsTheCarriersOfACutBody) {
+TEST(VtuWriter, KeepsCarriersAndCutFaces) {
     const TemporaryFolder folder;
     Frame frame = make_frame();
     auto& carriers = frame.mesh.carriers;
@@ -144,9 +144,13 @@ TEST(VtuWriter, KeepsTheCarriersOfACutBody) {
     for (std::size_t c = 0; c < frame.mesh.num_cells(); ++c)
         carriers.of_cell.push_back(c % 3 == 0 ? topology::Carriers::whole
                                               : static_cast<std::int64_t>(c % 400));
+    auto& cut_faces = frame.mesh.cut_faces;
+    for (std::size_t c = 0; c < frame.mesh.num_cells(); ++c)
+        cut_faces.push_back(static_cast<std::int32_t>(c % 16));
     for (const auto compression : all_compressions) {
         write_vtu(folder / "cut.vtu", frame, compression);
         EXPECT_EQ(read_mesh(folder / "cut.vtu").mesh.carriers, carriers);
+        EXPECT_EQ(read_mesh(folder / "cut.vtu").mesh.cut_faces, cut_faces);
         const auto grid = read_with_vtk(folder / "cut.vtu");
         auto* field = grid->GetFieldData()->GetArray("carrier_corners");
         ASSERT_NE(field, nullptr);
@@ -156,6 +160,9 @@ TEST(VtuWriter, KeepsTheCarriersOfACutBody) {
     frame.mesh.carriers = {};
     EXPECT_THAT(vtu_text(frame), Not(HasSubstr("carrier")));
     frame.mesh.carriers.of_cell = {0};
+    EXPECT_THROW(vtu_text(frame), std::invalid_argument);
+    frame.mesh.carriers = {};
+    cut_faces = {0};
     EXPECT_THROW(vtu_text(frame), std::invalid_argument);
     frame = make_frame();
     frame.cell_fields.push_back(

@@ -84,6 +84,29 @@ class Arrays(unittest.TestCase):
         with self.assertRaises(ValueError):
             surface.triangles[0, 0] = 1
 
+    def test_faces_of_cuts_are_those_inside_the_box(self) -> None:
+        for snap in (0.0, 0.05):
+            for run in (lambda w: w.step(dt=1e-5), lambda w: w.run_until(0.02)):
+                body = support.world(mesh=support.box((10, 4, 3)))
+                knife = body.add_tool("knife", {"kind": "blade", "snap": snap,
+                                                "edge": [[0, 0, -0.01], [0, 0, 0.05]]},
+                                      pose=incise.Pose([-0.003, 0.021, 0]))
+                knife.pose = incise.Pose([0.083, 0.0225, 0])
+                knife.withdraw()
+                run(body)
+                corners = body.rest_positions[body.surface.triangles]
+                on_box = [(abs(corners[:, :, axis] - value) < 1e-12).all(axis=1)
+                          for axis, size in enumerate((0.12, 0.04, 0.04)) for value in (0, size)]
+                np.testing.assert_array_equal(body.surface.is_cut, ~np.any(on_box, axis=0))
+                self.assertTrue(body.surface.is_cut.any())
+                other = support.world(mesh=support.box((1, 1, 1)))
+                other.restore(body.save())
+                self.assertEqual(other.surface.is_cut.sum(), body.surface.is_cut.sum())
+                with tempfile.TemporaryDirectory() as folder:
+                    body.write_vtu(folder + "/frame.vtu")
+                    other = support.world(mesh=folder + "/frame.vtu")
+                self.assertEqual(other.surface.is_cut.sum(), body.surface.is_cut.sum())
+
     def test_triangles_face_outwards(self) -> None:
         body = support.world()
         corners = body.rest_positions[body.surface.triangles]

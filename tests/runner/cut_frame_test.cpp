@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 
@@ -103,6 +104,8 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     // The frame of the body that was read is the frame that was written.
     const auto again = build_frame(read.model(), 0.0, some_fields);
     EXPECT_TRUE(again.mesh.carriers == frame.mesh.carriers);
+    EXPECT_EQ(again.mesh.cut_faces, frame.mesh.cut_faces);
+    EXPECT_TRUE(std::ranges::any_of(frame.mesh.cut_faces, [](int faces) { return faces != 0; }));
 }
 
 TEST_P(CutFrame, IsScaledWithItsCarriers) {

@@ -362,7 +362,7 @@ TEST(RunWriter, WritesOnlyTheFieldsAskedFor) {
     };
     EXPECT_EQ(names(frame.point_fields),
               (std::set<std::string>{"rest_position", "node_id", "mass"}));
-    EXPECT_EQ(names(frame.cell_fields), (std::set<std::string>{"element_id", "cut_faces", "J"}));
+    EXPECT_EQ(names(frame.cell_fields), (std::set<std::string>{"element_id", "J"}));
     EXPECT_EQ(frame.active_vectors, "");
 }
 

@@ -15,6 +15,7 @@ struct MeshSnapshot {
     std::vector<ElementId> anchors;
     std::vector<std::vector<NodeId>> corners;    // of living elements
     std::vector<std::vector<FaceId>> neighbors;  // of living elements
+    std::vector<std::vector<bool>> was_inside;   // of the faces of living elements
     bool operator==(const MeshSnapshot&) const = default;
 
     explicit MeshSnapshot(const topology::Mesh& mesh)
@@ -29,10 +30,13 @@ struct MeshSnapshot {
             const ElementId e(i);
             corners.emplace_back();
             neighbors.emplace_back();
+            was_inside.emplace_back();
             if (!mesh.is_alive(e)) continue;
             corners.back().assign(mesh.corners(e).begin(), mesh.corners(e).end());
-            for (int f = 0; f < mesh.num_faces(e); ++f)
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
                 neighbors.back().push_back(mesh.neighbor({e, f}));
+                was_inside.back().push_back(mesh.was_inside({e, f}));
+            }
         }
     }
 };

@@ -62,19 +62,6 @@ TEST(BoundarySurface, EqualsAFreshOneAfterEditsAndInverses) {
     }
 }
 
-TEST(BoundarySurface, MarksTheFacesOfCuts) {
-    Mesh mesh = Mesh::build(test::jittered_cube(3, 0.1, 1)).mesh;
-    BoundarySurface surface(mesh);
-    EXPECT_EQ(std::ranges::count(surface.is_cut(), 1), 0);
-    MeshEdit edit(mesh);
-    edit.remove(ElementId(40));
-    surface.apply(mesh, edit.commit());
-    std::size_t num_inside = 0;
-    for (const FaceId f : boundary_faces(mesh)) num_inside += mesh.was_inside(f);
-    EXPECT_GT(num_inside, 0u);
-    EXPECT_EQ(std::ranges::count(surface.is_cut(), 1), static_cast<std::ptrdiff_t>(num_inside));
-}
-
 TEST(BoundarySurface, EnclosesTheVolumeWithOutwardTriangles) {
     for (const auto& family : test::mesh_families()) {
         if (family.name == std::string("hexahedra")) continue;  // whose faces may be warped
