@@ -2,6 +2,8 @@
 #include "incise/python/world_arrays.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <utility>
 
 #include "incise/python/cell_arrays.h"
@@ -25,6 +27,11 @@ struct Surface {
     py::array_t<std::int64_t> vertices, triangles;
     py::array_t<bool> is_cut;
     std::uint64_t version;
+};
+
+struct Physics {
+    py::array_t<double> rest_positions, positions, velocities, masses;
+    py::object cells, fragments;
 };
 
 /// Arrays that show the memory of a world.
@@ -175,6 +182,38 @@ py::object surface(const World& world) {
     });
 }
 
+py::object physics(const World& world) {
+    const physics::BodyArrays arrays = driver_of(world).world().body_arrays();
+    const topology::MeshData& mesh = arrays.mesh;
+    Physics made{
+        matrix_of(arrays.rest_positions),
+        matrix_of(mesh.points),
+        matrix_of(arrays.velocities),
+        py::array_t<double>(static_cast<py::ssize_t>(arrays.masses.size()), arrays.masses.data()),
+        {},
+        {}};
+    // Fragments are counted through the arrays of all kinds.
+    CellArrays cells(true), fragments(false);
+    std::array<std::int64_t, topology::num_cell_kinds + 1> first{};
+    for (const topology::CellKind kind : mesh.kinds) ++first[static_cast<std::size_t>(kind) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::int64_t> number;
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        auto& rows = cells.of(mesh.kinds[c]);
+        rows.insert(rows.end(), mesh.cell(c).begin(), mesh.cell(c).end());
+        number.push_back(first[static_cast<std::size_t>(mesh.kinds[c])]++);
+    }
+    const topology::Mesh& material = world->driver.world().mesh();
+    auto row = arrays.cell_of_element.begin();
+    for (const ElementId e : material.elements())
+        fragments.of(material.kind(e)).push_back(number[static_cast<std::size_t>(*row++)]);
+    made.cells = cells.object(true);
+    made.fragments = fragments.object(true);
+    for (auto* array : {&made.rest_positions, &made.positions, &made.velocities, &made.masses})
+        frozen(*array);
+    return py::cast(std::move(made));
+}
+
 py::object view(const World& world) {
     driver_of(world);
     return py::cast(std::make_shared<View>(world));
@@ -197,6 +236,34 @@ The arrays are read-only copies: they are valid for ever, and belong to one topo
             "True for the triangles of cuts, which lay inside at first. Shape (T,).")
         .def_property_readonly("version", held(&Surface::version),
                                "The topology_version that the arrays are for.");
+}
+
+void register_physics(py::module_& module) {
+    py::class_<Physics, std::shared_ptr<Physics>> type(
+        module, "Physics",
+        R"(The nodes that carry the momentum of a body: see World.physics.
+
+The arrays are read-only copies: they are valid for ever, and show the world as it was.)");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "copy its arrays");
+    type.def_property_readonly("positions", held(&Physics::positions),
+                               "The positions of the nodes, m. Shape (P, 3).")
+        .def_property_readonly("rest_positions", held(&Physics::rest_positions),
+                               "Their positions at rest, m. Shape (P, 3).")
+        .def_property_readonly("velocities", held(&Physics::velocities),
+                               "Their velocities, m/s. Shape (P, 3).")
+        .def_property_readonly("masses", held(&Physics::masses),
+                               "The mass that each of them carries, kg. Shape (P,).")
+        .def_property_readonly(
+            "cells", held(&Physics::cells),
+            "The fragments as rows of positions, shape (F, 4) or (F, 8); a dict of such arrays by\n"
+            "kind in a mixed mesh. A fragment has the corners of the whole element that it is a\n"
+            "part of, so that those of a cut element overlap.")
+        .def_property_readonly(
+            "fragments", held(&Physics::fragments),
+            "The row of cells that carries each element of World.cells, shape (M,). In a mixed "
+            "mesh\n"
+            "a dict by the kind of the elements; rows are counted through the arrays of cells.");
 }
 
 void register_view(py::module_& module) {

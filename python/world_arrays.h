@@ -24,9 +24,12 @@ py::object cells(const World& world);
 py::object regions(const World& world);
 py::object surface(const World& world);
 
+/// Returns an incise.Physics.
+py::object physics(const World& world);
 /// Returns an incise.View.
 py::object view(const World& world);
 
+void register_physics(py::module_& module);
 void register_surface(py::module_& module);
 void register_view(py::module_& module);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "incise/physics/body/body_arrays.h"
 #include "incise/topology/carriers.h"
 
 namespace incise::runner {
@@ -52,8 +53,8 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     const auto positions = model.mesh_positions();
     frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &elements_);
     frame_.mesh.carriers = topology::carriers_of(mesh, model.fragments());
-    frame_.time = time;
     frame_.mesh.cut_faces.resize(elements_.size());  // all frames of a run have the same arrays
+    frame_.time = time;
 
     auto& points = frame_.point_fields;
     const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
@@ -82,6 +83,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
         field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
 
     if (contact) add_contact(model, nodes, *contact);
+    if (has(scenario::Field::physics)) add_physics(model);
 
     auto& cells = frame_.cell_fields;
     cells.push_back(field<std::int64_t>("element_id", 1, elements_,
@@ -96,6 +98,24 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
         snapshot_.emplace(model);
     if (snapshot_)
         for (const ElementId e : elements_) fragments_.push_back(fragments.fragment_of_cell(e));
+}
+
+/// Adds the nodes and elements of the physics, which are not those of the frame.
+void FrameBuilder::add_physics(const physics::Model& model) {
+    physics::BodyArrays arrays = physics::body_arrays(model);
+    const auto add = [&](const char* array, const std::vector<Vec3>& values) {
+        frame_.field_data.push_back(
+            field<double>(array, 3, values, [](const Vec3& v) { return v; }));
+    };
+    add("physics_position", arrays.mesh.points);
+    add("physics_rest_position", arrays.rest_positions);
+    add("physics_velocity", arrays.velocities);
+    auto& data = frame_.field_data;
+    data.push_back({"physics_mass", 1, std::move(arrays.masses)});
+    data.push_back({"physics_connectivity", 1, std::move(arrays.mesh.corners)});
+    data.push_back(field<std::int64_t>("physics_offsets", 1, arrays.mesh.offsets,
+                                       [](std::size_t offset) { return offset; }));
+    frame_.cell_fields.push_back({"fragment", 1, std::move(arrays.cell_of_element)});
 }
 
 /// Adds the force of contact at each node, and its part against the surface over the area of the

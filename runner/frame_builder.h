@@ -22,7 +22,8 @@ using ContactForces = std::vector<std::pair<NodeId, Vec3>>;
 /// cut_faces says that face f of the element, in the order of cell_kind.h, is on a cut. If a
 /// material has fibres, it has their directions at rest. node_id and element_id are labels: numbers
 /// in the source, and ids for nodes and elements that cuts have added. A frame of a divided body
-/// has the carriers at rest, so that it can be read back as that body.
+/// has the carriers at rest, so that it can be read back as that body. With Field::physics it has
+/// the arrays of physics::BodyArrays as field data, and the cell array fragment.
 ///
 /// The constructor copies the state of the model, which is fast. finish() then computes the fields
 /// of elements.
@@ -43,6 +44,7 @@ class FrameBuilder {
 
   private:
     bool has(scenario::Field field) const;
+    void add_physics(const physics::Model& model);
     void add_contact(const physics::Model& model, const std::vector<NodeId>& nodes,
                      const ContactForces& forces);
 

@@ -208,8 +208,19 @@ inline bool feels_force(const ToolSpec& tool) {
     return !cuts(tool) || (blade && blade->toughness > 0.0);
 }
 
-/// The fields that a frame can hold in addition to points, rest positions, ids and regions.
-enum class Field { displacement, velocity, mass, force, stress, von_mises, J, energy_density };
+/// The fields that a frame can hold in addition to points, rest positions, ids and regions. The
+/// last one, which has a key of its own, stands for the arrays of physics::BodyArrays.
+enum class Field {
+    displacement,
+    velocity,
+    mass,
+    force,
+    stress,
+    von_mises,
+    J,
+    energy_density,
+    physics
+};
 
 /// The [output] section.
 struct OutputSpec {
@@ -251,8 +262,8 @@ struct Scenario {
     std::string text;
 };
 
-/// The names of fields and compressions in scenarios and frames, indexed by Field and
-/// io::Compression.
+/// The names of fields, without the last one, and of compressions in scenarios and frames, indexed
+/// by Field and io::Compression.
 inline constexpr std::array<std::string_view, 8> field_names = {
     "displacement", "velocity", "mass", "force", "stress", "von_mises", "J", "energy_density"};
 inline constexpr std::array<std::string_view, 4> compression_names = {"none", "lz4", "zlib",

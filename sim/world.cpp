@@ -310,6 +310,7 @@ const Mesh& World::mesh() const { return parts_->mesh; }
 std::span<const Vec3> World::positions() const { return parts_->model.mesh_positions(); }
 std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velocities(); }
 std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
+physics::BodyArrays World::body_arrays() const { return physics::body_arrays(parts_->model); }
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
 std::optional<std::vector<std::pair<NodeId, Vec3>>> World::contact_forces() const {

@@ -17,6 +17,7 @@
 #include "incise/contact/surface_contact.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/tools/tool.h"
+#include "incise/physics/body/body_arrays.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/model.h"
 #include "incise/sim/ledger.h"
@@ -294,8 +295,12 @@ class World {
     /// @lifetime Until the world is stepped, restored or destroyed.
     std::span<const Vec3> positions() const;
     std::span<const Vec3> velocities() const;
-    /// Returns the mass of the material at each node of the mesh, kg, by id. Cost: O(n).
+    /// Returns the mass of the material at each node of the mesh, kg, by id. After a cut these
+    /// masses and velocities() do not add up to the momentum: see body_arrays(). Cost: O(n).
     std::vector<double> masses() const;
+    /// Returns the nodes that carry momentum and kinetic energy, with their positions, velocities,
+    /// masses and elements, as copies. Cost: O(n).
+    physics::BodyArrays body_arrays() const;
     /// Returns the model. Its arrays are by node of its fragments: after a cut, these nodes have
     /// other ids than those of the mesh.
     const physics::Model& model() const;

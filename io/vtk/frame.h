@@ -34,9 +34,10 @@ struct Field {
 struct Frame {
     topology::MeshData mesh;          ///< its points are the current positions
     std::vector<Field> point_fields;  ///< with different names
-    std::vector<Field> cell_fields;   ///< with different names: not "region", not "carrier"
-    std::optional<double> time;       ///< s
-    std::string active_vectors;       ///< name of the point field for warping in viewers, or empty
+    std::vector<Field> cell_fields;  ///< with different names: not "region", "carrier", "cut_faces"
+    std::vector<Field> field_data;   ///< of any lengths, with different names
+    std::optional<double> time;      ///< s
+    std::string active_vectors;      ///< name of the point field for warping in viewers, or empty
 };
 
 enum class Compression { none, lz4, zlib, lzma };

@@ -83,7 +83,7 @@ void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
     grid.SetCells(copy_as_array<vtkUnsignedCharArray>(types), cells);
 }
 
-void add_fields(vtkFieldData& data, const std::vector<Field>& fields, std::size_t num_tuples,
+void add_fields(vtkFieldData& data, std::span<const Field> fields, std::size_t num_tuples,
                 const char* location) {
     std::set<std::string> names;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) names.insert(data.GetArrayName(i));
@@ -172,6 +172,11 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     add_fields(*grid->GetPointData(), frame.point_fields, mesh.points.size(), "point");
     add_fields(*grid->GetCellData(), frame.cell_fields, mesh.num_cells(), "cell");
     set_active_vectors(*grid->GetPointData(), frame.active_vectors);
+
+    for (const Field& field : frame.field_data) {
+        const auto components = static_cast<std::size_t>(field.components);
+        add_fields(*grid->GetFieldData(), {&field, 1}, field.size() / components, "field data");
+    }
 
     if (frame.time) {
         vtkNew<vtkDoubleArray> time;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "incise/base/archive.h"
+#include "incise/physics/body/body_arrays.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/validate.h"
@@ -93,6 +94,51 @@ TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
             }
         }
     EXPECT_GT(num_joins, 10);
+}
+
+/// Expects that the sums over the arrays of a body are its totals.
+void expect_totals_of_arrays(const Model& model, const Balance& balance) {
+    const BodyArrays arrays = body_arrays(model);
+    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();
+    double mass = 0.0, energy = 0.0;
+    for (std::size_t n = 0; n < arrays.masses.size(); ++n) {
+        const Vec3 of_node = arrays.masses[n] * arrays.velocities[n];
+        mass += arrays.masses[n];
+        momentum += of_node;
+        angular_momentum += arrays.mesh.points[n].cross(of_node);
+        energy += 0.5 * of_node.dot(arrays.velocities[n]);
+    }
+    const Totals totals = model.totals();
+    EXPECT_NEAR(mass, totals.mass, 1e-12 * mass);
+    EXPECT_NEAR(energy, totals.kinetic_energy, 1e-12 * energy);
+    EXPECT_LE((momentum - totals.momentum).norm(), 1e-12 * balance.momentum_scale);
+    EXPECT_LE((angular_momentum - totals.angular_momentum).norm(), 1e-12 * balance.angular_scale);
+
+    ASSERT_EQ(arrays.cell_of_element.size(), model.mesh().num_elements());
+    std::vector<double> volumes(arrays.mesh.num_cells(), 0.0);
+    auto cell = arrays.cell_of_element.begin();
+    for (const ElementId e : model.mesh().elements())
+        volumes.at(static_cast<std::size_t>(*cell++)) += rest_volume(model.mesh(), e);
+    auto volume = volumes.begin();
+    for (const ElementId e : model.fragments().elements()) {
+        EXPECT_NEAR(*volume, model.fragments().volume(e), 1e-9 * *volume);
+        ++volume;
+    }
+}
+
+TEST(CutBodies, HaveArraysThatAddUpToTheirTotals) {
+    for (const auto* family : test::tetrahedral_families())
+        for (const double light_share : {0.0, topology::default_light_share}) {
+            SCOPED_TRACE(family->name);
+            MovingBody body(family->data, light_share, 1);
+            test::Random random(1);
+            expect_totals_of_arrays(body.model, Balance(body.model));
+            for (int i = 0; i < 2; ++i) {
+                follow(body.model, random_cut(body.mesh, random));
+                body.model.compute_totals_and_forces();
+                expect_totals_of_arrays(body.model, Balance(body.model));
+            }
+        }
 }
 
 TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {

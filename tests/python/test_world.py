@@ -107,6 +107,45 @@ class Arrays(unittest.TestCase):
                     other = support.world(mesh=folder + "/frame.vtu")
                 self.assertEqual(other.surface.is_cut.sum(), body.surface.is_cut.sum())
 
+    def test_physics_has_the_momentum_of_the_ledger(self) -> None:
+        for law in ("stable-neo-hookean", "saint-venant-kirchhoff"):
+            body = support.world(materials=[{**support.MATERIAL, "law": law}],
+                                 gravity=[1.0, 0, -9.81])
+            for x in (None, 0.05, 0.0713):
+                if x is None:
+                    body.run_until(0.01)
+                else:
+                    support.cut_through(body, x)
+                nodes = body.physics
+                momentum = nodes.masses @ nodes.velocities
+                energy = 0.5 * nodes.masses @ (nodes.velocities ** 2).sum(axis=1)
+                ledger = body.ledger()
+                np.testing.assert_allclose(
+                    momentum, [ledger["momentum_" + axis] for axis in "xyz"],
+                    rtol=0, atol=1e-12 * np.linalg.norm(momentum))
+                self.assertAlmostEqual(energy, ledger["kinetic_energy"], delta=1e-12 * energy)
+                self.assertAlmostEqual(nodes.masses.sum(), ledger["mass"], delta=1e-12)
+                self.assertEqual(nodes.fragments.shape, (body.num_cells,))
+                self.assertEqual(set(nodes.fragments), set(range(len(nodes.cells))))
+                self.assertEqual(set(nodes.cells.ravel()), set(range(len(nodes.masses))))
+            self.assertGreater(body.num_cells, len(nodes.cells))
+            with self.assertRaises(ValueError):
+                nodes.masses[0] = 1.0
+
+    def test_physics_counts_fragments_through_all_kinds(self) -> None:
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1],
+                  [0, 1, 1], [3, 0, 0], [4, 0, 0], [3, 1, 0], [3, 0, 1]]
+        mesh = incise.Mesh(points, {"hexahedron": [[0, 1, 2, 3, 4, 5, 6, 7]],
+                                    "tetrahedron": [[8, 9, 10, 11]]},
+                           {"hexahedron": [1], "tetrahedron": [0]})
+        body = support.world(mesh=mesh, materials=[{**support.MATERIAL, "regions": [0]},
+                                                   {**support.HEX_MATERIAL, "regions": [1]}])
+        for kind, cells in body.cells.items():
+            np.testing.assert_array_equal(
+                body.physics.rest_positions[body.physics.cells[kind]], body.rest_positions[cells])
+        self.assertEqual({kind: rows.tolist() for kind, rows in body.physics.fragments.items()},
+                         {"tetrahedron": [0], "hexahedron": [1]})
+
     def test_triangles_face_outwards(self) -> None:
         body = support.world()
         corners = body.rest_positions[body.surface.triangles]

@@ -149,6 +149,28 @@ k2 = 0.5
         EXPECT_EQ(read.model().fibres()[e.index()], Vec3(0.6, 0.0, 0.8));
 }
 
+TEST(FrameOfACutBody, HasTheMomentumOfItsPhysics) {
+    const RunFolder folder;
+    const Simulation uncut(folder.scenario(soft_cube + while_falling));
+    EXPECT_TRUE(build_frame(uncut.model(), 0.0, uncut.scenario().output.fields).field_data.empty());
+    Simulation simulation(
+        folder.scenario(soft_cube + plane_cut + while_falling + "[output]\nphysics = true\n"));
+    run(simulation);
+    const auto frame = build_frame(simulation.model(), 0.04, simulation.scenario().output.fields);
+    EXPECT_EQ(std::ranges::count(frame.point_fields, "velocity", &io::Field::name), 1);
+    const auto values = [&](const std::string& name) {
+        const auto found = std::ranges::find(frame.field_data, name, &io::Field::name);
+        return std::get<std::vector<double>>(found->values);
+    };
+    Vec3 momentum = Vec3::Zero();
+    const auto mass = values("physics_mass"), velocity = values("physics_velocity");
+    for (std::size_t n = 0; n < mass.size(); ++n) momentum += mass[n] * Vec3(&velocity[3 * n]);
+    const Vec3 expected = simulation.ledger().body_totals().totals.momentum;
+    EXPECT_LT((momentum - expected).norm(), 1e-12 * expected.norm());
+    io::write_vtu(folder / "frame.vtu", frame);
+    EXPECT_EQ(io::read_mesh(folder / "frame.vtu").mesh.num_cells(), frame.mesh.num_cells());
+}
+
 TEST(FrameOfACutBody, OfABodyWithoutDivisionsHasNoCarriers) {
     const RunFolder folder;
     Simulation simulation(folder.scenario(soft_cube + two_tools + dynamics(0.16)));
