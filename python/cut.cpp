@@ -55,7 +55,7 @@ Vec3 finite(const Vec3& v, const std::string& name) {
 
 topology::SurfaceData surface_from(const py::object& given, const std::string& name) {
     if (!py::isinstance<py::tuple>(given) && !py::isinstance<py::list>(given)) {
-        io::SurfaceFile file = io::read_surface(path_from(given));
+        io::SurfaceFile file = io::read_surface(file_from(given, name, "surface file"));
         for (const std::string& defect : cutting::defects_of_surface(file.surface))
             file.warnings.push_back(defect);
         for (const std::string& warning : file.warnings) pass_warning(name + ": " + warning);

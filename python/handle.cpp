@@ -146,4 +146,11 @@ std::filesystem::path path_from(const py::handle& object) {
     return std::string(py::reinterpret_steal<py::bytes>(bytes));
 }
 
+std::filesystem::path file_from(const py::handle& object, const std::string& name,
+                                const std::string& kind) {
+    std::filesystem::path path = path_from(object);
+    if (path.empty()) throw InputError(name + " is empty: name a " + kind);
+    return path;
+}
+
 }  // namespace incise::python

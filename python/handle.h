@@ -105,17 +105,20 @@ auto held(Member T::*member) {
         return (*self).*member;
     };
 }
-/// Lets copy and pickle refuse objects of a class.
+/// Lets copy and pickle refuse objects of a class. The __reduce__ of object would make an instance
+/// of the common base class of pybind11, which throws through the interpreter.
 template <class Class>
 void forbid_copies(Class& type, const char* remedy) {
+    const auto refuse = [remedy](const py::object& self) {
+        throw py::type_error("incise." + py::type::of(self).attr("__name__").cast<std::string>() +
+                             " cannot be copied or pickled: " + remedy);
+    };
+    constexpr const char* text = "Raise TypeError: objects of this class cannot be copied.";
     type.def(
-        "__reduce_ex__",
-        [remedy](const py::object& self, int) -> py::object {
-            throw py::type_error("incise." +
-                                 py::type::of(self).attr("__name__").cast<std::string>() +
-                                 " cannot be copied or pickled: " + remedy);
-        },
-        py::arg("protocol"), "Raise TypeError: objects of this class cannot be copied.");
+        "__reduce__", [refuse](const py::object& self) { refuse(self); }, text);
+    type.def(
+        "__reduce_ex__", [refuse](const py::object& self, int) { refuse(self); },
+        py::arg("protocol"), text);
 }
 
 /// Returns points as an array of shape (N, 3).
@@ -139,8 +142,12 @@ Array frozen(Array array) {
     array.attr("setflags")(py::arg("write") = false);
     return array;
 }
-/// Returns the path that a str or an os.PathLike names.
+/// Returns the path that a str or an os.PathLike names. It can be empty.
 std::filesystem::path path_from(const py::handle& object);
+/// Returns the path of a file. Throws InputError, with the name of the argument and the kind of the
+/// file, if it is empty.
+std::filesystem::path file_from(const py::handle& object, const std::string& name,
+                                const std::string& kind);
 
 void register_cut(py::module_& module);
 void register_errors(py::module_& module);

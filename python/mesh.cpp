@@ -118,7 +118,7 @@ PyMesh box(const py::object& size, const py::object& cells, const std::string& e
 }
 
 PyMesh read_mesh(const py::object& path, const std::string& region_array, bool linear, bool weld) {
-    const std::filesystem::path file = path_from(path);
+    const std::filesystem::path file = file_from(path, "path", "mesh file");
     PyMesh mesh;
     {
         const Unlocked unlocked;
@@ -247,7 +247,7 @@ origin: the lowest corner.)")
         .def_property_readonly("warnings", held(&PyMesh::warnings),
                                "What is unusual about the mesh: a list of sentences.")
         .def("write", held(+[](const PyMesh& mesh, const py::object& path) {
-                 const std::filesystem::path file = path_from(path);
+                 const std::filesystem::path file = file_from(path, "path", "mesh file");
                  const Unlocked unlocked;
                  io::write_mesh(file, *mesh.data);
              }),

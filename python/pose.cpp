@@ -48,6 +48,11 @@ std::string text_of(const Pose& pose) {
     return text.str();
 }
 
+py::tuple state_of(const Pose& pose) {
+    const auto& q = pose.rotation.coeffs();
+    return py::make_tuple(array_of(pose.position), py::make_tuple(q.x(), q.y(), q.z(), q.w()));
+}
+
 }  // namespace
 
 void register_pose(py::module_& module) {
@@ -119,16 +124,20 @@ angle: rad, anticlockwise as seen against the axis.
             },
             py::arg("other"), "True if position and rotation are the same numbers.")
         .def("__repr__", &text_of, "Return the pose as text.")
-        .def(py::pickle(
-            [](const Pose& pose) {
-                const auto& q = pose.rotation.coeffs();
-                return py::make_tuple(array_of(pose.position),
-                                      py::make_tuple(q.x(), q.y(), q.z(), q.w()));
+        .def(py::pickle(&state_of,
+                        [](const py::tuple& state) {
+                            if (state.size() != 2) throw InputError("this is no state of a pose");
+                            return pose_from(state[0], state[1]);
+                        }))
+        // The protocols 0 and 1 would use the __reduce__ of object: see forbid_copies().
+        .def(
+            "__reduce__",
+            [](const py::object& self) {
+                return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
+                                      py::make_tuple(py::type::of(self)),
+                                      state_of(self.cast<const Pose&>()));
             },
-            [](const py::tuple& state) {
-                if (state.size() != 2) throw InputError("this is no state of a pose");
-                return pose_from(state[0], state[1]);
-            }));
+            "Return how to make the pose anew, for copy and pickle.");
 }
 
 }  // namespace incise::python

@@ -44,7 +44,7 @@ py::dict ledger(const World& world) {
 }
 
 void write_vtu(const World& world, const py::object& path) {
-    const std::filesystem::path file = path_from(path);
+    const std::filesystem::path file = file_from(path, "path", "file that ends in .vtu");
     if (file.extension() != ".vtu")
         throw InputError(file.string() +
                          ": must end in .vtu; for meshes of other formats see "

@@ -164,7 +164,7 @@ World make_world(const py::object& scenario, const py::object& mesh, const py::o
     const bool is_file = !scenario.is_none() && !py::isinstance<py::dict>(scenario);
     if (is_file) {
         if (!folder.is_none()) throw InputError("folder belongs to a scenario from dicts");
-        source.file = path_from(scenario);
+        source.file = file_from(scenario, "scenario", "scenario file");
         return make(std::move(source), num_threads);
     }
     source.file = (folder.is_none() ? std::filesystem::path() : path_from(folder)) / "world";

@@ -82,6 +82,15 @@ bool is_list_of_sections(const Value& value) {
            });
 }
 
+/// Makes the name of a file absolute. An empty name, which the reader refuses, stays empty; so does
+/// a relative one if the current folder is gone.
+void make_absolute(std::string& name, const std::filesystem::path& folder) {
+    if (name.empty()) return;
+    std::error_code error;
+    const auto path = std::filesystem::absolute(folder / name, error);
+    if (!error) name = path.lexically_normal().string();
+}
+
 }  // namespace
 
 std::string toml_text(const Value& document) {
@@ -111,7 +120,7 @@ void make_files_absolute(Value& document, const std::filesystem::path& folder) {
         for (Entry& entry : *table) {
             auto* name = std::get_if<std::string>(&entry.value.data);
             if (name && std::ranges::find(file_keys, entry.key) != file_keys.end())
-                *name = std::filesystem::absolute(folder / *name).lexically_normal().string();
+                make_absolute(*name, folder);
             else
                 make_files_absolute(entry.value, folder);
         }

@@ -1,5 +1,6 @@
 """Exceptions and their texts."""
 # SPDX-License-Identifier: LGPL-3.0-or-later
+import copy
 import os
 import pathlib
 import pickle
@@ -24,6 +25,44 @@ class Kinds(unittest.TestCase):
         self.assertTrue(issubclass(incise.OutputError, OSError))
         error = pickle.loads(pickle.dumps(incise.InputError("text")))
         self.assertEqual((type(error), str(error)), (incise.InputError, "text"))
+
+
+class Copies(unittest.TestCase):
+    def copies(self, thing: Any) -> list[Callable[[], Any]]:
+        """Return all ways to copy a thing."""
+        protocols = range(pickle.HIGHEST_PROTOCOL + 1)
+        return [thing.__reduce__, lambda: copy.copy(thing), lambda: copy.deepcopy(thing),
+                *(lambda p=p: thing.__reduce_ex__(p) for p in protocols),
+                *(lambda p=p: pickle.dumps(thing, p) for p in protocols)]
+
+    def test_of_what_is_no_value_are_refused(self) -> None:
+        body = support.world(loads=[{"name": "push", "pressure": 1.0, "where": {
+            "box": {"min": [0, 0, 0.04], "max": [0.12, 0.04, 0.04]}}}])
+        knife = body.add_tool("knife", support.BLADE)
+        mesh = incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        things = [body, mesh, knife, body.step(), body.surface, body.physics, body.view(),
+                  body.constraints["clamp"], body.loads["push"],
+                  incise.cut(mesh, planes=[([0.4, 0, 0], [1, 0, 0])])]
+        classes = {kind for kind in vars(incise).values()
+                   if isinstance(kind, type) and kind.__name__ in dir(incise._incise)
+                   and not issubclass(kind, Exception)}
+        self.assertEqual({type(thing) for thing in things} | {incise.Pose}, classes)
+        for thing in things:
+            for way in self.copies(thing):
+                with self.assertRaisesRegex(TypeError, "cannot be copied or pickled"):
+                    way()
+
+    def test_of_poses_are_equal(self) -> None:
+        class Named(incise.Pose):
+            pass
+        pose = incise.Pose([1, 2, 3], [0.1, 0.2, 0.3, 0.4])
+        for way in self.copies(pose)[1:3]:
+            self.assertEqual(way(), pose)
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            self.assertEqual(pickle.loads(pickle.dumps(pose, protocol)), pose)
+            make, arguments, state = pose.__reduce_ex__(protocol)[:3]
+            self.assertIs(type(make(*arguments)), incise.Pose)
+        self.assertIs(type(copy.copy(Named([1, 2, 3]))), Named)
 
 
 class Texts(unittest.TestCase):
@@ -133,6 +172,34 @@ class Texts(unittest.TestCase):
                             lambda: body.write_vtu("no_such_folder/frame.vtu"), incise.OutputError)
         self.assert_refused("", lambda: body.write_vtu(3), TypeError)
         self.assert_refused("must end in .vtu", lambda: body.write_vtu("frame.vtk"))
+
+    def test_empty_names_of_files(self) -> None:
+        body, mesh = support.world(), incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        material = [support.MATERIAL]
+        solid = {"surface": {"file": ""}}
+        for kind, call in (
+                ("mesh file", lambda: incise.World(mesh="", materials=material)),
+                ("mesh file", lambda: incise.World(mesh={"file": ""}, materials=material)),
+                ("mesh file", lambda: incise.read_mesh("")),
+                ("mesh file", lambda: mesh.write("")),
+                ("scenario file", lambda: incise.World("")),
+                ("file that ends in .vtu", lambda: body.write_vtu("")),
+                ("surface file", lambda: incise.cut(mesh, surfaces=[""])),
+                ("", lambda: body.add_tool("c", {"kind": "cut", "surface": ""})),
+                ("", lambda: body.add_tool("p", {"kind": "probe", "shape": solid})),
+                ("", lambda: support.world(obstacles=[{"name": "o", "shape": solid}]))):
+            self.assert_refused("is empty: name a " + kind, call)
+
+    def test_names_of_files_that_cannot_be(self) -> None:
+        body, mesh = support.world(), incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        for name in ("x" * 5000, __file__ + "/a"):
+            for call in (lambda: incise.World(mesh=name, materials=[support.MATERIAL]),
+                         lambda: incise.World(name), lambda: incise.read_mesh(name),
+                         lambda: mesh.write(name + ".vtu"),
+                         lambda: body.write_vtu(name + ".vtu"),
+                         lambda: incise.cut(mesh, surfaces=[name]),
+                         lambda: body.add_tool("c", {"kind": "cut", "surface": name})):
+                self.assert_refused("", call, incise.Error)
 
     def test_meshes(self) -> None:
         refused = self.assert_refused
