@@ -27,7 +27,8 @@ constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
 /// no other triangle goes on there. A node that is deeper than `deepest_at_rim` is beside it.
 constexpr double rim = 0.25, deepest_at_rim = 0.05;
-/// An overlap that begins deeper is looked at twice. It is a part of the local length.
+/// An overlap that is deeper on another triangle is looked at twice. It is a part of the local
+/// length.
 constexpr double deep_start = 0.02;
 /// An overlap of this part of an element is none: the twins of a cut have the same position.
 constexpr double rounding = 1e-10;
@@ -322,10 +323,12 @@ void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     NearNode& near = near_[i];
     const NodeId n = pairs_.nodes()[i];
     const std::int32_t before = near.touched;
+    double gap_before = std::numeric_limits<double>::infinity();
     if (before >= 0) {
         const auto t = static_cast<std::size_t>(before);
         touches_[i] = touch(n, t, positions);
         if (is_over(n, t, touches_[i], 0.0)) return;
+        gap_before = touches_[i].gap;
     }
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
@@ -341,7 +344,11 @@ void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     near.touched = is_over(n, nearest, at, rim) ? static_cast<std::int32_t>(nearest) : -1;
     near.room = std::sqrt(least) - node_reach * size_;
     if (near.touched < 0 || near.touched == before) return;
-    if (at.gap < -deep_start * length_at(n, nearest) &&
+    // An overlap that is there at once may be none: the node is beside the triangle, or behind a
+    // thin part of the body. One that it brings along from the triangle before is one.
+    const double least_overlap =
+        gap_before < -rounding * size_ ? deep_start * length_at(n, nearest) : rounding * size_;
+    if (at.gap < -least_overlap &&
         !is_way_inside(model.mesh(), positions, faces_[nearest], triangles_[nearest], at.weights,
                        positions[n.index()]))
         near.touched = -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/contact/way_inside.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -8,12 +9,15 @@ namespace incise::contact {
 
 namespace {
 
+/// A point on the surface is not within it, though rounding may say so. It is a part of the way.
+constexpr double margin = 1e-6;
+
 /// Returns through which face of an element a way leaves it: the first plane of a face that it
 /// crosses outwards, as if the element were convex. Nothing if the way ends before.
 /// @param entered  the face by which it came, and does not leave
 std::optional<FaceId> exit_of(const topology::Mesh& mesh, std::span<const Vec3> positions,
                               FaceId entered, const Vec3& from, const Vec3& along) {
-    double least = 1.0;
+    double least = 1.0 + margin;
     std::optional<FaceId> exit;
     for (int f = 0; f < mesh.num_faces(entered.element); ++f) {
         const FaceId face{entered.element, f};
@@ -46,7 +50,13 @@ bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, 
     FaceId entered = face;
     for (int i = 0; i < most_elements; ++i) {
         const auto exit = exit_of(mesh, positions, entered, from, to - from);
-        if (!exit) return true;
+        if (!exit) {
+            // Beyond a corner of the surface the way may go on inside.
+            const double square = margin * margin * (to - from).squaredNorm();
+            return std::ranges::none_of(mesh.corners(entered.element), [&](NodeId n) {
+                return (positions[n.index()] - to).squaredNorm() <= square;
+            });
+        }
         entered = mesh.neighbor(*exit);
         if (!entered.is_valid()) return false;
     }
