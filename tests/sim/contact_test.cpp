@@ -47,6 +47,44 @@ TEST(Contact, ChangesNoBitUntilSomethingTouches) {
         ASSERT_EQ(a.positions()[n.index()], b.positions()[n.index()]);
 }
 
+// A block of tetrahedra is pushed at a free one of hexahedra, and pushes it along.
+TEST(Contact, ActsBetweenTetrahedraAndHexahedra) {
+    constexpr double apart = 0.005;  // m
+    const Vec3 sizes = Vec3::Constant(0.5 * size);
+    const double top = sizes.z() + 0.5 * apart;  // of the lower block
+    topology::MeshData data =
+        topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(), sizes, {3, 3, 3});
+    const topology::MeshData upper = topology::box_mesh(
+        topology::CellKind::tetrahedron, Vec3(0.004, 0.003, sizes.z() + apart), sizes, {3, 3, 3});
+    const auto first = static_cast<std::int64_t>(data.points.size());
+    data.points.insert(data.points.end(), upper.points.begin(), upper.points.end());
+    for (std::size_t c = 0; c < upper.num_cells(); ++c) {
+        std::vector<std::int64_t> corners(upper.cell(c).begin(), upper.cell(c).end());
+        for (std::int64_t& corner : corners) corner += first;
+        data.add_cell(upper.kinds[c], corners, 1);
+    }
+    WorldDef def;
+    def.mesh = std::move(data);
+    def.materials = {{1000.0, physics::HybridSprings{2000.0, 3000.0}},
+                     {1000.0, physics::HyperElasticLinks{physics::NeoHookean{2000.0, 3000.0}}}};
+    def.material_of_region = {{0, 0}, {1, 1}};
+    World world(std::move(def));
+    const auto upper_nodes = nodes_where(world, [&](const Vec3& x) { return x.z() > top; });
+    world.add_load(
+        {.name = "push", .kind = physics::NodalLoad{physics::NodeSet(upper_nodes), {0, 0, -0.01}}});
+    std::size_t num_points = 0;
+    double deepest = 0.0;  // m
+    while (world.time() < 0.15) {
+        const StepReport& report = world.step(0.8 * world.stable_step());
+        num_points = std::max(num_points, report.contact.num_points);
+        deepest = std::max(deepest, report.contact.max_penetration);
+    }
+    EXPECT_GT(num_points, 10u);
+    EXPECT_LT(deepest, 1e-4);
+    for (const NodeId n : world.mesh().nodes())
+        EXPECT_LT(world.positions()[n.index()].z(), world.mesh().rest_position(n).z() - 0.01);
+}
+
 constexpr double pressed_by = 0.1 * size, pressed_in = 0.4;  // m, s
 
 /// A cube with its ends glued to the floor and to a lid, which presses it.
