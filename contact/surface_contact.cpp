@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -22,6 +23,12 @@ constexpr double node_reach =
 constexpr double widest_skin = 0.5, narrowest_skin = 0.125;
 /// With more pairs than that for each node, the skin becomes narrower; with less, wider.
 constexpr double many_pairs = 32.0, few_pairs = 4.0;
+/// What has moved by more than this part of the skin, when a search is due, is looked for again. If
+/// it is more than this part of the surface, all is.
+constexpr double moved_skin = 0.25, most_moved = 0.25;
+/// Pairs of a part of the surface are found within so much of the skin: the rest may already have
+/// moved by half of it since its pairs were found.
+constexpr double skin_of_part = 1.5;
 /// A node that is deeper has no side any more. It is a part of the local length.
 constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
@@ -52,7 +59,7 @@ void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solv
     const std::span<const Vec3> positions = model.mesh_positions();
     const double moved = 2.0 * model.largest_mesh_move();
     room_ -= moved;
-    if (room_ < 0.0 && has_moved_far(positions)) find_pairs(model);
+    if (room_ < 0.0 && has_moved_far(positions) && !find_pairs_of_moved(model)) find_pairs(model);
     max_penetration_ = 0.0;
     touches_.resize(near_.size());
     for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -172,17 +179,18 @@ void SurfaceContact::know_surface(const physics::Model& model,
             extend(triangles_[t]);
     }
     while (next < old_triangles.size()) extend(old_triangles[next++]);
-    const std::size_t num_known = positions_of_pairs_.size();
+    const std::size_t num_known = std::min(positions_of_pairs_.size(), positions.size());
     positions_of_pairs_.resize(positions.size(), Vec3::Zero());
     if (changed.isEmpty()) return;
     // Twice as far as pairs reach: the triangles of nodes that are found anew may have moved since
     // their own were found.
-    const double distance = (node_reach + skin_) * size_;
+    const double distance = (node_reach + skin_of_part * skin_) * size_;
     const Box near_edit(changed.min() - Vec3::Constant(2.0 * distance),
                         changed.max() + Vec3::Constant(2.0 * distance));
+    const Vec3 mean = mean_move(positions.first(num_known));
     const auto is_near_edit = [&](NodeId n) {
         if (n.index() < num_known && !near_edit.contains(positions[n.index()])) return false;
-        positions_of_pairs_[n.index()] = positions[n.index()];
+        positions_of_pairs_[n.index()] = positions[n.index()] - mean;
         return true;
     };
     const std::vector<NearNode> known = std::move(near_);
@@ -224,18 +232,26 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
                 !std::isnan(near.room) && near.impulse.allFinite());
 }
 
+/// Returns by how much the surface has moved since the pairs were found, in the mean, m. It tells
+/// what moves with the rest from what does not.
+/// @param positions  of the nodes that count: those with lower ids than their number
+Vec3 SurfaceContact::mean_move(std::span<const Vec3> positions) const {
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+    for (const Triangle& triangle : triangles_) {
+        const std::size_t n = triangle[0].index();
+        if (n >= positions.size()) continue;
+        sum += positions[n] - positions_of_pairs_[n];
+        count += 1.0;
+    }
+    return count > 0.0 ? Vec3(sum / count) : Vec3::Zero();
+}
+
 /// Returns true if two parts of the surface may have moved by more than the skin towards each other
 /// since the pairs were found. Else says how far they may still move.
 bool SurfaceContact::has_moved_far(std::span<const Vec3> positions) {
-    Vec3 sum = Vec3::Zero();
-    std::size_t count = 0;
-    for (const Triangle& triangle : triangles_) {
-        const std::size_t n = triangle[0].index();
-        sum += positions[n] - positions_of_pairs_[n];
-        ++count;
-    }
-    if (count == 0) return false;
-    const Vec3 mean = sum / static_cast<double>(count);
+    if (triangles_.empty()) return false;
+    const Vec3 mean = mean_move(positions);
     double square = 0.0;
     for (const Triangle& triangle : triangles_)
         for (const NodeId n : triangle)
@@ -244,6 +260,68 @@ bool SurfaceContact::has_moved_far(std::span<const Vec3> positions) {
                 (positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm());
     room_ = skin_ * size_ - 2.0 * std::sqrt(square);
     return room_ < 0.0;
+}
+
+/// Finds anew the pairs with what has moved, if that is a small part of the surface: a crumb that
+/// flies, or what a tool pushes. Else returns false.
+///
+/// Parts of the surface then have pairs of different times. For what is looked for again,
+/// positions_of_pairs_ are those from which it would have moved by the mean: so all parts are
+/// compared with the same mean.
+bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
+    if (has_many_pairs()) return false;
+    const std::span<const Vec3> positions = model.mesh_positions();
+    const Vec3 mean = mean_move(positions);
+    const double square = std::pow(moved_skin * skin_ * size_, 2);
+    std::vector<std::uint8_t> is_node(positions.size(), 0), is_triangle(triangles_.size(), 0);
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+        for (const NodeId n : triangles_[t])
+            if ((positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm() >
+                square)
+                is_node[n.index()] = is_triangle[t] = 1;
+    if (static_cast<double>(std::ranges::count(is_triangle, 1)) >
+        most_moved * static_cast<double>(triangles_.size()))
+        return false;
+    for (std::size_t n = 0; n < is_node.size(); ++n)
+        if (is_node[n] != 0) positions_of_pairs_[n] = positions[n] - mean;
+
+    tree_.fit(positions);
+    const double distance = (node_reach + skin_of_part * skin_) * size_;
+    std::vector<std::uint8_t> is_near = is_node;
+    constexpr std::size_t group_size = 8;
+    std::size_t in_group = 0;
+    Box group;
+    const auto note_near_group = [&] {
+        const Vec3 margin = Vec3::Constant(distance);
+        const NormalCone any_direction{Vec3::UnitZ(), std::numbers::pi};
+        tree_.for_each_against(Box(group.min() - margin, group.max() + margin), any_direction,
+                               [&](std::uint32_t t) {
+                                   for (const NodeId n : triangles_[t]) is_near[n.index()] = 1;
+                               });
+        group.setEmpty();
+        in_group = 0;
+    };
+    for (const std::uint32_t t : tree_.order()) {
+        if (is_triangle[t] == 0) continue;
+        group.extend(tree_.box(t));
+        if (++in_group == group_size) note_near_group();
+    }
+    if (in_group > 0) note_near_group();
+    const std::vector<NearNode> known = std::move(near_);
+    const std::vector<NodeId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
+    pairs_.find_moved(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
+                      distance, {is_triangle, is_node, is_near});
+    near_.assign(pairs_.nodes().size(), {});
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        const NodeId n = pairs_.nodes()[i];
+        const auto it = std::ranges::lower_bound(known_nodes, n);
+        if (it == known_nodes.end() || *it != n) continue;
+        near_[i] = known[static_cast<std::size_t>(it - known_nodes.begin())];
+        if (is_near[n.index()] != 0) near_[i].room = 0.0;
+    }
+    has_moved_far(positions);
+    number_nodes(positions.size());
+    return true;
 }
 
 void SurfaceContact::find_pairs(const physics::Model& model) {

@@ -46,8 +46,9 @@ class SurfaceContact {
     /// triangles of the surface, and that of the pairs near the edits.
     void know_surface(const physics::Model& model, const topology::BoundarySurface& surface);
     /// Finds the points of contact at the present positions, and adds them to the solver.
-    /// Cost: proportional to the nodes that are near another surface. Now and then, when the
-    /// surface has moved by a part of an element, O(n log n) in its nodes.
+    /// Cost: proportional to the nodes that are near another surface. Now and then, when a part of
+    /// the surface has moved by a part of an element, O(n) in the surface and the search for the
+    /// pairs of this part; O(n log n) if all of it has.
     /// @pre  know_surface() was called after the last edit
     void add_points(const physics::Model& model, ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added: the next step begins with them.
@@ -55,6 +56,8 @@ class SurfaceContact {
 
     /// Returns the surface. The order of its triangles depends on no history of edits.
     TissueSurface surface() const { return {triangles_, faces_}; }
+    /// Returns how many nodes and triangles were compared so far: the cost of the searches.
+    std::size_t num_tested() const { return pairs_.num_tested(); }
     /// Returns the largest overlap at the last call of add_points(), m.
     double max_penetration() const { return max_penetration_; }
     const ContactSettings& settings() const { return settings_; }
@@ -94,6 +97,8 @@ class SurfaceContact {
     }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
     void list_lengths(const physics::Model& model);
+    Vec3 mean_move(std::span<const Vec3> positions) const;
+    bool find_pairs_of_moved(const physics::Model& model);
     void find_pairs(const physics::Model& model);
     double pairs_per_node() const;
     bool has_many_pairs() const;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 namespace incise::contact {
@@ -30,57 +29,6 @@ void set_node_normals(std::span<const Triangle> triangles, std::span<const Vec3>
         add(triangle[2], x - z, y - z);
     }
 }
-
-/// Tells if a node and a triangle belong to the same part of a body.
-class SameParts {
-  public:
-    SameParts(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> rest_normals)
-        : tree_(tree), body_(body), rest_normals_(rest_normals) {}
-
-    /// Parts that are farther from each other than the elements round the node have no common
-    /// corners. Nearer ones may touch only if they are the two sides of a cut, near its end: then
-    /// their normals are against each other, and the node is on the triangle at rest.
-    bool operator()(NodeId n, std::size_t t) {
-        if (!have_common_corners(n, t)) return false;
-        const auto& [a, b, c] = tree_.triangles()[t];
-        const auto X = [&](NodeId m) { return body_.mesh.rest_position(m); };
-        const Vec3 normal = (X(b) - X(a)).cross(X(c) - X(a)), &of_node = rest_normals_[n.index()];
-        constexpr double least_cosine = -0.5;
-        if (of_node.dot(normal) > least_cosine * of_node.norm() * normal.norm()) return true;
-        constexpr double rounding_of_place = 1e-6;
-        const double off = std::sqrt(squared_distance(X(n), X(a), X(b), X(c)));
-        return off > rounding_of_place * std::sqrt(normal.norm());
-    }
-
-  private:
-    bool have_common_corners(NodeId n, std::size_t t) {
-        const ElementId fragment = body_.fragments.fragment_of_cell(body_.faces[t].element);
-        return std::ranges::any_of(body_.fragments.corners(fragment), [&](NodeId corner) {
-            return std::ranges::binary_search(around(n), corner);
-        });
-    }
-    /// Returns the corners of all fragments at a node, in ascending order.
-    const std::vector<NodeId>& around(NodeId n) {
-        const auto [it, is_new] = around_.try_emplace(n);
-        if (!is_new) return it->second;
-        std::vector<NodeId>& corners = it->second;
-        body_.mesh.star(n, star_);
-        for (const ElementId cell : star_) {
-            const auto of_fragment =
-                body_.fragments.corners(body_.fragments.fragment_of_cell(cell));
-            corners.insert(corners.end(), of_fragment.begin(), of_fragment.end());
-        }
-        std::ranges::sort(corners);
-        corners.erase(std::ranges::unique(corners).begin(), corners.end());
-        return corners;
-    }
-
-    const SurfaceTree& tree_;
-    const ContactBody& body_;
-    std::span<const Vec3> rest_normals_;  // by node
-    std::unordered_map<NodeId, std::vector<NodeId>> around_;
-    std::vector<ElementId> star_;
-};
 
 }  // namespace
 
@@ -115,13 +63,52 @@ void TouchingPairs::set_surface(const SurfaceTree& tree, const ContactBody& body
             surface_nodes_.push_back(n);
         }
     }
+    around_begin_.assign(body.mesh.node_capacity(), none_yet);
+    around_.clear();
+    is_around_.assign(body.fragments.node_capacity(), 0);
+}
+
+std::span<const NodeId> TouchingPairs::around(const ContactBody& body, NodeId n) {
+    std::size_t& begin = around_begin_[n.index()];
+    if (begin == none_yet) {
+        corners_.clear();
+        body.mesh.star(n, star_);
+        for (const ElementId cell : star_) {
+            const auto of_fragment = body.fragments.corners(body.fragments.fragment_of_cell(cell));
+            corners_.insert(corners_.end(), of_fragment.begin(), of_fragment.end());
+        }
+        std::ranges::sort(corners_);
+        corners_.erase(std::ranges::unique(corners_).begin(), corners_.end());
+        begin = around_.size();
+        around_.emplace_back(corners_.size());
+        around_.insert(around_.end(), corners_.begin(), corners_.end());
+    }
+    return std::span(around_).subspan(begin + 1, around_[begin].index());
+}
+
+// Parts that are farther from each other than the elements round the node have no common corners.
+// Nearer ones may touch only if they are the two sides of a cut, near its end: then their normals
+// are against each other, and the node is on the triangle at rest.
+bool TouchingPairs::are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, NodeId n,
+                                     std::uint32_t t) const {
+    const auto& [a, b, c] = tree.triangles()[t];
+    const auto X = [&](NodeId m) { return body.mesh.rest_position(m); };
+    const Vec3 normal = (X(b) - X(a)).cross(X(c) - X(a)), &of_node = rest_normals_[n.index()];
+    const double double_area = normal.norm();
+    constexpr double least_cosine = -0.5;
+    if (of_node.dot(normal) > least_cosine * of_node.norm() * double_area) return false;
+    constexpr double rounding_of_place = 1e-6;
+    const double off = rounding_of_place * std::sqrt(double_area);
+    return std::abs(normal.dot(X(n) - X(a))) <= off * double_area &&
+           std::sqrt(squared_distance(X(n), X(a), X(b), X(c))) <= off;
 }
 
 void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
                          std::span<const Vec3> positions, double reach) {
     found_.clear();
-    append_pairs(tree, body, positions, reach, surface_nodes_);
-    take_found();
+    set_node_normals(tree.triangles(), positions, normals_);
+    append_pairs(tree, body, positions, reach, surface_nodes_, {});
+    take_found(0);
 }
 
 void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
@@ -144,27 +131,59 @@ void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
         for (const std::uint32_t t : old)
             found_.emplace_back(n, static_cast<std::uint32_t>(number_of_old[t]));
     }
-    append_pairs(tree, body, positions, reach, chosen);
-    take_found();
+    set_node_normals(tree.triangles(), positions, normals_);
+    append_pairs(tree, body, positions, reach, chosen, {});
+    take_found(0);
+}
+
+void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
+                               std::span<const Vec3> positions, double reach,
+                               const MovedPart& moved) {
+    found_.clear();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (moved.is_node[nodes_[i].index()] != 0) continue;
+        for (const std::uint32_t t : triangles_of(i))
+            if (moved.is_triangle[t] == 0) found_.emplace_back(nodes_[i], t);
+    }
+    const std::size_t num_kept = found_.size();
+    std::vector<NodeId> moved_nodes, others;
+    for (const NodeId n : surface_nodes_) {
+        if (moved.is_node[n.index()] != 0)
+            moved_nodes.push_back(n);
+        else if (moved.is_near[n.index()] != 0)
+            others.push_back(n);
+    }
+    set_node_normals(tree.triangles(), positions, normals_);
+    append_pairs(tree, body, positions, reach, moved_nodes, {});
+    append_pairs(tree, body, positions, reach, others, moved.is_triangle);
+    take_found(num_kept);
 }
 
 // Nodes that follow each other in the order of the tree are near each other: they look for
 // triangles in groups.
 void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& body,
                                  std::span<const Vec3> positions, double reach,
-                                 std::span<const NodeId> nodes) {
+                                 std::span<const NodeId> nodes,
+                                 std::span<const std::uint8_t> is_triangle) {
     constexpr std::size_t group_size = 8;
-    set_node_normals(tree.triangles(), positions, normals_);
-    SameParts are_same_part(tree, body, rest_normals_);
+    // The cheapest tests come first: of many triangles near a node, few can touch it.
     const auto is_near = [&](NodeId n, std::uint32_t t) {
         const Vec3& x = positions[n.index()];
         const auto& [a, b, c] = tree.triangles()[t];
+        const auto X = [&](NodeId m) -> const Vec3& { return positions[m.index()]; };
         return normals_[n.index()].dot(tree.normal(t)) < 0.0 &&
                tree.box(t).squaredExteriorDistance(x) < reach * reach && n != a && n != b &&
-               n != c && body.takes_part[t] != 0 &&
-               squared_distance(x, positions[a.index()], positions[b.index()],
-                                positions[c.index()]) < reach * reach &&
-               !are_same_part(n, t);
+               n != c && body.takes_part[t] != 0 && std::abs(tree.normal(t).dot(x - X(a))) < reach;
+    };
+    const auto is_touchable = [&](NodeId n, std::uint32_t t) {
+        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[t].element);
+        if (std::ranges::any_of(body.fragments.corners(fragment),
+                                [&](NodeId corner) { return is_around_[corner.index()] != 0; }) &&
+            !are_sides_of_cut(tree, body, n, t))
+            return false;
+        const auto X = [&](NodeId m) -> const Vec3& { return positions[m.index()]; };
+        const auto& [a, b, c] = tree.triangles()[t];
+        return squared_distance(X(n), X(a), X(b), X(c)) < reach * reach;
     };
     const Vec3 margin = Vec3::Constant(reach);
     for (std::size_t begin = 0; begin < nodes.size(); begin += group_size) {
@@ -177,15 +196,29 @@ void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& bod
         }
         near_group_.clear();
         tree.for_each_against(Box(box.min() - margin, box.max() + margin), normals,
-                              [&](std::uint32_t t) { near_group_.push_back(t); });
-        for (const NodeId n : group)
+                              [&](std::uint32_t t) {
+                                  if (is_triangle.empty() || is_triangle[t] != 0)
+                                      near_group_.push_back(t);
+                              });
+        num_tested_ += group.size() * near_group_.size();
+        for (const NodeId n : group) {
+            near_node_.clear();
             for (const std::uint32_t t : near_group_)
-                if (is_near(n, t)) found_.emplace_back(n, t);
+                if (is_near(n, t)) near_node_.push_back(t);
+            if (near_node_.empty()) continue;
+            const auto corners = around(body, n);
+            for (const NodeId corner : corners) is_around_[corner.index()] = 1;
+            for (const std::uint32_t t : near_node_)
+                if (is_touchable(n, t)) found_.emplace_back(n, t);
+            for (const NodeId corner : corners) is_around_[corner.index()] = 0;
+        }
     }
 }
 
-void TouchingPairs::take_found() {
-    std::ranges::sort(found_);
+void TouchingPairs::take_found(std::size_t num_sorted) {
+    const auto middle = found_.begin() + static_cast<std::ptrdiff_t>(num_sorted);
+    std::sort(middle, found_.end());
+    std::inplace_merge(found_.begin(), middle, found_.end());
     nodes_.clear();
     begin_.assign(1, 0);
     triangles_.clear();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -52,8 +53,21 @@ class TouchingPairs {
                     std::span<const std::int32_t> number_of_old,
                     const std::function<bool(NodeId)>& is_chosen);
 
+    /// The part of a surface that has moved by more than the rest.
+    struct MovedPart {
+        std::span<const std::uint8_t> is_triangle;  ///< by triangle, 1: it belongs to the part
+        std::span<const std::uint8_t> is_node;      ///< likewise, by node id
+        std::span<const std::uint8_t> is_near;      ///< by node id, 1: it may be near the part
+    };
+    /// Finds anew the pairs with a part of the surface, and keeps the others. Cost: O(n) and that
+    /// of the pairs with the part.
+    void find_moved(const SurfaceTree& tree, const ContactBody& body,
+                    std::span<const Vec3> positions, double reach, const MovedPart& moved);
+
     /// Returns the nodes with pairs, in ascending order.
     std::span<const NodeId> nodes() const { return nodes_; }
+    /// Returns how many nodes and triangles were compared so far: the cost of the searches.
+    std::size_t num_tested() const { return num_tested_; }
     /// Returns the number of pairs.
     std::size_t size() const { return triangles_.size(); }
     /// Returns the triangles of the i-th of nodes().
@@ -66,14 +80,30 @@ class TouchingPairs {
     bool fits(std::size_t num_nodes, std::size_t num_triangles) const;
 
   private:
+    /// @param is_triangle  by triangle, 1: it counts; empty: all count
     void append_pairs(const SurfaceTree& tree, const ContactBody& body,
-                      std::span<const Vec3> positions, double reach, std::span<const NodeId> nodes);
-    void take_found();
+                      std::span<const Vec3> positions, double reach, std::span<const NodeId> nodes,
+                      std::span<const std::uint8_t> is_triangle);
+    /// @param num_sorted  pairs that are in order already, at the beginning
+    void take_found(std::size_t num_sorted);
+    /// Returns the corners of all fragments at a node of the surface, in ascending order. They are
+    /// listed when they are asked for, and known until the surface is another one.
+    std::span<const NodeId> around(const ContactBody& body, NodeId n);
+    /// True if a node and a triangle with common fragments are the two sides of a cut.
+    bool are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, NodeId n,
+                          std::uint32_t t) const;
 
+    static constexpr std::size_t none_yet = std::numeric_limits<std::size_t>::max();
     std::vector<NodeId> surface_nodes_;         // those that take part, in the order of the tree
     std::vector<Vec3> rest_normals_, normals_;  // by node; the latter is scratch
-    std::vector<std::uint32_t> near_group_;     // scratch
+    std::vector<std::size_t> around_begin_;     // by node, of its list in around_, or none_yet
+    std::vector<NodeId> around_;                // lists, each with its length before it
+    std::vector<std::uint8_t> is_around_;       // scratch, by node of the fragments
+    std::vector<NodeId> corners_;               // scratch
+    std::vector<ElementId> star_;               // scratch
+    std::vector<std::uint32_t> near_group_, near_node_;    // scratch
     std::vector<std::pair<NodeId, std::uint32_t>> found_;  // scratch
+    std::size_t num_tested_ = 0;
     std::vector<NodeId> nodes_;
     std::vector<std::size_t> begin_{0};
     std::vector<std::uint32_t> triangles_;

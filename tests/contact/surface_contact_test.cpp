@@ -115,6 +115,78 @@ TEST(SurfaceContact, IsWhatStopsTheHalves) {
     EXPECT_LT(lowest, -0.1);
 }
 
+/// A jittered cube that flies, with a corner cut off. The corner slides along the cut, and slowly
+/// away from it.
+struct SlidingCorner {
+    static constexpr int num_bricks = 6;
+    static constexpr double size = 1.0 / num_bricks;  // of an element, m
+
+    Mesh mesh;
+    physics::MaterialTable table{
+        {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1500.0, 6000.0}}}}, {{0, 0}}, {}};
+    Model model;
+    topology::BoundarySurface surface;
+    double dt;  // s
+
+    explicit SlidingCorner(std::uint64_t seed)
+        : mesh(Mesh::build(test::jittered_cube(num_bricks, 0.1, seed)).mesh),
+          model(mesh, table),
+          surface(mesh),
+          dt(0.4 * model.rest_stable_step()) {
+        test::Random random(seed);
+        const Vec3 point = Vec3::Constant(0.85),
+                   normal = (Vec3::Ones() + random.vector(0.3)).normalized();
+        const auto changes = test::cut_along_plane(mesh, point, normal);
+        model.apply(mesh, changes);
+        surface.apply(mesh, changes);
+        const Vec3 flight = 0.03 * size / dt * random.vector(1.0);
+        const Vec3 slide = 0.05 * size / dt * normal.cross(random.vector(1.0)).normalized() +
+                           0.001 * size / dt * normal;
+        const auto now = model.positions();
+        std::vector<Vec3> x(now.begin(), now.end()), v(x.size(), flight);
+        for (const ElementId e : model.fragments().elements()) {
+            Vec3 centre = Vec3::Zero();
+            for (const NodeId n : mesh.corners(model.fragments().cells_of(e)[0]))
+                centre += 0.25 * mesh.rest_position(n);
+            if ((centre - point).dot(normal) < 0.0) continue;
+            for (const NodeId n : model.fragments().corners(e)) v[n.index()] = flight + slide;
+        }
+        model.set_state(x, v, 0.0);
+        model.compute_totals_and_forces();
+    }
+};
+
+// The search follows the corner alone. What it finds is what a new search of all finds.
+TEST(SurfaceContact, SearchesOnlyNearWhatMoves) {
+    constexpr int num_steps = 150;
+    for (std::uint64_t seed = 0; seed < test::num_cases(4); ++seed) {
+        SCOPED_TRACE(seed);
+        SlidingCorner body(seed);
+        SurfaceContact contact({}, body.size);
+        ContactSolver solver(body.size), new_solver(body.size);
+        contact.know_surface(body.model, body.surface);
+        const std::size_t at_first = contact.num_tested();
+        std::size_t num_points = 0, num_new_points = 0;
+        for (int i = 0; i < num_steps; ++i) {
+            body.model.integrate(i * body.dt, body.dt);
+            body.model.compute_forces((i + 1) * body.dt);
+            solver.clear();
+            contact.add_points(body.model, solver);
+            if (i % 5 != 0) continue;
+            SurfaceContact anew({}, body.size);
+            anew.know_surface(body.model, body.surface);
+            new_solver.clear();
+            anew.add_points(body.model, new_solver);
+            EXPECT_GE(solver.size(), new_solver.size()) << i;
+            num_points += solver.size();
+            num_new_points += new_solver.size();
+        }
+        EXPECT_GT(num_new_points, 100u);
+        EXPECT_LT(num_points, 1.1 * static_cast<double>(num_new_points));
+        EXPECT_LT(contact.num_tested(), 12 * at_first);  // 30 searches
+    }
+}
+
 // Two thin plates, one just above the other, in the grid of one another or beside it. The upper one
 // falls upwards. What is behind a plate is not in it.
 TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
