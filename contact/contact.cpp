@@ -56,9 +56,9 @@ void Contact::tie(std::size_t tool, const cutting::Suture& suture, const physics
     std::get<SutureContact>(tool_of(tool, suture).contact).tie(model);
 }
 
-void Contact::draw(std::size_t tool, double before, double after) {
+void Contact::draw(std::size_t tool, double length) {
     const auto it = tools_.find(tool);
-    if (it != tools_.end()) std::get<SutureContact>(it->second.contact).draw(before, after);
+    if (it != tools_.end()) std::get<SutureContact>(it->second.contact).draw(length);
 }
 
 double Contact::thread_length(std::size_t tool) const {
@@ -149,9 +149,6 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
         for (const Share& share : solver_.shares(i))
             impulses_[share.node.index()] += share.weight * solver_.impulse(i);
     }
-    for (std::size_t t = 0; t < solver_.num_threads(); ++t)
-        for (const Pull& pull : solver_.pulls(t))
-            impulses_[pull.node.index()] -= solver_.thread_impulse(t) * pull.gradient;
     model.give_impulses(impulses_);
 }
 

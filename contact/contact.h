@@ -43,8 +43,8 @@ class Contact final : public physics::VelocityProjection {
                     const Pose& before, const Pose& after, const TissueAt& tissue_at);
     /// Passes a thread through the tissue.
     void tie(std::size_t tool, const cutting::Suture& suture, const physics::Model& model);
-    /// Sets the length of a thread at the beginning and at the end of the next step, m.
-    void draw(std::size_t tool, double before, double after);
+    /// Sets the length of a thread at the end of the next step, m.
+    void draw(std::size_t tool, double length);
     /// Returns the length of a thread without tension, m.
     double thread_length(std::size_t tool) const;
     /// Closes or opens the jaws of a grasper.

@@ -2,6 +2,7 @@
 #include "incise/contact/contact_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace incise::contact {
 
@@ -13,6 +14,13 @@ constexpr double correction = 0.1;
 /// Two sides that follow the same nodes cannot give way: then the softness of their point is below
 /// this part of that of its softest node.
 constexpr double least_softness = 1e-9;
+/// Relaxations of a thread stop when the impulses change by less than this part of the tension.
+constexpr double thread_accuracy = 1e-6;
+constexpr int most_thread_sweeps = 20;
+/// A segment turns within a step if it is shorter than this multiple of the way on which its own
+/// tension moves its ends in a step. Else its tension, times its turning, would be a stiffness
+/// against motion across it that is too large for the step.
+constexpr double turning_length = 4.0;
 
 }  // namespace
 
@@ -27,8 +35,7 @@ void ContactSolver::clear() {
     last_shares_.clear();
     threads_.clear();
     thread_begins_.clear();
-    pulls_.clear();
-    thread_impulses_.clear();
+    segment_points_.clear();
 }
 
 std::uint32_t ContactSolver::number_of(NodeId node) {
@@ -60,23 +67,12 @@ void ContactSolver::add_share(NodeId node, double weight) {
 
 void ContactSolver::begin_thread(const Thread& thread) {
     threads_.push_back(thread);
-    thread_begins_.push_back(pulls_.size());
+    thread_begins_.push_back(segment_points_.size());
 }
 
-void ContactSolver::add_pull(NodeId node, const Vec3& gradient) {
-    for (std::size_t p = thread_begins_.back(); p < pulls_.size(); ++p)
-        if (pulls_[p].node == node) {
-            pulls_[p].gradient += gradient;
-            return;
-        }
-    pulls_.push_back({node, number_of(node), gradient});
-}
-
-std::span<const Pull> ContactSolver::pulls(std::size_t thread) const {
-    const std::size_t begin = thread_begins_[thread];
-    const std::size_t end =
-        thread + 1 < thread_begins_.size() ? thread_begins_[thread + 1] : pulls_.size();
-    return std::span(pulls_).subspan(begin, end - begin);
+void ContactSolver::begin_segment(const Vec3& span, const Vec3& impulse) {
+    segment_points_.push_back(points_.size());
+    begin({.impulse = impulse, .is_held = true, .offset = span});
 }
 
 std::vector<std::pair<NodeId, Vec3>> ContactSolver::surface_impulses() const {
@@ -110,17 +106,11 @@ Vec3 ContactSolver::velocity(std::size_t i) const {
     return velocity(begins_[i], begins_[i] + shares(i).size());
 }
 
-double ContactSolver::lengthening(std::size_t thread) const {
-    double sum = 0.0;
-    for (const Pull& pull : pulls(thread))
-        sum += pull.gradient.dot(nodes_[pull.number].velocity.head<3>());
-    return sum;
-}
-
 void ContactSolver::take_nodes(std::span<const Vec3> velocities,
                                std::span<const Vec3> inverse_masses) {
     nodes_.resize(node_ids_.size());
     velocities_before_.resize(node_ids_.size());
+    changes_.resize(node_ids_.size());
     for (std::size_t i = 0; i < node_ids_.size(); ++i) {
         nodes_[i].velocity << velocities[node_ids_[i].index()], 0.0;
         nodes_[i].inverse_mass << inverse_masses[node_ids_[i].index()], 0.0;
@@ -132,7 +122,12 @@ void ContactSolver::take_nodes(std::span<const Vec3> velocities,
 void ContactSolver::make_rows(double dt, double rest_step) {
     rows_.clear();
     rounding_ = rounding_of_length_ / dt;
+    auto segment = segment_points_.begin();
     for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (segment != segment_points_.end() && *segment == i) {
+            ++segment;
+            continue;
+        }
         const ContactPoint& point = points_[i];
         const std::size_t begin = begins_[i], end = begin + shares(i).size();
         Padded padded_softness = Padded::Zero();
@@ -218,15 +213,19 @@ void ContactSolver::begin_with_impulse(Row& row) {
 /// this, impulses that have become wrong could do work: four sweeps do not undo all of it.
 void ContactSolver::begin_with_impulses() {
     for (Row& row : rows_) begin_with_impulse(row);
-    for (std::size_t t = 0; t < threads_.size(); ++t)
-        change_thread_impulse(t, std::min(threads_[t].impulse, thread_rows_[t].largest_impulse));
+    for (const ThreadRow& thread : thread_rows_)
+        for (std::size_t k = thread.begin; k < thread.end; ++k) {
+            const Vec3& known = points_[segments_[k].point].impulse;
+            change_impulse(segments_[k], limited(segments_[k], known, thread.impulse));
+        }
     const double share = best_share_of_impulses();
     if (share == 1.0) return;
     for (Row& row : rows_) {
         row.impulse *= share;
         row.normal_impulse *= share;
     }
-    for (double& impulse : thread_impulses_) impulse *= share;
+    for (Row& segment : segments_) segment.impulse *= share;
+    for (ThreadRow& thread : thread_rows_) thread.impulse *= share;
     for (std::size_t n = 0; n < nodes_.size(); ++n)
         nodes_[n].velocity =
             velocities_before_[n] + share * (nodes_[n].velocity - velocities_before_[n]);
@@ -238,8 +237,8 @@ void ContactSolver::begin_with_impulses() {
 /// impulses do no work but that of tools and of overlaps that go.
 double ContactSolver::best_share_of_impulses() const {
     double linear = 0.0, square = 0.0;
-    for (const Row& row : rows_) {
-        if (row.impulse.isZero(0.0)) continue;
+    const auto add = [&](const Row& row) {
+        if (row.impulse.isZero(0.0)) return;
         Padded before = Padded::Zero(), after = Padded::Zero();
         for (std::size_t s = row.begin; s < row.end; ++s) {
             before += shares_[s].weight * velocities_before_[shares_[s].number];
@@ -248,18 +247,12 @@ double ContactSolver::best_share_of_impulses() const {
         const Vec3 aim = row.is_held ? row.drift : Vec3(row.allowed * row.normal);
         linear += row.impulse.dot(before.head<3>() - row.velocity + aim);
         square += row.impulse.dot((after - before).head<3>());
-    }
-    for (std::size_t t = 0; t < threads_.size(); ++t) {
-        const ThreadRow& row = thread_rows_[t];
-        const double impulse = thread_impulses_[t];
-        double before = row.drift, change = row.own_softness * impulse;
-        for (const Pull& pull : pulls(t)) {
-            const Padded& known = velocities_before_[pull.number];
-            before += pull.gradient.dot(known.head<3>());
-            change -= pull.gradient.dot((nodes_[pull.number].velocity - known).head<3>());
-        }
-        linear -= impulse * before;
-        square += impulse * change;
+    };
+    for (const Row& row : rows_) add(row);
+    for (const Row& segment : segments_) add(segment);
+    for (const ThreadRow& thread : thread_rows_) {
+        linear += thread.impulse * thread.rest_rate;
+        square += thread.impulse * thread.impulse * thread.softness;
     }
     if (!(square > 0.0)) return 1.0;
     return std::clamp(-linear / square, 0.0, 1.0);
@@ -277,38 +270,114 @@ void ContactSolver::change_impulse(Row& row, const Vec3& to) {
 
 void ContactSolver::make_thread_rows(double dt) {
     thread_rows_.clear();
+    segments_.clear();
     for (std::size_t t = 0; t < threads_.size(); ++t) {
         const Thread& thread = threads_[t];
-        double softness = 0.0;
-        for (const Pull& pull : pulls(t))
-            softness += pull.gradient.cwiseAbs2().dot(nodes_[pull.number].inverse_mass.head<3>());
-        thread_rows_.push_back({softness, 1.0 / (thread.stiffness * dt * dt),
-                                thread.stretch / dt - thread.rest_rate, thread.largest_force * dt});
+        const std::size_t begin = thread_begins_[t];
+        const std::size_t end =
+            t + 1 < threads_.size() ? thread_begins_[t + 1] : segment_points_.size();
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t point = segment_points_[k], first = begins_[point];
+            const Vec3& span = points_[point].offset;
+            Row& segment = segments_.emplace_back();
+            segment.point = static_cast<std::uint32_t>(point);
+            segment.begin = static_cast<std::uint32_t>(first);
+            segment.end = static_cast<std::uint32_t>(first + shares(point).size());
+            segment.is_held = true;
+            segment.velocity.setZero();
+            segment.drift = span / dt;
+            Padded padded_softness = Padded::Zero();
+            for (std::size_t s = segment.begin; s < segment.end; ++s)
+                padded_softness +=
+                    shares_[s].weight * shares_[s].weight * nodes_[shares_[s].number].inverse_mass;
+            segment.softness = padded_softness.head<3>();
+            const double softest = segment.softness.maxCoeff(), length = span.norm();
+            const bool turns = length <= turning_length * softest * thread.impulse * dt;
+            segment.normal = turns ? Vec3(Vec3::Zero()) : Vec3(span / length);
+        }
+        thread_rows_.push_back({begin, end, 1.0 / (thread.stiffness * dt * dt), thread.length / dt,
+                                thread.largest_force * dt,
+                                std::min(thread.impulse, thread.largest_force * dt)});
     }
+    directions_.resize(segments_.size());
 }
 
-/// Makes the tension that of the length that the thread then has at the end of the step.
-void ContactSolver::relax_thread(std::size_t thread) {
-    const ThreadRow& row = thread_rows_[thread];
-    const double known = thread_impulses_[thread];
-    const double missing = row.drift + lengthening(thread) - row.own_softness * known;
-    change_thread_impulse(thread, std::clamp(known + missing / (row.softness + row.own_softness),
-                                             0.0, row.largest_impulse));
+/// Returns the span of a segment at the end of the step over the step.
+Vec3 ContactSolver::span_rate(const Row& segment) const {
+    return velocity(segment.begin, segment.end) + segment.drift;
 }
 
-void ContactSolver::change_thread_impulse(std::size_t thread, double to) {
-    const double change = to - thread_impulses_[thread];
-    for (const Pull& pull : pulls(thread)) {
-        Node& node = nodes_[pull.number];
-        node.velocity.head<3>() -= change * node.inverse_mass.head<3>().cwiseProduct(pull.gradient);
+/// Returns the nearest impulse that a segment can have at a tension.
+Vec3 ContactSolver::limited(const Row& segment, const Vec3& impulse, double tension) {
+    if (!segment.normal.isZero(0.0))
+        return -std::clamp(-impulse.dot(segment.normal), 0.0, tension) * segment.normal;
+    const double length = impulse.norm();
+    return length > tension ? Vec3(tension / length * impulse) : impulse;
+}
+
+/// Pulls the ends of a segment towards each other with the tension, or with less if they then meet.
+void ContactSolver::relax_segment(Row& segment, double tension) {
+    const Vec3 rate = span_rate(segment);
+    const double softest = segment.softness.maxCoeff();
+    if (softest > 0.0)
+        return change_impulse(segment, limited(segment, segment.impulse - rate / softest, tension));
+    const double length = rate.norm();
+    if (length > 0.0) change_impulse(segment, -tension / length * rate);
+}
+
+/// Makes the tension that of the length that the thread then has at the end of the step. The
+/// impulses of the segments grow with it.
+void ContactSolver::relax_tension(ThreadRow& thread) {
+    double largest = 0.0;
+    for (std::size_t k = thread.begin; k < thread.end; ++k)
+        largest = std::max(largest, segments_[k].impulse.norm());
+    thread.impulse = std::min(thread.impulse, largest);
+    double missing = -thread.rest_rate - thread.softness * thread.impulse;
+    for (std::size_t k = thread.begin; k < thread.end; ++k) {
+        const Row& segment = segments_[k];
+        const Vec3 rate = span_rate(segment);
+        Vec3 direction = segment.impulse / thread.impulse;
+        if (thread.impulse == 0.0)
+            direction =
+                segment.normal.isZero(0.0) ? Vec3(-rate.stableNormalized()) : Vec3(-segment.normal);
+        missing -= direction.dot(rate);
+        directions_[k] << direction, 0.0;
+        for (std::size_t s = segment.begin; s < segment.end; ++s)
+            changes_[shares_[s].number].setZero();
     }
-    thread_impulses_[thread] = to;
+    for (std::size_t k = thread.begin; k < thread.end; ++k)
+        for (std::size_t s = segments_[k].begin; s < segments_[k].end; ++s)
+            changes_[shares_[s].number] += shares_[s].weight * directions_[k];
+    double softness = thread.softness;
+    for (std::size_t k = thread.begin; k < thread.end; ++k)
+        for (std::size_t s = segments_[k].begin; s < segments_[k].end; ++s) {
+            const std::uint32_t n = shares_[s].number;
+            softness += shares_[s].weight *
+                        directions_[k].dot(nodes_[n].inverse_mass.cwiseProduct(changes_[n]));
+        }
+    thread.impulse = std::clamp(thread.impulse + missing / softness, 0.0, thread.largest_impulse);
+    for (std::size_t k = thread.begin; k < thread.end; ++k)
+        change_impulse(segments_[k], thread.impulse * directions_[k].head<3>());
+}
+
+void ContactSolver::relax_thread(ThreadRow& thread) {
+    for (int sweep = 0; sweep < most_thread_sweeps; ++sweep) {
+        const double before = thread.impulse;
+        double change = 0.0;
+        for (std::size_t k = thread.begin; k < thread.end; ++k) {
+            const Vec3 known = segments_[k].impulse;
+            relax_segment(segments_[k], thread.impulse);
+            change = std::max(change, (segments_[k].impulse - known).norm());
+        }
+        relax_tension(thread);
+        change = std::max(change, std::abs(thread.impulse - before));
+        if (change <= thread_accuracy * thread.impulse) return;
+    }
 }
 
 void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses,
                           double dt, double rest_step) {
     take_nodes(velocities, inverse_masses);
-    thread_impulses_.assign(threads_.size(), 0.0);
     make_rows(dt, rest_step);
     make_thread_rows(dt);
     begin_with_impulses();
@@ -316,10 +385,11 @@ void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3
         const bool visits_all = sweep == 0 || sweep == num_sweeps - 1;
         for (Row& row : rows_)
             if (visits_all || row.is_held || row.normal_impulse > 0.0) relax(row);
-        for (std::size_t t = 0; t < threads_.size(); ++t) relax_thread(t);
+        for (ThreadRow& thread : thread_rows_) relax_thread(thread);
     }
     impulses_.assign(points_.size(), Vec3::Zero());
     for (const Row& row : rows_) impulses_[row.point] = row.impulse;
+    for (const Row& segment : segments_) impulses_[segment.point] = segment.impulse;
 }
 
 }  // namespace incise::contact

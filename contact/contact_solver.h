@@ -31,28 +31,21 @@ struct ContactPoint {
     Vec3 velocity = Vec3::Zero();  ///< of a rigid body at the point, m/s; else 0
     Vec3 impulse = Vec3::Zero();   ///< of the step before, N s: where the search begins
     /// True if the point is held: its relative position is to become 0 in all directions. Then
-    /// `offset` is what it is now, m, and normal, gap and friction have no meaning.
+    /// `offset` is what it is now, m, and normal, gap and friction have no meaning. The segment of
+    /// a thread is held too.
     bool is_held = false;
     Vec3 offset = Vec3::Zero();
     /// Above it a point that is held slips, and another one is passed through, N.
     double largest_force = std::numeric_limits<double>::infinity();
 };
 
-/// A thread through points of bodies. Its length is a function of the positions of nodes, and it
-/// bears tension only.
+/// A thread through points of bodies, between which it has straight segments. It bears tension
+/// only, and the same everywhere.
 struct Thread {
-    double stretch = 0.0;    ///< length beyond that at rest, m; below 0: it is slack
-    double rest_rate = 0.0;  ///< at which its length at rest grows, m/s; below 0: it is drawn
+    double length = 0.0;     ///< without tension, at the end of the step, m
     double stiffness = 0.0;  ///< N/m, above 0
     double largest_force = std::numeric_limits<double>::infinity();  ///< N
     double impulse = 0.0;  ///< tension times time in the step before, N s: where the search begins
-};
-
-/// What moves the length of a thread: the derivative by the position of a node.
-struct Pull {
-    NodeId node;
-    std::uint32_t number;  ///< as that of a share
-    Vec3 gradient;
 };
 
 /// The points of contact and the threads of a step, and their impulses.
@@ -79,11 +72,13 @@ class ContactSolver {
     /// Notes which nodes of the surface the last point depends on. It is for surface_impulses()
     /// alone.
     void note_surface(const OnSurface& at) { on_surface_.emplace_back(points_.size() - 1, at); }
-    /// Begins a thread; its pulls follow.
+    /// Begins a thread; its segments follow.
     void begin_thread(const Thread& thread);
-    /// Adds a pull to the last thread. Several pulls at one node become one.
-    void add_pull(NodeId node, const Vec3& gradient);
-    bool is_empty() const { return points_.empty() && threads_.empty(); }
+    /// Begins a segment of the last thread; its shares follow.
+    /// @param span     from one end of the segment to the other, m: sum of weight times x_node
+    /// @param impulse  that of the step before, N s: where the search begins
+    void begin_segment(const Vec3& span, const Vec3& impulse);
+    bool is_empty() const { return points_.empty(); }
     std::size_t size() const { return points_.size(); }
     const ContactPoint& point(std::size_t i) const { return points_[i]; }
     /// Returns the nodes of all points and threads, each once.
@@ -119,11 +114,8 @@ class ContactSolver {
     Vec3 velocity(std::size_t i) const;
 
     std::size_t num_threads() const { return threads_.size(); }
-    std::span<const Pull> pulls(std::size_t thread) const;
     /// Returns the tension of a thread times the step, N s.
-    double thread_impulse(std::size_t thread) const { return thread_impulses_[thread]; }
-    /// Returns the rate at which the length of a thread grows after solve(), m/s.
-    double lengthening(std::size_t thread) const;
+    double thread_impulse(std::size_t thread) const { return thread_rows_[thread].impulse; }
 
   private:
     /// Three components and a zero: two instructions where three numbers take three.
@@ -148,10 +140,11 @@ class ContactSolver {
     };
     /// The same for a thread.
     struct ThreadRow {
-        double softness;         // change of the lengthening by an impulse, 1/kg
-        double own_softness;     // of the thread itself, 1/kg
-        double drift;            // lengthening that its stretch and the hand ask for, m/s
+        std::size_t begin, end;  // of its segments in segments_
+        double softness;         // of the thread itself, 1/kg
+        double rest_rate;        // its length without tension over the step, m/s
         double largest_impulse;  // N s
+        double impulse = 0.0;    // its tension times the step, N s
     };
     std::uint32_t number_of(NodeId node);
     Vec3 velocity(std::size_t begin, std::size_t end) const;
@@ -164,8 +157,11 @@ class ContactSolver {
     void relax_held(Row& row);
     void change_impulse(Row& row, const Vec3& to);
     void make_thread_rows(double dt);
-    void relax_thread(std::size_t thread);
-    void change_thread_impulse(std::size_t thread, double to);
+    Vec3 span_rate(const Row& segment) const;
+    static Vec3 limited(const Row& segment, const Vec3& impulse, double tension);
+    void relax_segment(Row& segment, double tension);
+    void relax_tension(ThreadRow& thread);
+    void relax_thread(ThreadRow& thread);
 
     double rounding_of_length_, largest_correction_;
     std::vector<ContactPoint> points_;
@@ -183,10 +179,11 @@ class ContactSolver {
     double rounding_ = 0.0;  // an approach that is none, m/s
     // Threads.
     std::vector<Thread> threads_;
-    std::vector<std::size_t> thread_begins_;  // by thread, of its pulls
-    std::vector<Pull> pulls_;
-    std::vector<double> thread_impulses_;
-    std::vector<ThreadRow> thread_rows_;  // by thread
+    std::vector<std::size_t> segment_points_;  // by segment, its number as a point
+    std::vector<std::size_t> thread_begins_;   // by thread, of its segments
+    std::vector<ThreadRow> thread_rows_;       // by thread
+    std::vector<Row> segments_;
+    std::vector<Padded> directions_, changes_;  // by segment, by number: scratch of a relaxation
 };
 
 }  // namespace incise::contact

@@ -12,10 +12,6 @@ namespace {
 
 /// A thread tears where its tension is this share of the largest one.
 constexpr double tears_at = 0.999;
-/// A thread between two points is drawn to no less than this part of the size of an element. Where
-/// they meet, its direction is not known: it would turn from step to step, and do work each time.
-constexpr double shortest = 0.1;
-
 double length_of(std::span<const Vec3> way) {
     double sum = 0.0;
     for (std::size_t i = 1; i < way.size(); ++i) sum += (way[i] - way[i - 1]).norm();
@@ -38,8 +34,8 @@ void SutureContact::tie(const physics::Model& model) {
     for (const Vec3& x : suture_.points)
         if (const auto at = topology::find_point(mesh, mesh.rest_positions(), x, reach))
             stitches_.push_back({at->position(mesh, mesh.rest_positions()), *at});
-    length_before_ = length_ = length_of(way(model));
-    impulse_ = 0.0;
+    length_ = length_of(way(model));
+    tension_ = 0.0;
 }
 
 void SutureContact::follow(const physics::Model& model) {
@@ -63,44 +59,36 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     is_in_solver_ = false;
     if (stitches_.size() < 2) return;
     const std::vector<Vec3> points = way(model);
-    const double length = length_of(points);
-    std::vector<Vec3> gradients(points.size(), Vec3::Zero());
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const Vec3 step = points[i] - points[i - 1];
-        const double distance = step.norm();
-        if (!(distance > 0.0)) continue;
-        gradients[i] += step / distance;
-        gradients[i - 1] -= step / distance;
-    }
     is_in_solver_ = true;
     thread_ = solver.num_threads();
-    direction_ = -gradients.front();
-    const double least = shortest * size_ * static_cast<double>(points.size() - 1);
-    const double before = std::max(length_before_, least), now = std::max(length_, least);
-    solver.begin_thread({.stretch = length - before,
-                         .rest_rate = (now - before) / dt,
-                         .stiffness = suture_.stiffness,
-                         .largest_force = suture_.max_force,
-                         .impulse = impulse_});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const topology::CellPoint& at = stitches_[i].at;
+    first_segment_ = solver.size();
+    solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
+    const auto add_end = [&](const topology::CellPoint& at, double sign) {
         const auto corners = model.mesh().corners(at.cell);
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const topology::Embedding& node = model.embedded_nodes()[corners[k]];
             for (std::size_t j = 0; j < static_cast<std::size_t>(node.count); ++j)
-                solver.add_pull(node.nodes[j], at.weights[k] * node.weights[j] * gradients[i]);
+                solver.add_share(node.nodes[j], sign * at.weights[k] * node.weights[j]);
         }
+    };
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        solver.begin_segment(points[i + 1] - points[i], stitches_[i].force * dt);
+        add_end(stitches_[i].at, -1.0);
+        add_end(stitches_[i + 1].at, 1.0);
     }
-    length_before_ = length_;
 }
 
 ToolImpulse SutureContact::take_impulses(const ContactSolver& solver, double dt) {
     if (!is_in_solver_) return {};
-    impulse_ = solver.thread_impulse(thread_);
+    tension_ = solver.thread_impulse(thread_) / dt;
     ToolImpulse done;
-    done.force = impulse_ * direction_;
-    done.work = -impulse_ * solver.lengthening(thread_);
-    if (impulse_ >= tears_at * suture_.max_force * dt) stitches_.clear();
+    for (std::size_t i = 0; i + 1 < stitches_.size(); ++i) {
+        const Vec3& impulse = solver.impulse(first_segment_ + i);
+        done.work += impulse.dot(solver.velocity(first_segment_ + i));
+        stitches_[i].force = impulse / dt;
+    }
+    done.force = -solver.impulse(first_segment_);
+    if (tension_ >= tears_at * suture_.max_force) stitches_.clear();
     return done;
 }
 
@@ -108,13 +96,12 @@ void SutureContact::restore(ArchiveReader& ar, const physics::Model& model) {
     list(ar, *this);
     const auto is_sound = [&](const Stitch& stitch) {
         const ElementId e = stitch.at.cell;
-        return stitch.rest.allFinite() && e.is_valid() &&
+        return stitch.rest.allFinite() && stitch.force.allFinite() && e.is_valid() &&
                e.index() < model.mesh().element_capacity() && model.mesh().is_alive(e) &&
                std::ranges::all_of(stitch.at.weights,
                                    [](double w) { return w >= 0.0 && w <= 1.0; });
     };
-    const bool has_lengths = length_ >= 0.0 && length_before_ >= 0.0 && impulse_ >= 0.0 &&
-                             std::isfinite(length_ + length_before_ + impulse_);
+    const bool has_lengths = length_ >= 0.0 && tension_ >= 0.0 && std::isfinite(length_ + tension_);
     if (!std::ranges::all_of(stitches_, is_sound) || !has_lengths)
         throw InputError("a thread passes through another body");
 }

@@ -31,11 +31,8 @@ class SutureContact {
     /// Passes the thread through the tissue. It is then as long as its way. A point without tissue
     /// in reach is left out. Cost: O(n) for each point.
     void tie(const physics::Model& model);
-    /// Sets the length at the beginning and at the end of the next step, m.
-    void draw(double before, double after) {
-        length_before_ = before;
-        length_ = after;
-    }
+    /// Sets the length at the end of the next step, m.
+    void draw(double length) { length_ = length; }
     /// Returns the length of the thread without tension, m.
     double length() const { return length_; }
     /// Returns through how many points the thread passes. It pulls if there are two or more.
@@ -64,21 +61,19 @@ class SutureContact {
     struct Stitch {
         Vec3 rest;  ///< m
         topology::CellPoint at;
-        static void archive(auto& ar, auto& self) { ar(self.rest, self.at); }
+        Vec3 force = Vec3::Zero();  ///< of the segment to the next one in the last step, N
+        static void archive(auto& ar, auto& self) { ar(self.rest, self.at, self.force); }
     };
-    static void list(auto& ar, auto& self) {
-        ar(self.stitches_, self.length_before_, self.length_, self.impulse_);
-    }
+    static void list(auto& ar, auto& self) { ar(self.stitches_, self.length_, self.tension_); }
     std::vector<Vec3> way(const physics::Model& model) const;
 
     cutting::Suture suture_;
     double size_;
     std::vector<Stitch> stitches_;
-    double length_before_ = 0.0, length_ = 0.0;  // m
-    double impulse_ = 0.0;                       // of the last step, N s
+    double length_ = 0.0;   // m
+    double tension_ = 0.0;  // of the last step, N
     bool is_in_solver_ = false;
-    std::size_t thread_ = 0;         // in the solver
-    Vec3 direction_ = Vec3::Zero();  // of the thread at its first point
+    std::size_t thread_ = 0, first_segment_ = 0;  // in the solver
 };
 
 }  // namespace incise::contact

@@ -199,8 +199,7 @@ void World::Parts::move_touching_tools(double from, double to, double moved) {
         if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
             contact->move_blade(i, *blade, model, before, after, tissue_at);
         else if (std::holds_alternative<cutting::Suture>(tool.def.shape))
-            contact->draw(i, std::lerp(tool.length, tool.target_length, from),
-                          std::lerp(tool.length, tool.target_length, to));
+            contact->draw(i, std::lerp(tool.length, tool.target_length, to));
         else
             contact->move_tool(i, tool.def.shape, before, after);
     }

@@ -191,5 +191,37 @@ TEST(ContactSolver, RemovesOverlapsSlowly) {
     EXPECT_NEAR(nodes.velocities[1].z() * one_step, 1e-3, 1e-12);  // at most so much
 }
 
+/// Two masses at the ends of the segment of a thread, which is to have no length.
+Nodes pulled_together(const Vec3& span, double impulse, const Vec3& velocity) {
+    Nodes nodes;
+    nodes.add(1.0, Vec3::Zero());
+    nodes.add(3.0, velocity);
+    ContactSolver solver(1.0);
+    solver.begin_thread({.length = 0.0, .stiffness = 1e12, .impulse = impulse});
+    solver.begin_segment(span, Vec3(-impulse, 0.0, 0.0));
+    solver.add_share(NodeId(0), -1.0);
+    solver.add_share(NodeId(1), 1.0);
+    const Vec3 momentum = nodes.momentum();
+    nodes.apply(solver);
+    EXPECT_LT((nodes.momentum() - momentum).norm(), 1e-15);
+    EXPECT_NEAR(solver.thread_impulse(0), solver.impulse(0).norm(), 1e-12);
+    return nodes;
+}
+
+TEST(ContactSolver, HoldsTheEndsOfAThreadTogetherInAllDirections) {
+    const Vec3 span(1e-9, 0.0, 0.0), velocity(0.0, 0.5, -0.2);
+    const Nodes nodes = pulled_together(span, 1e-3, velocity);
+    const Vec3 after = span + one_step * (nodes.velocities[1] - nodes.velocities[0]);
+    EXPECT_LT(after.norm(), 1e-6 * one_step);
+}
+
+TEST(ContactSolver, PullsALongSegmentAlongItself) {
+    const Nodes nodes = pulled_together({1.0, 0.0, 0.0}, 1e-3, {0.0, 0.5, -0.2});
+    const Vec3 relative = nodes.velocities[1] - nodes.velocities[0];
+    EXPECT_EQ(relative.y(), 0.5);
+    EXPECT_EQ(relative.z(), -0.2);
+    EXPECT_NEAR(relative.x(), -1.0 / one_step, 1e-6 / one_step);
+}
+
 }  // namespace
 }  // namespace incise::contact

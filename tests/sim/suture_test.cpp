@@ -128,6 +128,69 @@ TEST(Suture, AtRestBearsItsStiffnessTimesItsStretch) {
     }
 }
 
+/// Two held cubes that do not touch each other.
+World held_cubes_apart(double damping) {
+    WorldDef def = two_cubes();
+    def.damping = damping;
+    def.contact.self = false;
+    World world(std::move(def));
+    world.add_constraint(
+        {.name = "sides", .nodes = physics::NodeSet(nodes_where(world, [](const Vec3& x) {
+                              return x.x() < 1e-9 || x.x() > 2 * size + gap - 1e-9;
+                          }))});
+    return world;
+}
+
+/// A thread that passes from one cube to the other and back.
+cutting::Suture zigzag(std::size_t num_points, double stiffness, double height = 0.8) {
+    cutting::Suture suture{{}, stiffness};
+    for (std::size_t i = 0; i < num_points; ++i) {
+        const double y = 0.2 + 0.6 * static_cast<double>(i) / static_cast<double>(num_points - 1);
+        suture.points.push_back({(i % 2 == 0 ? 0.8 : 1.4) * size, y * size, height * size});
+    }
+    return suture;
+}
+
+// A segment whose ends meet has no direction, and a short one is stiff against motion across it.
+TEST(Suture, DrawnToNothingComesToRest) {
+    for (const std::size_t num_points : {2u, 3u, 6u, 20u})
+        for (const double stiffness : {1.0, 1e3, 1e5}) {
+            SCOPED_TRACE(std::to_string(num_points) + " points, " + std::to_string(stiffness));
+            World world = held_cubes_apart(20.0);
+            const ToolId suture = world.add_tool({"thread", zigzag(num_points, stiffness)});
+            const ToolId other = world.add_tool({"other", zigzag(3, stiffness, 0.7)});
+            for (const ToolId one : {suture, other}) world.tie_suture(one);
+            world.set_suture_length(other, 0.3 * size);
+            draw(world, suture, 0.0, 200);
+            run_until(world, world.time() + 2.0);
+            const physics::Totals totals = world.ledger().body_totals().totals;
+            EXPECT_GT(totals.elastic_energy, 1e-4);
+            EXPECT_LT(totals.kinetic_energy, 1e-8 * totals.elastic_energy);
+        }
+}
+
+TEST(Suture, NeverAddsEnergy) {
+    for (const double stiffness : {1.0, 1e3, 1e5}) {
+        SCOPED_TRACE(stiffness);
+        const cutting::Suture thread = zigzag(6, stiffness);
+        World world = held_cubes_apart(0.0);
+        const ToolId suture = world.add_tool({"thread", thread});
+        world.tie_suture(suture);
+        draw(world, suture, 0.0, 50);
+        const auto energy = [&] {
+            const physics::Totals totals = world.ledger().body_totals().totals;
+            const double length = way_of(world, thread);
+            return totals.kinetic_energy + totals.elastic_energy +
+                   0.5 * stiffness * length * length;
+        };
+        const double at_first = energy();
+        for (int i = 0; i < 1000; ++i) {
+            world.step(0.8 * world.stable_step());
+            ASSERT_LT(energy(), 1.001 * at_first) << i;
+        }
+    }
+}
+
 TEST(Suture, ThatIsSlackExertsNothing) {
     World world = held_cubes();
     const ToolId suture = world.add_tool({"thread", thread()});
