@@ -36,7 +36,7 @@ WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool 
       is_endless_(is_endless),
       warnings_(std::move(body.warnings)),
       world_(scenario::make_world(scenario_, std::move(body.mesh), std::move(body.materials),
-                                  std::move(body.boundary_conditions))),
+                                  std::move(body.boundary_conditions), warnings_)),
       scripts_(world_, std::move(body.tools)),
       led_(scripts_.size()) {
     for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)

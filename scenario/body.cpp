@@ -395,12 +395,24 @@ Parts build_parts(const Scenario& scenario) {
         warn_of_missing_regions(scenario, *mesh, parts.warnings);
     }
     parts.tools = build_tools(scenario, mesh, problems, parts.warnings);
-    if (parts.source && parts.materials) {
-        check_toughness(scenario, parts);
-        for (std::string& warning : implausible(scenario, parts.source->mesh, *parts.materials))
+    if (parts.source && parts.materials) check_toughness(scenario, parts);
+    if (mesh)
+        for (std::string& warning :
+             implausible(scenario, *mesh, parts.materials ? &*parts.materials : nullptr))
             parts.warnings.push_back(std::move(warning));
-    }
     return parts;
+}
+
+bool has_explicit_steps(const Scenario& scenario) {
+    return scenario.dynamics.mode == Mode::dynamic &&
+           scenario.dynamics.integrator == TimeIntegrator::semi_implicit_euler;
+}
+
+void warn_of_costly_elements(const Scenario& scenario, const physics::Model& model,
+                             std::vector<std::string>& warnings) {
+    if (!has_explicit_steps(scenario)) return;
+    if (const auto warning = warning_of_costly_elements(model))
+        warnings.push_back(located(scenario.mesh.location, *warning));
 }
 
 /// Measures how long it takes to compute the forces, s: the shortest of some times.
@@ -422,13 +434,9 @@ void check_model(const Scenario& scenario, Parts& parts) {
     parts.problems.try_to("", [&] {
         auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
         const double step = step_limit(scenario, model, model.rest_stable_step());
-        const DynamicsSpec& dynamics = scenario.dynamics;
-        if (dynamics.mode == Mode::statics ||
-            dynamics.integrator != TimeIntegrator::semi_implicit_euler)
-            return;
-        if (const auto warning = warning_of_costly_elements(model))
-            parts.warnings.push_back(located(scenario.mesh.location, *warning));
-        const double num_steps = dynamics.end_time / step;
+        if (!has_explicit_steps(scenario)) return;
+        warn_of_costly_elements(scenario, model, parts.warnings);
+        const double num_steps = scenario.dynamics.end_time / step;
         parts.effort = {num_steps, num_steps * seconds_of_forces(model)};
     });
 }
@@ -448,7 +456,8 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
 
 sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
                       physics::MaterialTable materials,
-                      physics::BoundaryConditions boundary_conditions) {
+                      physics::BoundaryConditions boundary_conditions,
+                      std::vector<std::string>& warnings) {
     const DynamicsSpec& dynamics = scenario.dynamics;
     sim::WorldDef def{std::move(mesh), std::move(materials.materials),
                       std::move(materials.of_region), std::move(materials.fibres),
@@ -463,7 +472,9 @@ sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
     else if (dynamics.integrator == TimeIntegrator::implicit_euler)
         def.solver = sim::Solver::implicit_euler;
     try {
-        return sim::World(std::move(def));
+        sim::World world(std::move(def));
+        warn_of_costly_elements(scenario, world.model(), warnings);
+        return world;
     } catch (const physics::UnsuitableMaterial& error) {
         throw BodyError(location_of_material(scenario, error.region),
                         error.what() + remedy_for(error));

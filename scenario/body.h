@@ -34,10 +34,12 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
                           physics::BoundaryConditions boundary_conditions);
 
-/// Builds the world of the body, without tools. Throws as make_model().
+/// Builds the world of the body, without tools. Warns of elements that make its steps short. Throws
+/// as make_model().
 sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
                       physics::MaterialTable materials,
-                      physics::BoundaryConditions boundary_conditions);
+                      physics::BoundaryConditions boundary_conditions,
+                      std::vector<std::string>& warnings);
 
 /// The body of a scenario at rest, with the tools.
 struct Body {

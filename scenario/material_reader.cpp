@@ -6,6 +6,7 @@
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
 #include "incise/scenario/elastic_constants.h"
+#include "incise/scenario/plausibility.h"
 #include "incise/scenario/scenario_sections.h"
 #include "incise/scenario/tissue_catalog.h"
 
@@ -304,7 +305,8 @@ std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec
     const std::string remedy = "add a section [[material]] with density, young and poisson";
     if (root.require("material", remedy) && root.is_empty_array("material"))
         root.error("material", "is empty: " + remedy);
-    for (const auto& material : root.tables("material", {keys})) {
+    const auto tables = root.tables("material", {keys});
+    for (const auto& material : tables) {
         specs.push_back(read_material(material, mesh));
         if (const auto& regions = specs.back().regions) {
             for (const int region : *regions)
@@ -320,6 +322,11 @@ std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec
             rest_is_claimed = true;
         }
     }
+    if (root.is_sound("material")) return specs;  // implausible() looks at them
+    for (std::size_t i = 0; i < specs.size(); ++i)
+        if (tables[i].has("density") && tables[i].is_sound("density"))
+            if (const auto doubt = doubt_of_density(i + 1, specs[i].density))
+                tables[i].warning({}, *doubt);
     return specs;
 }
 

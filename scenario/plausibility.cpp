@@ -53,9 +53,7 @@ void look_at_materials(const Scenario& scenario, const physics::MaterialTable& m
         const double density = materials.materials[i].density;
         const double young = physics::young_at_rest(materials.materials[i]);
         const std::string& location = scenario.materials[i].location;
-        if (density < lowest_density || density > highest_density)
-            findings.add(location, "material ", i + 1, " has a density of ", density,
-                         " kg/m3; soft tissue has some 1000 (1 g/cm3 is 1000 kg/m3)");
+        if (const auto doubt = doubt_of_density(i + 1, density)) findings.add(location, *doubt);
         // Moduli of a tissue are no slip of the pen: skin has 30 Pa at rest, and stiffens.
         if (!scenario.materials[i].has_published_moduli &&
             (young < lowest_young || young > highest_young))
@@ -73,17 +71,20 @@ bool is_borne(const Scenario& scenario) {
            std::ranges::any_of(scenario.tools, [](const ToolSpec& tool) { return !cuts(tool); });
 }
 
+void look_at_support(const Scenario& scenario, Findings& findings) {
+    if (scenario.dynamics.gravity.isZero(0.0) || is_borne(scenario)) return;
+    findings.add(scenario.mesh.location,
+                 scenario.dynamics.mode == Mode::statics
+                     ? "nothing holds the body against gravity, so there is no equilibrium: "
+                       "add a [[constraint]]"
+                     : "nothing holds the body against gravity, so it falls: add a "
+                       "[[constraint]], or an [[obstacle]] below it");
+}
+
 void look_at_weight(const Scenario& scenario, const Box& body,
                     const physics::MaterialTable& materials, Findings& findings) {
     const Vec3& gravity = scenario.dynamics.gravity;
     if (gravity.isZero(0.0)) return;
-    if (!is_borne(scenario))
-        findings.add(scenario.mesh.location,
-                     scenario.dynamics.mode == Mode::statics
-                         ? "nothing holds the body against gravity, so there is no equilibrium: "
-                           "add a [[constraint]]"
-                         : "nothing holds the body against gravity, so it falls: add a "
-                           "[[constraint]], or an [[obstacle]] below it");
     const double height = body.sizes().dot(gravity.cwiseAbs()) / gravity.norm();
     double softest = std::numeric_limits<double>::infinity(), heaviest = 0.0;
     for (const physics::Material& material : materials.materials) {
@@ -142,16 +143,26 @@ void look_at_blades(const Scenario& scenario, Findings& findings) {
 }  // namespace
 
 std::vector<std::string> implausible(const Scenario& scenario, const topology::Mesh& mesh,
-                                     const physics::MaterialTable& materials) {
+                                     const physics::MaterialTable* materials) {
     Findings findings;
     Box body;
     for (const NodeId n : mesh.nodes()) body.extend(mesh.rest_position(n));
     if (body.isEmpty()) return {};
     look_at_size(scenario, body, findings);
-    look_at_materials(scenario, materials, findings);
-    look_at_weight(scenario, body, materials, findings);
+    if (materials) look_at_materials(scenario, *materials, findings);
+    look_at_support(scenario, findings);
+    if (materials) look_at_weight(scenario, body, *materials, findings);
     look_at_blades(scenario, findings);
     return findings.take();
+}
+
+std::optional<std::string> doubt_of_density(std::size_t number, double density) {
+    if (density >= lowest_density && density <= highest_density) return std::nullopt;
+    std::ostringstream text;
+    text.precision(4);
+    text << "material " << number << " has a density of " << density
+         << " kg/m3; soft tissue has some 1000 (1 g/cm3 is 1000 kg/m3)";
+    return text.str();
 }
 
 std::optional<std::string> warning_of_costly_elements(const physics::Model& model) {
@@ -160,7 +171,8 @@ std::optional<std::string> warning_of_costly_elements(const physics::Model& mode
     std::vector<std::pair<double, ElementId>> steps;
     for (const ElementId e : model.fragments().elements())
         steps.emplace_back(model.element_stable_step(e), e);
-    std::ranges::sort(steps);
+    const auto num_compared = static_cast<std::ptrdiff_t>(std::min(most_named + 1, steps.size()));
+    std::ranges::partial_sort(steps, steps.begin() + num_compared);
     for (std::size_t k = 1; k <= most_named && k < steps.size(); ++k) {
         const double ratio = steps.front().first / steps[k].first;
         if (ratio > costly) continue;

@@ -125,5 +125,46 @@ TEST(Plausibility, NamesElementsThatCostTheStep) {
     }
 }
 
+// A run warns of all that a check warns of, in the same words.
+TEST(Plausibility, IsDoubtedByARunAsByACheck) {
+    const ScenarioFile file(R"([mesh]
+file = "thin.vtk"
+[[material]]
+density = 1
+young = 5000
+poisson = 0.4
+[dynamics]
+end_time = 1
+gravity = [0, 0, -9.81]
+)");
+    std::ofstream(file.path().parent_path() / "thin.vtk")
+        << "# vtk DataFile Version 3.0\nthin\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+           "POINTS 5 double\n0 0 0 0.1 0 0 0 0.1 0 0.03 0.03 -0.1 0.03 0.03 0.002\n"
+           "CELLS 2 10\n4 0 2 1 3\n4 0 1 2 4\nCELL_TYPES 2\n10 10\n";
+    const Scenario scenario = file.read().scenario;
+    const auto of_check = check_body(scenario).warnings;
+    EXPECT_THAT(of_check,
+                testing::IsSupersetOf({HasSubstr("material 1 has a density of 1 kg/m3"),
+                                       HasSubstr("nothing holds the body against gravity"),
+                                       HasSubstr("is so thin or stiff that steps are")}));
+    Body body = build_body(scenario);
+    make_world(scenario, std::move(body.mesh), std::move(body.materials),
+               std::move(body.boundary_conditions), body.warnings);
+    EXPECT_EQ(body.warnings, of_check);
+}
+
+TEST(Plausibility, IsDoubtedBesideErrorsOfMaterials) {
+    const ScenarioFile file(rest_block);
+    const ScenarioReport report = file.read({"material[0].poisson=0.5", "material[0].density=1.06",
+                                             "mesh.box.size=[100, 100, 100]", "constraint=[]"});
+    EXPECT_THAT(report.errors, ElementsAre(HasSubstr("0.5 is not allowed")));
+    EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("material 1 has a density of 1.06 kg/m3")));
+    EXPECT_THAT(check_body(report.scenario).warnings,
+                ElementsAre(HasSubstr("the body is 100 m long"),
+                            HasSubstr("nothing holds the body against gravity")));
+    // A density that is an error, or is not given, is no density to doubt.
+    EXPECT_THAT(file.read({"material[0].density=-1"}).warnings, IsEmpty());
+}
+
 }  // namespace
 }  // namespace incise::scenario
