@@ -202,7 +202,8 @@ void declare_check(CLI::App& app, Action& action) {
 
 void declare_info(CLI::App& app, Action& action) {
     auto options = std::make_shared<InfoOptions>();
-    auto* verb = app.add_subcommand("info", "Describe a mesh or a surface: counts, size, quality");
+    auto* verb = app.add_subcommand(
+        "info", "Describe a mesh, a surface or a label image: counts, size, quality");
     verb->add_option("MESH", options->mesh, "Mesh file, or a surface (.stl, .ply, .off, .obj)")
         ->required()
         ->type_name("PATH");

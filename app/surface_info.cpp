@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "incise/app/shell_word.h"
 #include "incise/io/files/number_format.h"
 #include "incise/io/surface/surface_reader.h"
 
@@ -25,18 +26,24 @@ double first_size(const Box& box) {
     return size > 0.0 ? std::stod(line_of("%.1g", size)) : 1.0;
 }
 
-std::string in_shell(const std::string& text) {
-    if (text.find_first_of(" '\"$&;()*?<>|\\`") == text.npos) return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 std::string counted(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 }  // namespace
+
+std::string command_for_mesh(const std::filesystem::path& path, const Box& box) {
+    // Longer than any body in metres: in millimetres, as scanners write them.
+    constexpr double longest_body = 10.0;
+    const bool is_in_millimetres = box.sizes().maxCoeff() > longest_body;
+    const double size = first_size(box);
+    auto stem = path.stem();  // two suffixes: .nii.gz
+    if (path.extension() == ".gz") stem = stem.stem();
+    return "incise mesh " + shell_word(path.string()) + " " + shell_word(stem.string() + ".vtu") +
+           " --size " +
+           (is_in_millimetres ? io::format_number(size / 1000.0) + " --scale 0.001"
+                              : io::format_number(size));
+}
 
 SurfaceInfo surface_info(const std::filesystem::path& path) {
     auto file = io::read_surface(path);
@@ -44,14 +51,7 @@ SurfaceInfo surface_info(const std::filesystem::path& path) {
     info.parts = topology::parts_of(file.surface);
     info.fault = fault_of(info.parts);
     info.warnings = std::move(file.warnings);
-    // Longer than any body in metres: in millimetres, as scanners write them.
-    constexpr double longest_body = 10.0;
-    const bool is_in_millimetres = info.parts.box.sizes().maxCoeff() > longest_body;
-    const double size = first_size(info.parts.box);
-    info.command = "incise mesh " + in_shell(path.string()) + " " +
-                   in_shell(path.stem().string() + ".vtu") + " --size " +
-                   (is_in_millimetres ? io::format_number(size / 1000.0) + " --scale 0.001"
-                                      : io::format_number(size));
+    info.command = command_for_mesh(path, info.parts.box);
     return info;
 }
 

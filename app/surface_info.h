@@ -18,6 +18,10 @@ struct SurfaceInfo {
     std::string command;                ///< that makes a mesh of it, with a size for a first try
 };
 
+/// Returns the command that makes a mesh of a surface or an image in a box, with a size for a first
+/// try. What is longer than any body in metres is taken for millimetres.
+std::string command_for_mesh(const std::filesystem::path& path, const Box& box);
+
 /// Reads a surface. Throws InputError as io::read_surface() does.
 SurfaceInfo surface_info(const std::filesystem::path& path);
 

@@ -6,12 +6,14 @@
 #include <new>
 #include <set>
 
+#include "incise/app/image_info.h"
 #include "incise/app/messages.h"
 #include "incise/app/progress.h"
 #include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/io/files/number_format.h"
+#include "incise/io/image/label_image.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/remedies.h"
@@ -120,8 +122,22 @@ Findings check_surface(const std::filesystem::path& path) {
     return findings;
 }
 
+Findings check_image(const std::filesystem::path& path) {
+    Findings findings;
+    try {
+        const auto image = image_info(path);
+        for (const auto& warning : image.image.warnings)
+            findings.warnings.push_back(path.string() + ": " + warning);
+        findings.summary = summary_of(image);
+    } catch (const InputError& error) {
+        findings.errors.emplace_back(error.what());
+    }
+    return findings;
+}
+
 Findings check_file(const std::filesystem::path& file, const MeshInput& input) {
     if (io::has_surface_suffix(file)) return check_surface(file);
+    if (io::has_image_suffix(file)) return check_image(file);
     return file.extension() == ".toml" ? check_scenario(file) : check_mesh(file, input);
 }
 

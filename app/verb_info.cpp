@@ -1,4 +1,4 @@
-// incise info: describes a mesh or a surface, as text or as JSON.
+// incise info: describes a mesh, a surface or a label image, as text or as JSON.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstdio>
 #include <iostream>
@@ -7,10 +7,12 @@
 #include <optional>
 
 #include "incise/app/body_measures.h"
+#include "incise/app/image_info.h"
 #include "incise/app/messages.h"
 #include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
+#include "incise/io/image/label_image.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/remedies.h"
 #include "incise/topology/mesh.h"
@@ -102,22 +104,29 @@ void print_text(const MeshInfo& info) {
     std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
 }
 
-int info_of_surface(const InfoOptions& options) {
-    const auto surface = surface_info(options.mesh);
+/// Prints what is known about a surface or an image.
+int print(const InfoOptions& options, const auto& info, const std::vector<std::string>& warnings) {
     if (options.json) {
-        std::cout << json_of(surface) << '\n';
+        std::cout << json_of(info) << '\n';
         return done;
     }
-    for (const auto& warning : surface.warnings)
+    for (const auto& warning : warnings)
         print_warning(prefixed(options.mesh.string() + ": ", warning));
-    std::cout << text_of(surface);
+    std::cout << text_of(info);
     return done;
 }
 
 }  // namespace
 
 int info(const InfoOptions& options) {
-    if (io::has_surface_suffix(options.mesh)) return info_of_surface(options);
+    if (io::has_surface_suffix(options.mesh)) {
+        const auto surface = surface_info(options.mesh);
+        return print(options, surface, surface.warnings);
+    }
+    if (io::has_image_suffix(options.mesh)) {
+        const auto image = image_info(options.mesh);
+        return print(options, image, image.image.warnings);
+    }
     const auto info = look_at(options);
     if (options.json) {
         // Warnings may quote names from the file, which can have any encoding.

@@ -34,13 +34,18 @@ constexpr Format formats[] = {
     {"NRRD", {".nrrd", ".nhdr"}, begins_as_nrrd, read_nrrd_header},
 };
 
+const Format* format_by_suffix(const std::filesystem::path& path) {
+    const auto name = lower_case(path.filename().string());
+    for (const auto& format : formats)
+        for (const auto* suffix : format.suffixes)
+            if (name.ends_with(suffix)) return &format;
+    return nullptr;
+}
+
 const Format& format_of(const InputFile& file) {
     for (const auto& format : formats)
         if (format.begins(file)) return format;
-    const auto name = lower_case(file.path.filename().string());
-    for (const auto& format : formats)
-        for (const auto* suffix : format.suffixes)
-            if (name.ends_with(suffix)) return format;
+    if (const auto* format = format_by_suffix(file.path)) return *format;
     std::string known;
     for (const auto& format : formats)
         known += std::string(known.empty() ? "" : ", ") + format.name + " (" + format.suffixes[0] +
@@ -285,6 +290,16 @@ std::string_view without_lines(std::string_view bytes, std::size_t num_lines) {
 }
 
 }  // namespace
+
+bool has_image_suffix(const std::filesystem::path& path) {
+    return format_by_suffix(path) != nullptr;
+}
+
+std::string_view image_format_of(const InputFile& file) {
+    for (const auto& format : formats)
+        if (format.begins(file)) return format.name;
+    return {};
+}
 
 void ImageHeader::set_steps(const Eigen::Matrix3d& steps) {
     for (int a = 0; a < 3; ++a) {

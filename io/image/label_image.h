@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/io/files/input_file.h"
 
 namespace incise::io {
 
@@ -28,6 +30,12 @@ struct LabelImage {
         return labels[static_cast<std::size_t>(i + dimensions[0] * (j + dimensions[1] * k))];
     }
 };
+
+/// True if the name ends as those of the images that read_label_image() reads.
+bool has_image_suffix(const std::filesystem::path& path);
+
+/// Returns the name of the image format with which a file begins, or an empty text.
+std::string_view image_format_of(const InputFile& file);
 
 /// Options of read_label_image().
 struct LabelImageOptions {

@@ -77,7 +77,16 @@ void FebioFile::parse() {
                          std::to_string(file_.line_of(static_cast<std::size_t>(parsed.offset))) +
                          ": not well-formed XML (" + parsed.description() +
                          "); the file is cut short or damaged");
-    if (!root()) throw InputError(name_ + ": is XML, but has no febio_spec element");
+    if (!root()) {
+        const std::string first = document_.document_element().name();
+        throw InputError(
+            name_ + ": is XML, but has no febio_spec element: its first element is " +
+            in_quotes(first) +
+            (first.starts_with("febio_")
+                 ? ", which tells FEBio what to do with a model, and has no mesh; give "
+                   "the file of the model"
+                 : "; give the file of a model of FEBio"));
+    }
     const std::string_view version = root().attribute("version").value();
     is_version_2_ = version.starts_with("2.");
     if (!is_version_2_ && !version.starts_with("3.") && !version.starts_with("4."))

@@ -254,9 +254,7 @@ class FebioReader {
 
 }  // namespace
 
-bool begins_as_febio(std::string_view text) {
-    return behind_prolog(text).starts_with("<febio_spec");
-}
+bool begins_as_febio(std::string_view text) { return behind_prolog(text).starts_with("<febio_"); }
 
 MeshFile read_febio(const InputFile& file, const ReadOptions& options) {
     return FebioReader(*febio_file_with_mesh(file), options).read();

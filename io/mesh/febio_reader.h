@@ -9,7 +9,8 @@
 
 namespace incise::io {
 
-/// True if the text is XML whose first element is febio_spec.
+/// True if the text is XML whose first element is that of a file of FEBio: a model, febio_spec, or
+/// another file, which read_febio() refuses.
 bool begins_as_febio(std::string_view text);
 
 /// Reads a FEBio file of version 2, 3 or 4; see read_mesh(). Reads the nodes, the elements and the

@@ -10,6 +10,7 @@
 #include "incise/io/files/input_file.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/files/scanner.h"
+#include "incise/io/image/label_image.h"
 #include "incise/io/mesh/abaqus_reader.h"
 #include "incise/io/mesh/febio_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
@@ -17,6 +18,7 @@
 #include "incise/io/mesh/mesh_text.h"
 #include "incise/io/mesh/tetgen_reader.h"
 #include "incise/io/mesh/usda_reader.h"
+#include "incise/io/surface/surface_reader.h"
 #include "incise/io/vtk/frame_index.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
@@ -77,6 +79,18 @@ constexpr ForeignFormat foreign_formats[] = {
     {"a packed archive, as of USD (.usdz)", "pk\x03\x04", usd_remedy},
 };
 
+/// Images that have no labels.
+struct Picture {
+    const char* name;
+    std::size_t offset;  ///< of the mark
+    std::string_view magic;
+};
+constexpr Picture pictures[] = {
+    {"an image of DICOM", 128, "DICM"},      {"a picture (PNG)", 0, "\x89PNG"},
+    {"a picture (JPEG)", 0, "\xff\xd8\xff"}, {"a picture (GIF)", 0, "GIF8"},
+    {"a picture (TIFF)", 0, {"II*\0", 4}},   {"a picture (TIFF)", 0, {"MM\0*", 4}},
+};
+
 constexpr std::size_t head_size = 128;  // longer than any magic
 
 /// Returns the beginning of the text, in lower case, with each sequence of blanks as one blank.
@@ -97,10 +111,12 @@ std::string known_formats() {
     return known;
 }
 
-/// Returns the format of XML, by its first element. The mark is that of VTU, which reports other
-/// XML.
-const ReadFormat* format_of_xml(std::string_view text) {
-    const auto read = begins_as_febio(text) ? read_febio : read_vtu;
+/// Returns the format of XML, by its first element, or else by the suffix of the file. Both readers
+/// report other XML.
+const ReadFormat* format_of_xml(std::string_view text, std::string_view suffix) {
+    const bool is_of_febio =
+        begins_as_febio(text) || (suffix == ".feb" && text.find("<VTKFile") == text.npos);
+    const auto read = is_of_febio ? read_febio : read_vtu;
     return std::ranges::find(read_formats, read, &ReadFormat::read);
 }
 
@@ -142,6 +158,7 @@ bool has_abaqus_keyword(std::string_view text) {
 /// other files or a mesh of another program.
 const ReadFormat* read_format_of(const InputFile& file) {
     std::string_view text = file.bytes;
+    const auto suffix = lower_case(file.path.extension().string());
     while (true) {
         text = behind_blanks(text);
         const auto head = head_of(text);
@@ -149,12 +166,11 @@ const ReadFormat* read_format_of(const InputFile& file) {
             if (head.starts_with(format.magic))
                 throw InputError(file.name() + ": is " + format.name + ", which cannot be read; " +
                                  format.remedy + known_formats());
-        if (text.starts_with('<')) return format_of_xml(text);
+        if (text.starts_with('<')) return format_of_xml(text, suffix);
         if (const auto* format = marked_format_of(head)) return format;
         if (!text.starts_with('#')) break;  // MEDIT and TetGen files may begin with comments
         text.remove_prefix(std::min(text.find('\n'), text.size()));
     }
-    const auto suffix = lower_case(file.path.extension().string());
     if (suffix == ".series")
         refuse_series(file);
     else if (const auto files = files_of_series(file); !files.empty())
@@ -188,15 +204,19 @@ void finish(const InputFile& file, MeshFile& result) {
     }
 }
 
-}  // namespace
-
-namespace {
-
-/// True if the name ends as those of surfaces and of label images do.
-bool is_surface_or_image(const std::filesystem::path& path) {
-    constexpr std::string_view suffixes[] = {".stl", ".obj", ".ply", ".off",  ".nii",
-                                             ".gz",  ".mha", ".mhd", ".nrrd", ".nhdr"};
-    return std::ranges::find(suffixes, path.extension().string()) != std::end(suffixes);
+/// Returns what a file that is no mesh is, and what to do with it.
+std::string remedy_for_other(const InputFile& file) {
+    constexpr const char* remedy =
+        "; a body is made of a surface or a label image by `incise mesh`; see incise mesh --help";
+    if (const auto image = image_format_of(file); !image.empty())
+        return "is an image (" + std::string(image) + ")" + remedy;
+    if (has_surface_suffix(file.path)) return std::string("is a surface") + remedy;
+    for (const auto& picture : pictures)
+        if (file.bytes.size() > picture.offset &&
+            std::string_view(file.bytes).substr(picture.offset).starts_with(picture.magic))
+            return std::string("is ") + picture.name +
+                   "; a body can be made of a segmentation in NIfTI, MetaImage or NRRD";
+    return "begins like no mesh format known here; convert it to one of: " + known_formats();
 }
 
 }  // namespace
@@ -208,12 +228,7 @@ bool begins_like_a_mesh(std::string_view text) {
 MeshFile read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const auto file = load_input_file(path);
     const auto* format = read_format_of(file);
-    if (format == nullptr)
-        throw UnknownFormat(file.name() + ": begins like no mesh format known here; " +
-                            (is_surface_or_image(path)
-                                 ? "a body is made of a surface or a label image by "
-                                   "`incise mesh`; see incise mesh --help"
-                                 : "convert it to one of: " + known_formats()));
+    if (format == nullptr) throw UnknownFormat(file.name() + ": " + remedy_for_other(file));
     MeshFile result = format->read(file, options);
     for (const auto& name : options.vector_arrays)
         if (!result.cell_vectors.contains(name))

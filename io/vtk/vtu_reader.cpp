@@ -63,7 +63,10 @@ class VtuReader {
         const auto text = cut_appended(file_);
         parse(text);
         const auto root = document_.child("VTKFile");
-        if (!root) throw InputError(file_.name() + ": is XML, but has no VTKFile element");
+        if (!root)
+            throw InputError(file_.name() +
+                             ": is XML, but has no VTKFile element: its first one is " +
+                             in_quotes(document_.document_element().name()));
         const std::string_view type = root.attribute("type").value();
         if (type != "UnstructuredGrid") {
             std::vector<std::string> files;

@@ -140,8 +140,15 @@ TEST(FebioReader, RefusesWhatItCannotRead) {
                 AllOf(StartsWith("a.feb:11: not well-formed XML"), HasSubstr("cut short")));
     EXPECT_THAT(febio_refusal(" name=\"Right\"", ""),
                 StartsWith("a.feb:18: ElementSet has no name"));
-    EXPECT_THAT(refusal("a.feb", "<?xml version=\"1.0\"?><other/>"),
-                HasSubstr("is XML, but has no VTKFile element"));
+    EXPECT_EQ(
+        refusal("a.feb", "<?xml version=\"1.0\"?><other/>"),
+        "a.feb: is XML, but has no febio_spec element: its first element is 'other'; give the "
+        "file of a model of FEBio");
+    EXPECT_THAT(refusal("a.xml", "<?xml version=\"1.0\"?>\n<!-- fit -->\n<febio_optimize/>"),
+                AllOf(HasSubstr("its first element is 'febio_optimize', which tells FEBio what"),
+                      HasSubstr("give the file of the model")));
+    EXPECT_THAT(refusal("a.xml", "<other/>"),
+                HasSubstr("is XML, but has no VTKFile element: its first one is 'other'"));
 }
 
 }  // namespace
