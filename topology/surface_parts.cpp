@@ -8,6 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "incise/topology/flat_triangles.h"
+
 namespace incise::topology {
 
 namespace {
@@ -29,7 +31,8 @@ Vec3 twice_area(const SurfaceData& surface, const std::array<std::int64_t, 3>& t
 }
 
 /// The surface with equal points as one, and without triangles of no area.
-SurfaceData merged_surface(const SurfaceData& source) {
+SurfaceData merged_surface(const SurfaceData& given) {
+    const SurfaceData source = without_flat_triangles(given);
     SurfaceData merged;
     std::map<std::array<double, 3>, std::int64_t> known;
     const auto number_of = [&](std::int64_t p) {
@@ -42,8 +45,7 @@ SurfaceData merged_surface(const SurfaceData& source) {
         return it->second;
     };
     for (const auto& t : source.triangles)
-        if (!twice_area(source, t).isZero(0.0))
-            merged.triangles.push_back({number_of(t[0]), number_of(t[1]), number_of(t[2])});
+        merged.triangles.push_back({number_of(t[0]), number_of(t[1]), number_of(t[2])});
     return merged;
 }
 

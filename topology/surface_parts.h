@@ -29,9 +29,8 @@ struct EdgeFault {
 
 /// A surface and its parts. Lengths are in the unit of the source.
 struct SurfaceParts {
-    /// The surface with equal points as one, without triangles of no area or with a repeated
-    /// corner. The triangles of a part face the same side, that of its first triangle in the
-    /// source.
+    /// The surface with equal points as one, and as without_flat_triangles(). The triangles of a
+    /// part face the same side, that of its first triangle in the source.
     SurfaceData surface;
     std::vector<std::size_t> part_of_triangle;  ///< by triangle of `surface`
     std::vector<SurfacePart> parts;             ///< in the order of their first triangles

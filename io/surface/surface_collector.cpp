@@ -11,6 +11,7 @@
 
 #include "incise/base/error.h"
 #include "incise/io/files/number_text.h"
+#include "incise/topology/flat_triangles.h"
 
 namespace incise::io {
 
@@ -99,13 +100,8 @@ SurfaceFile SurfaceCollector::finish() {
     if (triangles.empty())
         throw InputError(file_.name() + ": holds no triangles; export a surface of triangles");
     const auto num_all = triangles.size();
-    const auto num_dropped =
-        std::erase_if(triangles, [&points = points](const std::array<std::int64_t, 3>& corners) {
-            const Vec3& a = points[static_cast<std::size_t>(corners[0])];
-            const Vec3& b = points[static_cast<std::size_t>(corners[1])];
-            const Vec3& c = points[static_cast<std::size_t>(corners[2])];
-            return (b - a).cross(c - a).isZero(0.0);  // exactly zero if corners are repeated
-        });
+    surface_ = topology::without_flat_triangles(std::move(surface_));
+    const auto num_dropped = num_all - triangles.size();
     if (triangles.empty())
         throw InputError(file_.name() + ": none of the " + std::to_string(num_all) +
                          " triangles has three corners and an area; check the scale and the "

@@ -39,7 +39,8 @@ class SurfaceCollector {
     /// by a file made for that.
     void merge_equal_points();
 
-    /// Returns the surface without the triangles that have no area. A warning states their number.
+    /// Returns the surface without flat triangles: topology::without_flat_triangles(). A warning
+    /// states the number of those that were left out.
     /// Throws InputError if no triangle is left. The collector is empty afterwards.
     SurfaceFile finish();
 

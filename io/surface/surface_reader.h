@@ -25,10 +25,12 @@ bool has_surface_suffix(const std::filesystem::path& path);
 /// PLY (ascii and binary of either byte order), OFF (text), OBJ (by its suffix only).
 ///
 /// A polygon with more than three corners becomes a fan of triangles round its first corner, which
-/// is correct for plane convex polygons. Triangles with repeated corners, or without area in double
-/// precision, are left out. A warning states their number. STL has no shared points, so that its
-/// points with equal coordinates are merged. Other formats keep all points, also those without a
-/// triangle. Normals, texture coordinates, colours, lines and all other data are skipped.
+/// is correct for plane convex polygons. Triangles without area in double precision become part of
+/// their neighbours, so that a closed surface stays closed. Those that have no such neighbour, and
+/// those with repeated corners, are left out. A warning states their number. STL has no shared
+/// points, so that its points with equal coordinates are merged. Other formats keep all points,
+/// also those without a triangle. Normals, texture coordinates, colours, lines and all other data
+/// are skipped.
 ///
 /// Every count, index and number is checked before it is used. Memory is proportional to the size
 /// of the file. The result has at least one triangle. Its corners are numbers of points, and its
