@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "tetmesh/coordinate_tolerance.h"
+
 namespace incise::tetmesh {
 
 namespace {
@@ -126,6 +128,17 @@ bool pass_through(const Facet& a, const Facet& b, double tolerance) {
     return std::min(a_high, b_high) - std::max(a_low, b_low) > tolerance;
 }
 
+/// True if two triangles have a point in common, or come as near as the tolerance at a corner.
+bool do_touch(const Facet& a, const Facet& b, double tolerance) {
+    const auto is_corner_near = [&](const Facet& f, const Facet& g) {
+        return std::ranges::any_of(f.corners, [&](const Vec3& x) {
+            return CGAL::squared_distance(to_point(x), to_triangle(g)) <= tolerance * tolerance;
+        });
+    };
+    return CGAL::do_intersect(to_triangle(a), to_triangle(b)) || is_corner_near(a, b) ||
+           is_corner_near(b, a);
+}
+
 /// A point that two crossing triangles have in common, nearly.
 Vec3 place_of(const Facet& a, const Facet& b) {
     const auto point_in = [](const Facet& f, const Facet& g) -> std::optional<Vec3> {
@@ -147,33 +160,39 @@ Vec3 place_of(const Facet& a, const Facet& b) {
 
 }  // namespace
 
-std::optional<Crossing> crossing_of(const std::vector<topology::SurfaceParts>& surfaces) {
+SurfaceContacts contacts_of(const std::vector<topology::SurfaceParts>& surfaces) {
     const auto facets = facets_of(surfaces);
-    double largest = 0.0;
+    const double tolerance = coordinate_tolerance(box_of(surfaces));
     using Item = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Facet*>;
     std::vector<Item> boxes;
     boxes.reserve(facets.size());
     for (const Facet& f : facets) {
-        boxes.emplace_back(to_triangle(f).bbox(), &f);
-        for (const Vec3& x : f.corners) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+        Box box;
+        for (const Vec3& x : f.corners) box.extend(x);
+        const Vec3 low = box.min().array() - tolerance, high = box.max().array() + tolerance;
+        boxes.emplace_back(CGAL::Bbox_3(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()),
+                           &f);
     }
-    // Files hold coordinates in single precision: what touches may cross by their last digits.
-    const double tolerance = 1e-6 * largest;
 
+    SurfaceContacts contacts;
     std::size_t num_pairs = 0;
     std::pair<const Facet*, const Facet*> first{nullptr, nullptr};
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Item& i, const Item& j) {
         const Facet* a = std::min(i.handle(), j.handle());
         const Facet* b = std::max(i.handle(), j.handle());
+        const bool are_of_one_part = a->part == b->part;
+        if (!are_of_one_part && !contacts.do_parts_touch)
+            contacts.do_parts_touch = do_touch(*a, *b, tolerance);
         const bool do_cross =
-            a->part == b->part ? cross_within_part(*a, *b) : pass_through(*a, *b, tolerance);
+            are_of_one_part ? cross_within_part(*a, *b) : pass_through(*a, *b, tolerance);
         if (!do_cross) return;
         ++num_pairs;
         if (first.first == nullptr || std::pair(a, b) < first) first = {a, b};
     });
-    if (num_pairs == 0) return std::nullopt;
-    return Crossing{num_pairs, first.first->surface, first.second->surface,
-                    place_of(*first.first, *first.second)};
+    if (num_pairs > 0)
+        contacts.crossing = Crossing{num_pairs, first.first->surface, first.second->surface,
+                                     place_of(*first.first, *first.second)};
+    return contacts;
 }
 
 }  // namespace incise::tetmesh

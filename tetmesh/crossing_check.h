@@ -17,9 +17,15 @@ struct Crossing {
     Vec3 place = Vec3::Zero();                          ///< of the first pair
 };
 
+/// How surfaces meet.
+struct SurfaceContacts {
+    std::optional<Crossing> crossing;
+    bool do_parts_touch = false;  ///< two parts, of one surface or of two
+};
+
 /// Returns where surfaces cross. Two triangles of one part cross if they have more in common than a
 /// point, an edge or what neighbours share. Triangles of two parts cross if each of them passes
 /// through the other: parts may touch. Cost: O(n log n) for triangles of like size.
-std::optional<Crossing> crossing_of(const std::vector<topology::SurfaceParts>& surfaces);
+SurfaceContacts contacts_of(const std::vector<topology::SurfaceParts>& surfaces);
 
 }  // namespace incise::tetmesh

@@ -56,6 +56,17 @@ class LabelField {
         return heaviest(labels, share);
     }
 
+    /// Returns the first point outside of the label of `in` on the line to `out`.
+    Vec3 boundary_between(Vec3 in, Vec3 out) const {
+        const int label = (*this)(in);
+        constexpr int num_halvings = 30;  // to the last digits of a voxel
+        for (int i = 0; i < num_halvings; ++i) {
+            const Vec3 middle = 0.5 * (in + out);
+            ((*this)(middle) == label ? in : out) = middle;
+        }
+        return out;
+    }
+
   private:
     static Index3 corner(const Index3& low, std::size_t c) {
         return {low[0] + static_cast<std::int64_t>(c & 1),
@@ -86,6 +97,23 @@ class LabelField {
     io::LabelImage image_;
     Eigen::Matrix3d steps_, to_voxels_;
 };
+
+/// Visits a point between each two neighbouring voxels of different labels.
+void visit_faces(const LabelField& field, const SurfaceVisitor& visit) {
+    const auto [nx, ny, nz] = field.image().dimensions;
+    // From one voxel outside of the image, as that is background.
+    for (std::int64_t k = -1; k < nz; ++k)
+        for (std::int64_t j = -1; j < ny; ++j)
+            for (std::int64_t i = -1; i < nx; ++i)
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const Index3 v = {i, j, k};
+                    Index3 next = v;
+                    ++next[axis];
+                    if (field.label(v) == field.label(next)) continue;
+                    const Vec3 in = field.centre(v), out = field.centre(next);
+                    visit(field.boundary_between(in, out), (out - in).normalized());
+                }
+}
 
 /// The voxels of an image that have a label, in parts.
 class VoxelParts {
@@ -146,13 +174,8 @@ class VoxelParts {
         const Index3 v = place_of(number);
         for (int side = 0; side < 6; ++side) {
             if (field_.label(neighbor(v, side)) == points.region) continue;
-            Vec3 in = field_.centre(v), out = field_.centre(neighbor(v, side));
-            constexpr int num_halvings = 30;  // to the last digits of a voxel
-            for (int i = 0; i < num_halvings; ++i) {
-                const Vec3 middle = 0.5 * (in + out);
-                (field_(middle) == points.region ? in : out) = middle;
-            }
-            points.points.push_back(out);
+            points.points.push_back(
+                field_.boundary_between(field_.centre(v), field_.centre(neighbor(v, side))));
         }
     }
 
@@ -177,6 +200,9 @@ BodyShape shape_of(io::LabelImage image) {
     constexpr double share_of_voxel = 0.25;  // what interpolation leaves of the steps
     body.roughness = share_of_voxel * field->image().spacing.maxCoeff();
     body.region_at = [field](const Vec3& x) { return (*field)(x); };
+    body.visit_surface = [field](double, const SurfaceVisitor& visit) {
+        visit_faces(*field, visit);
+    };
     return body;
 }
 

@@ -1,14 +1,17 @@
 // incise-tetmesh: makes tetrahedra of closed surfaces and of label images. It is a separate program
 // because CGAL's Mesh_3 is under the GPL.
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <new>
 
 #include "incise/app/progress.h"
 #include "incise/base/error.h"
+#include "incise/io/files/number_text.h"
 #include "incise/io/image/label_image.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/io/surface/surface_reader.h"
@@ -16,6 +19,7 @@
 #include "tetmesh/label_shape.h"
 #include "tetmesh/mesh_report.h"
 #include "tetmesh/options.h"
+#include "tetmesh/shape_check.h"
 #include "tetmesh/surface_shape.h"
 #include "tetmesh/tetrahedral_mesher.h"
 
@@ -38,14 +42,37 @@ void print_warnings(const std::string& name, const std::vector<std::string>& war
     for (const auto& warning : warnings) print_lines("warning: " + name + ": ", warning);
 }
 
+/// Throws InputError for coordinates that are too large, too small or too far away for a mesh.
+void refuse_coordinates(const Box& box, const Options& options) {
+    // Products of a few such lengths are still numbers, here and in what reads the mesh.
+    constexpr double smallest = 1e-50, largest = 1e50;
+    const double extent = box.sizes().maxCoeff();
+    if (!(extent >= smallest && extent <= largest))
+        throw InputError(
+            "the longest side of the body is " + io::shown(extent) +
+            (options.scale == 1.0 ? "" : " after --scale " + io::shown(options.scale)) +
+            "; it must be from 1e-50 to 1e50: give another --scale");
+    // Of an edge, to which nodes far from the origin are rounded.
+    constexpr double most_rounding = 1e-6;
+    const double furthest =
+        std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+    if (furthest * std::numeric_limits<double>::epsilon() > most_rounding * options.sizes.surface)
+        throw InputError(
+            "the body has coordinates up to " + io::shown(furthest) +
+            ", too far from the origin for edges of " + io::shown(options.sizes.surface) +
+            ": numbers have 16 digits; move it to the origin, or give a larger --size");
+}
+
 BodyShape read_surfaces(const Options& options) {
     std::vector<NamedSurface> surfaces;
+    Box box;
     for (const auto& path : options.in) {
         auto file = io::read_surface(path);
         print_warnings(path.string(), file.warnings);
-        for (Vec3& x : file.surface.points) x *= options.scale;
+        for (Vec3& x : file.surface.points) box.extend(x *= options.scale);
         surfaces.push_back({path.string(), std::move(file.surface)});
     }
+    refuse_coordinates(box, options);
     return shape_of(surfaces, options.angle);
 }
 
@@ -61,7 +88,9 @@ BodyShape read_image(const Options& options) {
     print_warnings(options.in[0].string(), image.warnings);
     image.spacing *= options.scale;
     image.origin *= options.scale;
-    return shape_of(std::move(image));
+    auto body = shape_of(std::move(image));
+    refuse_coordinates(body.box, options);
+    return body;
 }
 
 BodyShape read_body(const Options& options) {
@@ -82,10 +111,6 @@ topology::MeshData make(const Options& options, std::vector<std::string>& warnin
     const std::string name = options.in[0].string();
     app::Progress progress(1.0, name, false);
     const auto body = read_body(options);
-    const Vec3 extent = body.box.sizes();
-    if (!extent.allFinite() || !(extent.maxCoeff() > 0.0))
-        throw InputError("--scale: " + std::to_string(options.scale) +
-                         " makes coordinates beyond the range of numbers; give one nearer to 1");
     // What is soon done needs no progress.
     const auto begin = std::chrono::steady_clock::now();
     const auto show = [&](double fraction, std::string_view note) {
@@ -97,8 +122,10 @@ topology::MeshData make(const Options& options, std::vector<std::string>& warnin
     // Only a fault of the program could leave errors, and no file is to hold them.
     if (const auto found = topology::check(mesh); !found.errors.empty())
         throw std::logic_error("the mesh that was made is not valid: " + found.errors.front());
-    refuse_remnant(mesh, body.volumes);
+    refuse_other_volume(mesh, body.volumes);
     warnings = losses_of(mesh, body.volumes);
+    for (auto& warning : differences_of_shape(mesh, body, options.sizes.surface))
+        warnings.push_back(std::move(warning));
     return mesh;
 }
 

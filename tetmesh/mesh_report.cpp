@@ -50,17 +50,18 @@ std::string report_of(const std::string& name, const topology::MeshData& mesh) {
     return text;
 }
 
-void refuse_remnant(const topology::MeshData& mesh, const std::map<int, double>& volumes) {
-    constexpr double next_to_nothing = 0.1;
+void refuse_other_volume(const topology::MeshData& mesh, const std::map<int, double>& volumes) {
+    constexpr double most = 0.25;
     double wanted = 0.0, found = 0.0;
     for (const auto& [region, volume] : volumes) wanted += volume;
     for (const auto& [region, volume] : volumes_of(mesh)) found += volume;
-    if (found < next_to_nothing * wanted)
-        throw InputError(
-            formatted("the mesh would have a volume of %.4g, and the input has %.4g: "
-                      "it is thinner than the edges; give a smaller --size or "
-                      "--size-surface",
-                      found, wanted));
+    if (std::abs(found - wanted) <= most * wanted) return;
+    throw InputError(formatted(
+        "the mesh would have a volume of %.4g, and the input has %.4g, a difference of %.0f %%; at "
+        "most 25 %% are allowed. The body, or a gap of it, is thinner than the edges: give a "
+        "smaller "
+        "--size or --size-surface",
+        found, wanted, 100.0 * std::abs(found / wanted - 1.0)));
 }
 
 std::vector<std::string> losses_of(const topology::MeshData& mesh,
@@ -76,10 +77,11 @@ std::vector<std::string> losses_of(const topology::MeshData& mesh,
             continue;
         }
         if (std::abs(found->second - volume) <= much * volume) continue;
-        warnings.push_back("region " + std::to_string(region) +
-                           formatted(" has a volume of %.4g in the mesh and of %.4g in the input; "
-                                     "give a smaller --size or --size-surface",
-                                     found->second, volume));
+        warnings.push_back(
+            "region " + std::to_string(region) +
+            formatted(" has a volume of %.4g in the mesh and of %.4g in the input, "
+                      "more than 10 %% apart; give a smaller --size or --size-surface",
+                      found->second, volume));
     }
     return warnings;
 }

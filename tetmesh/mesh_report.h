@@ -14,11 +14,12 @@ namespace incise::tetmesh {
 /// The least altitude is that which limits the time step of a run.
 std::string report_of(const std::string& name, const topology::MeshData& mesh);
 
-/// Throws InputError if next to nothing of the body is left in the mesh, as happens where it is
-/// thinner than the edges.
-void refuse_remnant(const topology::MeshData& mesh, const std::map<int, double>& volumes);
+/// Throws InputError if the volume of the mesh differs from that of the body by more than a
+/// quarter, as happens where the body is thinner than the edges.
+void refuse_other_volume(const topology::MeshData& mesh, const std::map<int, double>& volumes);
 
-/// Returns warnings about regions that the mesh has lost, or whose volume is not that of the body.
+/// Returns warnings about regions that the mesh has lost, or whose volume differs from that of the
+/// body by more than a tenth.
 std::vector<std::string> losses_of(const topology::MeshData& mesh,
                                    const std::map<int, double>& volumes);
 

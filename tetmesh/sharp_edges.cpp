@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "tetmesh/coordinate_tolerance.h"
+
 namespace incise::tetmesh {
 
 namespace {
@@ -132,14 +134,9 @@ std::set<Edge> divided(const std::set<Edge>& edges, MergedPoints& points, double
 
 std::vector<std::vector<Vec3>> sharp_edges(const std::vector<topology::SurfaceParts>& surfaces,
                                            double angle) {
-    double largest = 0.0;
     std::size_t num_parts = 0;
-    for (const auto& surface : surfaces) {
-        num_parts += surface.parts.size();
-        largest = std::max({largest, surface.box.min().cwiseAbs().maxCoeff(),
-                            surface.box.max().cwiseAbs().maxCoeff()});
-    }
-    const double tolerance = 1e-6 * largest;  // as for crossings: the last digits of a file
+    for (const auto& surface : surfaces) num_parts += surface.parts.size();
+    const double tolerance = coordinate_tolerance(box_of(surfaces));
     MergedPoints points(tolerance);
     std::set<Edge> edges;
     for (const auto& surface : surfaces) collect_edges(surface, angle, points, edges);

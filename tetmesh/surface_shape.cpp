@@ -2,13 +2,17 @@
 #include "tetmesh/surface_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numeric>
 #include <sstream>
 
 #include "incise/base/error.h"
+#include "incise/topology/flat_triangles.h"
 #include "incise/topology/surface_parts.h"
+#include "tetmesh/coordinate_tolerance.h"
 #include "tetmesh/crossing_check.h"
 #include "tetmesh/first_points.h"
 #include "tetmesh/sharp_edges.h"
@@ -30,9 +34,15 @@ struct ClosedPart {
     std::optional<std::size_t> parent;  ///< the innermost part round it
 };
 
-void refuse_crossings(const std::vector<NamedSurface>& named,
-                      const std::vector<SurfaceParts>& surfaces) {
-    const auto crossing = crossing_of(surfaces);
+/// Points that are meant to be on an edge are beside it by their last digits: the surface would
+/// cross itself there.
+topology::SurfaceData without_needles(const topology::SurfaceData& surface) {
+    Box box;
+    for (const Vec3& x : surface.points) box.extend(x);
+    return topology::without_flat_triangles(surface, coordinate_tolerance(box));
+}
+
+void refuse(const std::optional<Crossing>& crossing, const std::vector<NamedSurface>& named) {
     if (!crossing) return;
     std::ostringstream text;
     const Vec3& x = crossing->place;
@@ -117,16 +127,62 @@ PartPoints first_points_of(const ClosedPart& part, const SurfaceParts& surface) 
     return points;
 }
 
+/// The triangles of several surfaces, with their corners.
+std::vector<std::array<Vec3, 3>> triangles_of(const std::vector<SurfaceParts>& surfaces) {
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (const SurfaceParts& parts : surfaces)
+        for (const auto& t : parts.surface.triangles) {
+            auto& corners = triangles.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = parts.surface.points[static_cast<std::size_t>(t[k])];
+        }
+    return triangles;
+}
+
+/// Visits points of triangles that are not further apart than a spacing.
+void visit_triangles(const std::vector<std::array<Vec3, 3>>& triangles, double spacing,
+                     const SurfaceVisitor& visit) {
+    for (const auto& [a, b, c] : triangles) {
+        const Vec3 normal = (b - a).cross(c - a).normalized();
+        const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+        const auto num = static_cast<std::int64_t>(std::ceil(longest / spacing));
+        for (std::int64_t i = 0; i < num; ++i)
+            for (std::int64_t j = 0; i + j < num; ++j) {
+                const auto weight = [&](std::int64_t k) {
+                    return (static_cast<double>(k) + 1.0 / 3.0) / static_cast<double>(num);
+                };
+                visit(a + weight(i) * (b - a) + weight(j) * (c - a), normal);
+            }
+    }
+}
+
+/// The topology of the surface between the body and its outside: that of the parts with a region
+/// on one side only.
+SurfaceTopology outer_topology(const std::vector<ClosedPart>& parts,
+                               const std::vector<SurfaceParts>& surfaces) {
+    SurfaceTopology sum;
+    for (const ClosedPart& part : parts) {
+        const int around = part.parent ? parts[*part.parent].region : 0;
+        if ((part.region == 0) == (around == 0)) continue;
+        std::vector<std::array<std::int64_t, 3>> triangles;
+        for (const std::size_t t : part.triangles)
+            triangles.push_back(surfaces[part.surface].surface.triangles[t]);
+        sum += topology_of(triangles);
+    }
+    return sum;
+}
+
 }  // namespace
 
 BodyShape shape_of(const std::vector<NamedSurface>& named, std::optional<double> angle) {
     std::vector<SurfaceParts> surfaces;
     for (const auto& [name, surface] : named) {
-        surfaces.push_back(topology::parts_of(surface));
+        surfaces.push_back(topology::parts_of(without_needles(surface)));
         if (const auto fault = fault_of(surfaces.back()); !fault.empty())
             throw InputError(name + ": " + fault);
     }
-    refuse_crossings(named, surfaces);
+    const auto contacts = contacts_of(surfaces);
+    refuse(contacts.crossing, named);
 
     auto parts = closed_parts(surfaces);
     std::vector<std::size_t> order(parts.size());
@@ -147,6 +203,11 @@ BodyShape shape_of(const std::vector<NamedSurface>& named, std::optional<double>
     for (const SurfaceParts& surface : surfaces) body.area += surface.area;
     if (angle) body.sharp_edges = sharp_edges(surfaces, *angle);
     body.is_manifold = parts.size() == 1;
+    if (!contacts.do_parts_touch) body.topology = outer_topology(parts, surfaces);
+    body.visit_surface = [triangles = triangles_of(surfaces)](double spacing,
+                                                              const SurfaceVisitor& visit) {
+        visit_triangles(triangles, spacing, visit);
+    };
 
     struct Layer {
         std::shared_ptr<const SurfaceInterior> interior;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <unordered_map>
 #include <vector>
@@ -20,6 +21,8 @@
 #include "incise/base/error.h"
 #include "incise/io/files/memory.h"
 #include "incise/io/files/number_text.h"
+#include "tetmesh/frame.h"
+#include "tetmesh/mesh_smoothing.h"
 #include "tetmesh/seed_points.h"
 #include "tetmesh/size_field.h"
 
@@ -172,20 +175,33 @@ void insert_first_points(const std::vector<PartPoints>& parts, const SizeField& 
     }
 }
 
-topology::MeshData mesh_of(const Complex& complex) {
+struct MeshWithLines {
     topology::MeshData mesh;
+    std::vector<bool> is_on_line;  ///< by node, true on the sharp edges that are kept
+};
+
+MeshWithLines mesh_of(const Complex& complex) {
+    MeshWithLines made;
+    auto& [mesh, is_on_line] = made;
     std::unordered_map<Complex::Vertex_handle, std::int64_t, CGAL::Handle_hash_function> numbers;
     for (auto c = complex.cells_in_complex_begin(); c != complex.cells_in_complex_end(); ++c) {
         std::array<std::int64_t, 4> corners;
         for (int i = 0; i < 4; ++i) {
             const auto [entry, is_new] =
                 numbers.try_emplace(c->vertex(i), static_cast<std::int64_t>(mesh.points.size()));
-            if (is_new) mesh.points.push_back(to_vec3(c->vertex(i)->point()));
+            if (is_new) {
+                mesh.points.push_back(to_vec3(c->vertex(i)->point()));
+                is_on_line.push_back(complex.in_dimension(c->vertex(i)) < 2);
+            }
             corners[static_cast<std::size_t>(i)] = entry->second;
         }
         mesh.add_cell(topology::CellKind::tetrahedron, corners, complex.subdomain_index(c));
     }
-    return mesh;
+    return made;
+}
+
+double facet_distance(const BodyShape& body, const ElementSizes& sizes) {
+    return std::max(distance_of_edge * sizes.surface, body.roughness);
 }
 
 /// The refinement of a mesh, from the first points on.
@@ -202,12 +218,12 @@ struct Refinement {
         Complex complex;
         NodeCount count{complex, observer, expected};
         const RadiusField radius{&field, &count, radius_of_edge};
-        const Criteria criteria(
-            parameters::edge_size = RadiusField{&field, &count, 1.0},
-            parameters::facet_angle = least_facet_angle, parameters::facet_size = radius,
-            parameters::facet_distance = std::max(distance_of_edge * sizes.surface, body.roughness),
-            parameters::cell_radius_edge_ratio = largest_radius_ratio,
-            parameters::cell_size = radius);
+        const Criteria criteria(parameters::edge_size = RadiusField{&field, &count, 1.0},
+                                parameters::facet_angle = least_facet_angle,
+                                parameters::facet_size = radius,
+                                parameters::facet_distance = facet_distance(body, sizes),
+                                parameters::cell_radius_edge_ratio = largest_radius_ratio,
+                                parameters::cell_size = radius);
 
         auto error = CGAL::CGAL_MESH_3_NO_ERROR;
         parameters::internal::Mesh_3_options options;
@@ -246,12 +262,15 @@ bool lacks_region(const Complex& complex, const BodyShape& body, const ElementSi
 
 }  // namespace
 
-topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& sizes,
+topology::MeshData tetrahedra_of(const BodyShape& given, const ElementSizes& given_sizes,
                                  const Observer& observer) {
     // A body without a first triangle is refused below, in the words of this program.
     CGAL::set_warning_handler([](const char*, const char*, const char*, int, const char*) {});
     CGAL::get_default_random() = CGAL::Random(seed);
     CGAL::Random random(seed);
+    const Frame frame(given.box);
+    const BodyShape body = frame.local(given);
+    const ElementSizes sizes{frame.local(given_sizes.inside), frame.local(given_sizes.surface)};
     const SizeField field(body, sizes.inside, sizes.surface);
     const double expected = field.expected_nodes(body);
     refuse_too_many(expected);
@@ -261,9 +280,9 @@ topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& size
     auto complex = refinement.from(body.first_points);
     if (lacks_region(complex, body, sizes)) complex = refinement.from(with_seeds(body, field));
     if (complex.number_of_cells_in_complex() == 0)
-        throw InputError("no tetrahedron comes out of --size " + io::shown(sizes.inside) +
+        throw InputError("no tetrahedron comes out of --size " + io::shown(given_sizes.inside) +
                          ": the longest side of the body is " +
-                         io::shown(body.box.sizes().maxCoeff()) + "; give a smaller --size");
+                         io::shown(given.box.sizes().maxCoeff()) + "; give a smaller --size");
 
     observer(refined, "lifting flat tetrahedra");
     CGAL::perturb_mesh_3(complex, domain, parameters::time_limit = no_time_limit,
@@ -271,8 +290,12 @@ topology::MeshData tetrahedra_of(const BodyShape& body, const ElementSizes& size
     observer(perturbed, "removing flat tetrahedra");
     CGAL::exude_mesh_3(complex, parameters::time_limit = no_time_limit,
                        parameters::sliver_bound = angle_aim);
+    auto [mesh, is_on_line] = mesh_of(complex);
+    raise_altitudes(mesh, is_on_line, body, field, angle_aim * std::numbers::pi / 180.0,
+                    facet_distance(body, sizes));
     observer(1.0, "");
-    return mesh_of(complex);
+    for (Vec3& x : mesh.points) x = frame.given(x);
+    return mesh;
 }
 
 }  // namespace incise::tetmesh

@@ -61,7 +61,7 @@ TEST_F(SurfaceRefusal, EndsWithSizesThatCannotBe) {
     EXPECT_THAT(refusal("box.stl out.vtu --size 0.1 --scale 1e-300"), HasSubstr("incise: "));
     write_surface("plate.stl", box_surface(Box(Vec3(0, 0, 0), Vec3(1, 1, 0.01))));
     EXPECT_THAT(refusal("plate.stl out.vtu --size 0.1"),
-                HasSubstr("it is thinner than the edges; give a smaller --size"));
+                HasSubstr("is thinner than the edges: give a smaller --size"));
     write_surface("speck.stl", icosphere({0, 0, 0}, 1e-3, 0));
     const auto outcome = run("mesh speck.stl out.vtu --size 100");
     EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.err;
