@@ -273,7 +273,9 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
     const std::span<const Vec3> positions = model.mesh_positions();
     const Vec3 mean = mean_move(positions);
     const double square = std::pow(moved_skin * skin_ * size_, 2);
-    std::vector<std::uint8_t> is_node(positions.size(), 0), is_triangle(triangles_.size(), 0);
+    auto& [is_node, is_triangle, is_near, known, known_nodes] = part_;
+    is_node.assign(positions.size(), 0);
+    is_triangle.assign(triangles_.size(), 0);
     for (std::size_t t = 0; t < triangles_.size(); ++t)
         for (const NodeId n : triangles_[t])
             if ((positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm() >
@@ -287,7 +289,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
 
     tree_.fit(positions);
     const double distance = (node_reach + skin_of_part * skin_) * size_;
-    std::vector<std::uint8_t> is_near = is_node;
+    is_near = is_node;
     constexpr std::size_t group_size = 8;
     std::size_t in_group = 0;
     Box group;
@@ -307,8 +309,8 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
         if (++in_group == group_size) note_near_group();
     }
     if (in_group > 0) note_near_group();
-    const std::vector<NearNode> known = std::move(near_);
-    const std::vector<NodeId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
+    std::swap(known, near_);
+    known_nodes.assign(pairs_.nodes().begin(), pairs_.nodes().end());
     pairs_.find_moved(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
                       distance, {is_triangle, is_node, is_near});
     near_.assign(pairs_.nodes().size(), {});

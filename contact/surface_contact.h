@@ -125,7 +125,12 @@ class SurfaceContact {
     double skin_ = 0.5;                       // see widest_skin
     double room_ = -1.0;  // how far the surface may move before pairs_ is out of date, m
     double max_penetration_ = 0.0;
-    std::vector<Touch> touches_;                // scratch, by node of pairs_
+    std::vector<Touch> touches_;  // scratch, by node of pairs_
+    struct {
+        std::vector<std::uint8_t> is_node, is_triangle, is_near;
+        std::vector<NearNode> known;
+        std::vector<NodeId> known_nodes;
+    } part_;                                    // scratch of find_pairs_of_moved()
     std::size_t first_point_ = 0;               // in the solver
     std::vector<std::size_t> nodes_of_points_;  // by point from there on, its node in pairs_
 };

@@ -146,16 +146,17 @@ void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
             if (moved.is_triangle[t] == 0) found_.emplace_back(nodes_[i], t);
     }
     const std::size_t num_kept = found_.size();
-    std::vector<NodeId> moved_nodes, others;
+    moved_nodes_.clear();
+    near_moved_.clear();
     for (const NodeId n : surface_nodes_) {
         if (moved.is_node[n.index()] != 0)
-            moved_nodes.push_back(n);
+            moved_nodes_.push_back(n);
         else if (moved.is_near[n.index()] != 0)
-            others.push_back(n);
+            near_moved_.push_back(n);
     }
     set_node_normals(tree.triangles(), positions, normals_);
-    append_pairs(tree, body, positions, reach, moved_nodes, {});
-    append_pairs(tree, body, positions, reach, others, moved.is_triangle);
+    append_pairs(tree, body, positions, reach, moved_nodes_, {});
+    append_pairs(tree, body, positions, reach, near_moved_, moved.is_triangle);
     take_found(num_kept);
 }
 

@@ -103,6 +103,7 @@ class TouchingPairs {
     std::vector<ElementId> star_;               // scratch
     std::vector<std::uint32_t> near_group_, near_node_;    // scratch
     std::vector<std::pair<NodeId, std::uint32_t>> found_;  // scratch
+    std::vector<NodeId> moved_nodes_, near_moved_;         // scratch of find_moved()
     std::size_t num_tested_ = 0;
     std::vector<NodeId> nodes_;
     std::vector<std::size_t> begin_{0};
