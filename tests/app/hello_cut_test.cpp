@@ -1,5 +1,7 @@
 // What an example of the library prints is what the program says of the same scenario.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <iomanip>
+
 #include "run_process.h"
 
 namespace incise::test {
@@ -18,6 +20,7 @@ TEST_F(Run, OfHelloCutHasTheExamplesNumbers) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const json summary = json::parse(read_text(folder_ / "scene.out/summary.json"));
     std::ostringstream expected;
+    expected << std::setprecision(5);
     for (const auto& [label, quantity] :
          {std::pair("elements", "elements"), std::pair("components", "components"),
           std::pair("cut area, m2", "cut_area"), std::pair("kinetic energy, J", "kinetic_energy")})
