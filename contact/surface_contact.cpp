@@ -19,7 +19,8 @@ namespace {
 // Lengths are parts of the mean length of an element.
 constexpr double node_reach =
     0.15;  // at which a node is a point of contact: farther than it moves in a step
-/// By how much more than node_reach pairs are found: `widest_skin` or a half or a quarter of it.
+constexpr double edge_reach = 0.05;  // likewise, two edges
+/// By how much more than these pairs are found: `widest_skin` or a half or a quarter of it.
 constexpr double widest_skin = 0.5, narrowest_skin = 0.125;
 /// With more pairs than that for each node, the skin becomes narrower; with less, wider.
 constexpr double many_pairs = 32.0, few_pairs = 4.0;
@@ -29,7 +30,8 @@ constexpr double moved_skin = 0.25, most_moved = 0.25;
 /// Pairs of a part of the surface are found within so much of the skin: the rest may already have
 /// moved by half of it since its pairs were found.
 constexpr double skin_of_part = 1.5;
-/// A node that is deeper has no side any more. It is a part of the local length.
+/// Of a node that is deeper, it is asked in each step if it is still in the tissue. It is a part of
+/// the local length.
 constexpr double deepest = 0.4;
 /// How far the projection of a node may be outside a triangle, as a weight: at the rim of a surface
 /// no other triangle goes on there. A node that is deeper than `deepest_at_rim` is beside it.
@@ -75,18 +77,23 @@ void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solv
     nodes_of_points_.clear();
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0 && !is_with_twin(i)) add_point(i, model, solver);
+    edges_.add_points(
+        model, {surface(), lengths_, edge_reach * size_, rounding * size_, settings_.friction},
+        solver);
+    max_penetration_ = std::max(max_penetration_, edges_.max_penetration());
 }
 
 void SurfaceContact::take_impulses(const ContactSolver& solver) {
     for (NearNode& near : near_) near.impulse.setZero();
     for (std::size_t k = 0; k < nodes_of_points_.size(); ++k)
         near_[nodes_of_points_[k]].impulse = solver.impulse(first_point_ + k);
+    edges_.take_impulses(solver);
 }
 
 /// True if a node touches another one, which touches it as well and has the lower id: then one
 /// point of contact is enough. So it is with the two nodes that a cut has made of one.
 bool SurfaceContact::is_with_twin(std::size_t i) const {
-    constexpr double nearly_one = 0.9;
+    constexpr double nearly_one = 0.9, least_cosine = 0.9;
     const auto node_under = [&](std::size_t k) {
         const Triangle& triangle = triangles_[static_cast<std::size_t>(near_[k].touched)];
         for (int corner = 0; corner < 3; ++corner)
@@ -96,9 +103,11 @@ bool SurfaceContact::is_with_twin(std::size_t i) const {
     };
     const NodeId n = pairs_.nodes()[i], other = node_under(i);
     if (!other.is_valid() || n < other) return false;
-    const std::int32_t k = near_of_node_[other.index()];
-    return k >= 0 && near_[static_cast<std::size_t>(k)].touched >= 0 &&
-           node_under(static_cast<std::size_t>(k)) == n;
+    const std::int32_t of_other = near_of_node_[other.index()];
+    if (of_other < 0) return false;
+    const auto k = static_cast<std::size_t>(of_other);
+    return near_[k].touched >= 0 && node_under(k) == n &&
+           touches_[i].normal.dot(touches_[k].normal) < -least_cosine;
 }
 
 /// Notes where the nodes are in the pairs.
@@ -131,7 +140,8 @@ void SurfaceContact::list_triangles(const physics::Model& model,
     }
     list_lengths(model);
     tree_.set_triangles(triangles_, model.mesh().rest_positions());
-    pairs_.set_surface(tree_, {model.mesh(), model.fragments(), faces_, takes_part_});
+    pairs_.set_surface(tree_, body(model));
+    edges_.set_surface(tree_, body(model));
 }
 
 /// Lists the local lengths: at a node, the least mean length of the edges of a fragment with a face
@@ -188,15 +198,23 @@ void SurfaceContact::know_surface(const physics::Model& model,
     const Box near_edit(changed.min() - Vec3::Constant(2.0 * distance),
                         changed.max() + Vec3::Constant(2.0 * distance));
     const Vec3 mean = mean_move(positions.first(num_known));
+    std::vector<std::uint8_t> is_chosen(positions.size(), 0);
     const auto is_near_edit = [&](NodeId n) {
         if (n.index() < num_known && !near_edit.contains(positions[n.index()])) return false;
         positions_of_pairs_[n.index()] = positions[n.index()] - mean;
+        is_chosen[n.index()] = 1;
         return true;
     };
+    std::vector<NodeAndTriangle> touching;
+    for (const auto& [n, t] : touching_pairs())
+        if (number_of_old[t] >= 0)
+            touching.emplace_back(n, static_cast<std::uint32_t>(number_of_old[t]));
     const std::vector<NearNode> known = std::move(near_);
     const std::vector<NodeId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
-    pairs_.find_again(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
-                      distance, number_of_old, is_near_edit);
+    pairs_.find_again(tree_, body(model), positions, distance, number_of_old, is_near_edit,
+                      touching);
+    edges_.find_again(tree_, body(model), positions, distance - (node_reach - edge_reach) * size_,
+                      is_chosen);
     // What nodes touch stays what it is if the triangle is still there.
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -224,6 +242,7 @@ void SurfaceContact::restore(ArchiveReader& ar, const physics::Model& model,
             positions_of_pairs_.size() == model.mesh().node_capacity() && std::isfinite(room_) &&
             skin_ >= narrowest_skin && skin_ <= widest_skin);
     list_triangles(model, surface);
+    edges_.restore(ar, model.mesh().node_capacity());
     require(near_.size() == pairs_.nodes().size() &&
             pairs_.fits(model.mesh().node_capacity(), triangles_.size()));
     number_nodes(model.mesh().node_capacity());
@@ -309,10 +328,13 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
         if (++in_group == group_size) note_near_group();
     }
     if (in_group > 0) note_near_group();
+    const std::vector<NodeAndTriangle> touching = touching_pairs();
     std::swap(known, near_);
     known_nodes.assign(pairs_.nodes().begin(), pairs_.nodes().end());
-    pairs_.find_moved(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
-                      distance, {is_triangle, is_node, is_near});
+    pairs_.find_moved(tree_, body(model), positions, distance, {is_triangle, is_node, is_near},
+                      touching);
+    edges_.find_again(tree_, body(model), positions, distance - (node_reach - edge_reach) * size_,
+                      is_near);
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i) {
         const NodeId n = pairs_.nodes()[i];
@@ -330,11 +352,11 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
     std::map<NodeId, NearNode> known;
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
+    const std::vector<NodeAndTriangle> touching = touching_pairs();
     const std::span<const Vec3> positions = model.mesh_positions();
     tree_.fit(positions);
     const auto find = [&] {
-        pairs_.find(tree_, {model.mesh(), model.fragments(), faces_, takes_part_}, positions,
-                    (node_reach + skin_) * size_);
+        pairs_.find(tree_, body(model), positions, (node_reach + skin_) * size_, touching);
     };
     if (pairs_per_node() < few_pairs) skin_ = std::min(widest_skin, 2.0 * skin_);
     if (has_many_pairs()) skin_ *= 0.5;
@@ -343,12 +365,22 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
         skin_ *= 0.5;
         find();
     }
+    edges_.find(tree_, body(model), positions, (edge_reach + skin_) * size_);
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (const auto it = known.find(pairs_.nodes()[i]); it != known.end()) near_[i] = it->second;
     positions_of_pairs_.assign(positions.begin(), positions.end());
     room_ = skin_ * size_;
     number_nodes(positions.size());
+}
+
+/// Returns the pairs that touch, in the order of their nodes.
+std::vector<NodeAndTriangle> SurfaceContact::touching_pairs() const {
+    std::vector<NodeAndTriangle> touching;
+    for (std::size_t i = 0; i < near_.size(); ++i)
+        if (near_[i].touched >= 0)
+            touching.emplace_back(pairs_.nodes()[i], static_cast<std::uint32_t>(near_[i].touched));
+    return touching;
 }
 
 double SurfaceContact::pairs_per_node() const {
@@ -386,14 +418,13 @@ double SurfaceContact::length_at(NodeId n, std::size_t t) const {
     return length;
 }
 
-/// True if a node is above a triangle, or so far outside it, as a weight, and near enough.
+/// True if a node is above or below a triangle, or so far outside it, as a weight, and near enough.
 bool SurfaceContact::is_over(NodeId n, std::size_t t, const Touch& at, double outside) const {
     // Of a node at a corner, rounding decides over which triangle it is.
     constexpr double tolerance = 1e-6;
     const double least_weight = at.weights.minCoeff();
-    const double depth = least_weight < -tolerance ? deepest_at_rim : deepest;
     return least_weight >= -outside - tolerance && at.gap < node_reach * size_ &&
-           at.gap > -depth * length_at(n, t);
+           (least_weight >= -tolerance || at.gap > -deepest_at_rim * length_at(n, t));
 }
 
 /// Finds the triangle that a node touches, and where: the one it touched, as long as it is over it,
@@ -407,8 +438,8 @@ void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     if (before >= 0) {
         const auto t = static_cast<std::size_t>(before);
         touches_[i] = touch(n, t, positions);
-        if (is_over(n, t, touches_[i], 0.0)) return;
         gap_before = touches_[i].gap;
+        if (gap_before > -deepest * length_at(n, t) && is_over(n, t, touches_[i], 0.0)) return;
     }
     double least = std::numeric_limits<double>::infinity();
     std::uint32_t nearest = 0;
@@ -423,14 +454,18 @@ void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     const Touch at = touches_[i] = touch(n, nearest, positions);
     near.touched = is_over(n, nearest, at, rim) ? static_cast<std::int32_t>(nearest) : -1;
     near.room = std::sqrt(least) - node_reach * size_;
-    if (near.touched < 0 || near.touched == before) return;
+    if (near.touched < 0) return;
     // An overlap that is there at once may be none: the node is beside the triangle, or behind a
     // thin part of the body. One that it brings along from the triangle before is one.
-    const double least_overlap =
-        gap_before < -rounding * size_ ? deep_start * length_at(n, nearest) : rounding * size_;
-    if (at.gap < -least_overlap &&
-        !is_way_inside(model.mesh(), positions, faces_[nearest], triangles_[nearest], at.weights,
-                       positions[n.index()]))
+    const double length = length_at(n, nearest);
+    const double least_overlap = near.touched == before           ? deepest * length
+                                 : gap_before < -rounding * size_ ? deep_start * length
+                                                                  : rounding * size_;
+    // Round a sharp corner of the body itself a way inside is no overlap: none begins so deep.
+    const bool is_round_corner = before < 0 && at.gap <= -deepest * length;
+    if (is_round_corner || (at.gap < -least_overlap &&
+                            !is_way_inside(model.mesh(), positions, faces_[nearest],
+                                           triangles_[nearest], at.weights, positions[n.index()])))
         near.touched = -1;
     else if (before < 0)
         near.slack = std::min(0.0, at.gap);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "incise/contact/contact_solver.h"
+#include "incise/contact/edge_contact.h"
 #include "incise/contact/surface_tree.h"
 #include "incise/contact/touching_pairs.h"
 #include "incise/physics/body/model.h"
@@ -36,7 +37,7 @@ void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurf
 ///
 /// Nodes of the surface meet triangles. A node touches the triangle that is nearest to it of those
 /// that face it. Of two surfaces that touch, the nodes of both act; of two nodes that are above
-/// each other, one. Contact of two edges is left out.
+/// each other, one. Sharp edges meet edges: see EdgeContact.
 class SurfaceContact {
   public:
     /// @param size  mean length of an element at rest, m: distances are parts of it
@@ -63,7 +64,10 @@ class SurfaceContact {
     const ContactSettings& settings() const { return settings_; }
     double size() const { return size_; }
 
-    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    void save(ArchiveWriter& ar) const {
+        list(ar, *this);
+        edges_.save(ar);
+    }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, const physics::Model& model,
                  const topology::BoundarySurface& surface);
@@ -95,11 +99,15 @@ class SurfaceContact {
         ar(self.settings_, self.size_, self.pairs_, self.near_, self.positions_of_pairs_,
            self.skin_, self.room_, self.max_penetration_);
     }
+    ContactBody body(const physics::Model& model) const {
+        return {model.mesh(), model.fragments(), faces_, takes_part_};
+    }
     void list_triangles(const physics::Model& model, const topology::BoundarySurface& surface);
     void list_lengths(const physics::Model& model);
     Vec3 mean_move(std::span<const Vec3> positions) const;
     bool find_pairs_of_moved(const physics::Model& model);
     void find_pairs(const physics::Model& model);
+    std::vector<NodeAndTriangle> touching_pairs() const;
     double pairs_per_node() const;
     bool has_many_pairs() const;
     bool has_moved_far(std::span<const Vec3> positions);
@@ -119,6 +127,7 @@ class SurfaceContact {
     std::vector<double> lengths_;           // of elements at nodes of the surface, by id, m
     SurfaceTree tree_;
     TouchingPairs pairs_;
+    EdgeContact edges_;
     std::vector<std::int32_t> near_of_node_;  // by id, index of the node in pairs_, or -1
     std::vector<NearNode> near_;              // by node of pairs_
     std::vector<Vec3> positions_of_pairs_;    // at which pairs_ were found, by id

@@ -104,17 +104,19 @@ bool TouchingPairs::are_sides_of_cut(const SurfaceTree& tree, const ContactBody&
 }
 
 void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
-                         std::span<const Vec3> positions, double reach) {
+                         std::span<const Vec3> positions, double reach,
+                         std::span<const NodeAndTriangle> touching) {
     found_.clear();
     set_node_normals(tree.triangles(), positions, normals_);
     append_pairs(tree, body, positions, reach, surface_nodes_, {});
-    take_found(0);
+    take_found(0, touching);
 }
 
 void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
                                std::span<const Vec3> positions, double reach,
                                std::span<const std::int32_t> number_of_old,
-                               const std::function<bool(NodeId)>& is_chosen) {
+                               const std::function<bool(NodeId)>& is_chosen,
+                               std::span<const NodeAndTriangle> touching) {
     found_.clear();
     std::vector<NodeId> chosen;
     for (const NodeId n : surface_nodes_) {
@@ -133,12 +135,12 @@ void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
     }
     set_node_normals(tree.triangles(), positions, normals_);
     append_pairs(tree, body, positions, reach, chosen, {});
-    take_found(0);
+    take_found(0, touching);
 }
 
 void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
                                std::span<const Vec3> positions, double reach,
-                               const MovedPart& moved) {
+                               const MovedPart& moved, std::span<const NodeAndTriangle> touching) {
     found_.clear();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         if (moved.is_node[nodes_[i].index()] != 0) continue;
@@ -157,7 +159,7 @@ void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
     set_node_normals(tree.triangles(), positions, normals_);
     append_pairs(tree, body, positions, reach, moved_nodes_, {});
     append_pairs(tree, body, positions, reach, near_moved_, moved.is_triangle);
-    take_found(num_kept);
+    take_found(num_kept, touching);
 }
 
 // Nodes that follow each other in the order of the tree are near each other: they look for
@@ -216,10 +218,12 @@ void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& bod
     }
 }
 
-void TouchingPairs::take_found(std::size_t num_sorted) {
+void TouchingPairs::take_found(std::size_t num_sorted, std::span<const NodeAndTriangle> touching) {
+    found_.insert(found_.end(), touching.begin(), touching.end());
     const auto middle = found_.begin() + static_cast<std::ptrdiff_t>(num_sorted);
     std::sort(middle, found_.end());
     std::inplace_merge(found_.begin(), middle, found_.end());
+    found_.erase(std::ranges::unique(found_).begin(), found_.end());
     nodes_.clear();
     begin_.assign(1, 0);
     triangles_.clear();

@@ -20,6 +20,9 @@ namespace incise::contact {
 /// Returns the squared distance of a point x to a triangle, m2.
 double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// A node, and the number of a triangle of the surface.
+using NodeAndTriangle = std::pair<NodeId, std::uint32_t>;
+
 /// The body that the surface belongs to.
 struct ContactBody {
     const topology::Mesh& mesh;
@@ -38,10 +41,11 @@ class TouchingPairs {
     /// Takes note of a new surface.
     void set_surface(const SurfaceTree& tree, const ContactBody& body);
     /// Finds the pairs anew. Cost: O(n) and that of the pairs found.
-    /// @param tree   fitted to the positions
-    /// @param reach  distance of a node to a triangle that counts as near, m
+    /// @param tree      fitted to the positions
+    /// @param reach     distance of a node to a triangle that counts as near, m
+    /// @param touching  pairs that touch: they count as near, however deep they overlap
     void find(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
-              double reach);
+              double reach, std::span<const NodeAndTriangle> touching);
 
     /// Finds the pairs of some nodes anew, and keeps those of the others.
     /// @param number_of_old  by triangle of the last surface, its number in the tree; -1 if it is
@@ -51,7 +55,8 @@ class TouchingPairs {
     void find_again(const SurfaceTree& tree, const ContactBody& body,
                     std::span<const Vec3> positions, double reach,
                     std::span<const std::int32_t> number_of_old,
-                    const std::function<bool(NodeId)>& is_chosen);
+                    const std::function<bool(NodeId)>& is_chosen,
+                    std::span<const NodeAndTriangle> touching);
 
     /// The part of a surface that has moved by more than the rest.
     struct MovedPart {
@@ -62,7 +67,8 @@ class TouchingPairs {
     /// Finds anew the pairs with a part of the surface, and keeps the others. Cost: O(n) and that
     /// of the pairs with the part.
     void find_moved(const SurfaceTree& tree, const ContactBody& body,
-                    std::span<const Vec3> positions, double reach, const MovedPart& moved);
+                    std::span<const Vec3> positions, double reach, const MovedPart& moved,
+                    std::span<const NodeAndTriangle> touching);
 
     /// Returns the nodes with pairs, in ascending order.
     std::span<const NodeId> nodes() const { return nodes_; }
@@ -85,7 +91,7 @@ class TouchingPairs {
                       std::span<const Vec3> positions, double reach, std::span<const NodeId> nodes,
                       std::span<const std::uint8_t> is_triangle);
     /// @param num_sorted  pairs that are in order already, at the beginning
-    void take_found(std::size_t num_sorted);
+    void take_found(std::size_t num_sorted, std::span<const NodeAndTriangle> touching);
     /// Returns the corners of all fragments at a node of the surface, in ascending order. They are
     /// listed when they are asked for, and known until the surface is another one.
     std::span<const NodeId> around(const ContactBody& body, NodeId n);
@@ -101,9 +107,9 @@ class TouchingPairs {
     std::vector<std::uint8_t> is_around_;       // scratch, by node of the fragments
     std::vector<NodeId> corners_;               // scratch
     std::vector<ElementId> star_;               // scratch
-    std::vector<std::uint32_t> near_group_, near_node_;    // scratch
-    std::vector<std::pair<NodeId, std::uint32_t>> found_;  // scratch
-    std::vector<NodeId> moved_nodes_, near_moved_;         // scratch of find_moved()
+    std::vector<std::uint32_t> near_group_, near_node_;  // scratch
+    std::vector<NodeAndTriangle> found_;                 // scratch
+    std::vector<NodeId> moved_nodes_, near_moved_;       // scratch of find_moved()
     std::size_t num_tested_ = 0;
     std::vector<NodeId> nodes_;
     std::vector<std::size_t> begin_{0};

@@ -4,13 +4,20 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace incise::contact {
 
 namespace {
 
-/// A point on the surface is not within it, though rounding may say so. It is a part of the way.
+/// By how much a way may leave an element before its end, for which rounding may be the cause. It
+/// is a part of the way.
 constexpr double margin = 1e-6;
+/// A point that is so near to the surface is on it, and not within the body. Overlaps may begin
+/// with little more. It is a part of the way.
+constexpr double on_surface = 1e-10;
+/// Among elements that are turned inside out a way may go round in circles.
+constexpr std::size_t most_elements = 100;
 
 /// Returns through which face of an element a way leaves it: the first plane of a face that it
 /// crosses outwards, as if the element were convex. Nothing if the way ends before.
@@ -36,6 +43,31 @@ std::optional<FaceId> exit_of(const topology::Mesh& mesh, std::span<const Vec3> 
     return exit;
 }
 
+/// True if a point of an element is on the surface. From the element on, those are looked at that
+/// have it in common: it may be on an edge or at a corner of the surface, at which the element has
+/// no face of the surface.
+/// @param distance  at which it counts as on a face, m
+bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, ElementId element,
+                   const Vec3& point, double distance) {
+    std::vector<ElementId> elements{element};
+    for (std::size_t i = 0; i < elements.size() && i < most_elements; ++i)
+        for (int f = 0; f < mesh.num_faces(elements[i]); ++f) {
+            const FaceId face{elements[i], f};
+            const auto at = [&](int k) { return positions[mesh.face_corner(face, k).index()]; };
+            bool is_on_face = false;
+            for (int k = 2; k < mesh.face_size(face) && !is_on_face; ++k) {
+                const Vec3 outward = (at(k - 1) - at(0)).cross(at(k) - at(0));
+                is_on_face = (point - at(0)).dot(outward) >= -distance * outward.norm();
+            }
+            if (!is_on_face) continue;
+            const FaceId neighbor = mesh.neighbor(face);
+            if (!neighbor.is_valid()) return true;
+            if (std::ranges::find(elements, neighbor.element) == elements.end())
+                elements.push_back(neighbor.element);
+        }
+    return false;
+}
+
 }  // namespace
 
 bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, FaceId face,
@@ -45,18 +77,12 @@ bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, 
     Vec3 from = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
         from += inner[k] * positions[triangle[static_cast<std::size_t>(k)].index()];
-    // Among elements that are turned inside out a way may go round in circles.
-    constexpr int most_elements = 100;
     FaceId entered = face;
-    for (int i = 0; i < most_elements; ++i) {
+    for (std::size_t i = 0; i < most_elements; ++i) {
         const auto exit = exit_of(mesh, positions, entered, from, to - from);
-        if (!exit) {
-            // Beyond a corner of the surface the way may go on inside.
-            const double square = margin * margin * (to - from).squaredNorm();
-            return std::ranges::none_of(mesh.corners(entered.element), [&](NodeId n) {
-                return (positions[n.index()] - to).squaredNorm() <= square;
-            });
-        }
+        if (!exit)
+            return !is_on_surface(mesh, positions, entered.element, to,
+                                  on_surface * (to - from).norm());
         entered = mesh.neighbor(*exit);
         if (!entered.is_valid()) return false;
     }

@@ -64,7 +64,7 @@ TEST(TouchingPairs, AreThoseThatASearchThroughAllFinds) {
         TouchingPairs pairs;
         pairs.set_surface(tree, body);
         constexpr double reach = 0.1;
-        pairs.find(tree, body, x, reach);
+        pairs.find(tree, body, x, reach, {});
 
         std::set<Pair> found, expected;
         for (std::size_t i = 0; i < pairs.nodes().size(); ++i)
@@ -105,7 +105,7 @@ TEST(TouchingPairs, OfAWholeConvexBodyAreNone) {
         tree.fit(mesh.rest_positions());
         TouchingPairs pairs;
         pairs.set_surface(tree, body);
-        pairs.find(tree, body, mesh.rest_positions(), 0.3);
+        pairs.find(tree, body, mesh.rest_positions(), 0.3, {});
         EXPECT_TRUE(pairs.nodes().empty());
     }
 }

@@ -118,6 +118,39 @@ TEST(WayInside, MayBeginAtACorner) {
     }
 }
 
+// Whether it is in a face, on an edge or at a corner, and also along the side where the way begins.
+TEST(WayInside, NeverEndsOnTheSurface) {
+    for (const test::MeshFamily& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        const Mesh mesh = Mesh::build(family.data).mesh;
+        const topology::BoundarySurface surface(mesh);
+        test::Random random(1);
+        const Eigen::Matrix3d turn =
+            Eigen::AngleAxisd(random.uniform(0.0, 3.0), random.vector(1.0).normalized())
+                .toRotationMatrix();
+        std::vector<Vec3> positions;
+        for (const Vec3& x : mesh.rest_positions()) positions.push_back(turn * x);
+        const auto at = [&](std::size_t t, const Vec3& weights) {
+            Vec3 x = Vec3::Zero();
+            for (int k = 0; k < 3; ++k)
+                x += weights[k] *
+                     positions[surface.triangles()[t][static_cast<std::size_t>(k)].index()];
+            return x;
+        };
+        for (std::uint64_t i = 0; i < test::num_cases(200); ++i) {
+            const std::size_t from = random.below(surface.triangles().size()),
+                              to = random.below(surface.triangles().size());
+            const Vec3 weights = i % 3 == 0   ? Vec3(0.2, 0.3, 0.5)
+                                 : i % 3 == 1 ? Vec3(0.4, 0.6, 0.0)
+                                              : Vec3(0.0, 1.0, 0.0);
+            EXPECT_FALSE(is_way_inside(mesh, positions, surface.faces()[from],
+                                       surface.triangles()[from], Vec3(0.5, 0.5, 0.0),
+                                       at(to, weights)))
+                << "from triangle " << from << " to " << to << ", " << weights.transpose();
+        }
+    }
+}
+
 TEST(WayInside, GoesThroughHexahedra) {
     const Mesh mesh = Mesh::build(topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
                                                      Vec3::Ones(), {4, 4, 4}))

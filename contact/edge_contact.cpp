@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/contact/edge_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "incise/base/error.h"
+#include "incise/contact/rigid_touch.h"
+#include "incise/contact/surface_contact.h"
+#include "incise/contact/way_inside.h"
+
+namespace incise::contact {
+
+namespace {
+
+/// The normals of the two triangles at a sharp edge differ by more than 25 degrees. Between flatter
+/// ones, nodes that meet triangles leave less overlap than a tenth of an element.
+constexpr double cosine_of_sharp = 0.9;
+/// Edges are a point of contact if they may meet in so many steps like the last one.
+constexpr double most_steps = 4.0;
+/// Edges that are nearly parallel, by the sine between them, or that cross so near to an end, as a
+/// part of an edge, are no point of contact: nodes there meet triangles.
+struct Limits {
+    double least_sine, near_end;
+};
+constexpr Limits to_begin{0.01, 2e-3}, to_stay{1e-3, 1e-6};
+/// No overlap begins deeper than this part of the local length.
+constexpr double deepest_begin = 0.4;
+/// An overlap of this part of the local length is one even if the normal is right for one edge
+/// only. Less may be rounding, or the rims of two sides of a cut that are pressed on each other.
+constexpr double one_sided = 0.005;
+
+Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x) {
+    const Vec3& a = x[triangle[0].index()];
+    return (x[triangle[1].index()] - a).cross(x[triangle[2].index()] - a);
+}
+
+/// Where two edges cross each other as seen at right angles to both.
+struct Crossing {
+    std::array<double, 2> at;  ///< parts of the ways from their first nodes to their second ones
+    Vec3 normal;               ///< at right angles to both
+    /// Above zero if they cross too near to an end or beside it, or are nearly parallel: then they
+    /// do not cross before two of their points have come by so much nearer to each other, m.
+    double room;
+};
+
+/// The edges go from p to q and from a to b.
+Crossing cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Limits& limits) {
+    const auto [least_sine, near_end] = limits;
+    // The bounds are of first order. Half of them is within what the next order adds.
+    constexpr double safe = 0.5;
+    const Vec3 u = q - p, v = b - a, w = p - a, across = u.cross(v);
+    const double u_length = u.norm(), v_length = v.norm(), area = across.norm(),
+                 sine = area / (u_length * v_length);
+    // No edge turns by more than what its ends move, by its length.
+    if (!(sine > least_sine))
+        return {
+            {}, {}, std::max(0.0, safe * (least_sine - sine) / (1.0 / u_length + 1.0 / v_length))};
+    const double vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+    const double s = (uv * vw - vv * uw) / (area * area), t = (uv * s + vw) / vv;
+    const auto beside = [near_end = near_end](double part) {
+        return std::max(near_end - part, part - 1.0 + near_end);
+    };
+    const double outside = std::max(beside(s) * u_length, beside(t) * v_length);
+    if (!(outside > 0.0)) return {{s, t}, across / area, 0.0};
+    // Where the edges cross, their lines move by what the ends do, extrapolated; and by how the
+    // direction turns, along the distance of the lines.
+    const double extrapolated = 1.0 + 2.0 * std::max({0.0, -s, s - 1.0, -t, t - 1.0});
+    const double distance = std::abs(w.dot(across)) / area;
+    const double moved = extrapolated + distance / (std::min(u_length, v_length) * sine);
+    return {{s, t}, across / area, safe * outside * sine / moved};
+}
+
+/// True if a direction is between the normals of two triangles at their common edge, to which it is
+/// at right angles.
+bool is_between(const Vec3& direction, const Vec3& a, const Vec3& b) {
+    const double cosine = a.dot(b);
+    return direction.dot(a + b) > 0.0 && direction.dot(a) >= cosine && direction.dot(b) >= cosine;
+}
+
+}  // namespace
+
+/// Lists the edges at which two triangles meet. Nodes of a surface are such that no more do.
+void EdgeContact::list_edges(const SurfaceTree& tree, const ContactBody& body) {
+    struct Side {
+        NodeId to;
+        std::uint32_t triangle;
+        std::uint8_t corner;
+        bool is_reversed;
+    };
+    const auto triangles = tree.triangles();
+    // The sides of the triangles, by the lower one of their nodes.
+    std::vector<std::size_t> begins(body.mesh.node_capacity() + 1, 0);
+    const auto for_each_side = [&](const auto& visit) {
+        for (std::uint32_t t = 0; t < triangles.size(); ++t)
+            for (std::uint8_t k = 0; k < 3; ++k) {
+                const NodeId a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+                visit(std::min(a, b), Side{std::max(a, b), t, k, b < a});
+            }
+    };
+    for_each_side([&](NodeId from, const Side&) { ++begins[from.index() + 1]; });
+    for (std::size_t n = 1; n < begins.size(); ++n) begins[n] += begins[n - 1];
+    std::vector<Side> sides(begins.back());
+    std::vector<std::size_t> ends(begins.begin(), begins.end() - 1);
+    for_each_side([&](NodeId from, const Side& side) { sides[ends[from.index()]++] = side; });
+
+    const auto X = body.mesh.rest_positions();
+    edges_.clear();
+    sharp_.clear();
+    edges_of_.assign(triangles.size(), {none, none, none});
+    for (std::size_t n = 0; n + 1 < begins.size(); ++n) {
+        const auto of_node = std::span(sides).subspan(begins[n], begins[n + 1] - begins[n]);
+        std::ranges::sort(of_node, {}, [](const Side& s) { return std::pair(s.to, s.triangle); });
+        for (std::size_t i = 0; i + 1 < of_node.size(); ++i) {
+            const Side &one = of_node[i], &two = of_node[i + 1];
+            if (one.to != two.to || one.is_reversed == two.is_reversed) continue;
+            const Vec3 a = area_of(triangles[one.triangle], X),
+                       b = area_of(triangles[two.triangle], X);
+            const NodeId third = triangles[two.triangle][(two.corner + 2) % 3];
+            const bool is_sharp = a.dot(b) < cosine_of_sharp * a.norm() * b.norm() &&
+                                  a.dot(X[third.index()] - X[n]) < 0.0;
+            const auto number = static_cast<std::uint32_t>(edges_.size());
+            edges_of_[one.triangle][one.corner] = number;
+            edges_.push_back({{NodeId(n), one.to}, {one.triangle, two.triangle}, is_sharp});
+            if (is_sharp && (body.takes_part[one.triangle] || body.takes_part[two.triangle]))
+                sharp_.push_back(number);
+            ++i;
+        }
+    }
+}
+
+void EdgeContact::set_surface(const SurfaceTree& tree, const ContactBody& body) {
+    const std::vector<Edge> old_edges = std::move(edges_);
+    list_edges(tree, body);
+    const auto number_of = [&](std::uint32_t old) {
+        const auto it = std::ranges::lower_bound(edges_, old_edges[old].nodes, {}, &Edge::nodes);
+        return it == edges_.end() || it->nodes != old_edges[old].nodes
+                   ? none
+                   : static_cast<std::uint32_t>(it - edges_.begin());
+    };
+    const auto renumber = [&](auto& pairs) {
+        std::erase_if(pairs, [&](auto& pair) {
+            auto& [sharp, other] = pair.edges;
+            sharp = number_of(sharp);
+            other = number_of(other);
+            if (sharp == none || other == none || !edges_[sharp].is_sharp) return true;
+            if (edges_[other].is_sharp && other < sharp) std::swap(sharp, other);
+            return false;
+        });
+        std::ranges::sort(pairs, {}, [](const auto& pair) { return pair.edges; });
+    };
+    renumber(pairs_);
+    renumber(touching_);
+}
+
+void EdgeContact::append_pairs(const SurfaceTree& tree, const ContactBody& body,
+                               std::span<const Vec3> positions, double reach, std::uint32_t sharp) {
+    // By how much normals may turn until pairs are found again, as a cosine.
+    constexpr double margin_of_cosine = 0.5;
+    const auto& [nodes, triangles, is_sharp] = edges_[sharp];
+    const Vec3 &p = positions[nodes[0].index()], &q = positions[nodes[1].index()];
+    const auto sum_of_normals = [&](const Edge& edge) -> Vec3 {
+        return tree.normal(edge.triangles[0]) + tree.normal(edge.triangles[1]);
+    };
+    const auto sine_of = [](const Vec3& sum) {  // of half of the angle between two normals
+        return std::sqrt(std::max(0.0, 1.0 - 0.25 * sum.squaredNorm()));
+    };
+    const Vec3 sum = sum_of_normals(edges_[sharp]);
+    // The corners of all fragments at the edge.
+    std::vector<NodeId> around;
+    const auto list_around = [&] {
+        std::vector<ElementId> star;
+        for (const NodeId n : nodes) {
+            body.mesh.star(n, star);
+            for (const ElementId cell : star) {
+                const auto corners = body.fragments.corners(body.fragments.fragment_of_cell(cell));
+                around.insert(around.end(), corners.begin(), corners.end());
+            }
+        }
+        std::ranges::sort(around);
+        around.erase(std::ranges::unique(around).begin(), around.end());
+    };
+    const auto is_same_part = [&](const Edge& edge) {
+        if (around.empty()) list_around();
+        return std::ranges::any_of(edge.triangles, [&](std::uint32_t t) {
+            const ElementId fragment = body.fragments.fragment_of_cell(body.faces[t].element);
+            return std::ranges::any_of(body.fragments.corners(fragment), [&](NodeId corner) {
+                return std::ranges::binary_search(around, corner);
+            });
+        });
+    };
+    const auto visit = [&](std::uint32_t other) {
+        const Edge& edge = edges_[other];
+        const auto& [a, b] = edge.nodes;
+        if (a == nodes[0] || a == nodes[1] || b == nodes[0] || b == nodes[1]) return;
+        if (!body.takes_part[edge.triangles[0]] && !body.takes_part[edge.triangles[1]]) return;
+        const Vec3 other_sum = sum_of_normals(edge);
+        if (-0.25 * sum.dot(other_sum) < 0.25 * sum.norm() * other_sum.norm() -
+                                             sine_of(sum) * sine_of(other_sum) - margin_of_cosine)
+            return;
+        const Vec3 &x = positions[a.index()], &y = positions[b.index()];
+        const auto [s, t] = closest_of_segments(p, q, x, y);
+        if ((p + s * (q - p) - x - t * (y - x)).squaredNorm() >= reach * reach) return;
+        if (is_same_part(edge)) return;
+        const bool is_first = !edge.is_sharp || sharp < other;
+        found_.push_back({{is_first ? sharp : other, is_first ? other : sharp}, 0.0});
+    };
+    const Vec3 margin = Vec3::Constant(reach);
+    tree.for_each_against(Box(p.cwiseMin(q) - margin, p.cwiseMax(q) + margin),
+                          {Vec3::UnitZ(), std::numbers::pi}, [&](std::uint32_t t) {
+                              for (const std::uint32_t other : edges_of_[t])
+                                  if (other != none) visit(other);
+                          });
+}
+
+/// Makes the found pairs, and those that touch, the pairs, with what is known of them.
+void EdgeContact::take_found(std::span<const Vec3> positions) {
+    for (const Touching& pair : touching_) found_.push_back({pair.edges, 0.0});
+    const auto edges_of = [](const Pair& pair) { return pair.edges; };
+    std::ranges::sort(found_, {}, edges_of);
+    const auto same = std::ranges::unique(found_, {}, edges_of);
+    found_.erase(same.begin(), same.end());
+    auto known = pairs_.begin();
+    for (Pair& pair : found_) {
+        known = std::lower_bound(known, pairs_.end(), pair, [](const Pair& one, const Pair& two) {
+            return one.edges < two.edges;
+        });
+        if (known != pairs_.end() && known->edges == pair.edges) pair.room = known->room;
+    }
+    std::swap(pairs_, found_);
+
+    std::vector<std::uint8_t> is_followed(positions.size(), 0);
+    for (const NodeId n : nodes_) is_followed[n.index()] = 1;
+    last_positions_.resize(positions.size(), Vec3::Zero());
+    for (const Pair& pair : pairs_)
+        for (const std::uint32_t edge : {pair.edges.sharp, pair.edges.other})
+            for (const NodeId n : edges_[edge].nodes) {
+                if (is_followed[n.index()] == 0) last_positions_[n.index()] = positions[n.index()];
+                is_followed[n.index()] = 2;
+            }
+    nodes_.clear();
+    for (std::size_t n = 0; n < is_followed.size(); ++n)
+        if (is_followed[n] == 2) nodes_.emplace_back(n);
+}
+
+void EdgeContact::find(const SurfaceTree& tree, const ContactBody& body,
+                       std::span<const Vec3> positions, double reach) {
+    found_.clear();
+    for (const std::uint32_t sharp : sharp_) append_pairs(tree, body, positions, reach, sharp);
+    take_found(positions);
+}
+
+void EdgeContact::find_again(const SurfaceTree& tree, const ContactBody& body,
+                             std::span<const Vec3> positions, double reach,
+                             std::span<const std::uint8_t> is_chosen) {
+    const auto is_found_anew = [&](std::uint32_t edge) {
+        const auto& [a, b] = edges_[edge].nodes;
+        return is_chosen[a.index()] != 0 || is_chosen[b.index()] != 0;
+    };
+    found_.clear();
+    for (const std::uint32_t sharp : sharp_)
+        if (is_found_anew(sharp)) append_pairs(tree, body, positions, reach, sharp);
+    for (const Pair& pair : pairs_)
+        if (!is_found_anew(pair.edges.sharp)) found_.push_back(pair);
+    take_found(positions);
+}
+
+/// Finds where the edges of a pair touch. Returns false if they do not.
+/// @param known  the pair, if it touched in the last step
+/// @param reach  distance at which it is a point of contact, m
+bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::Model& model,
+                             const Surface& surface, double reach, Touch& touch) const {
+    const std::span<const Vec3> x = model.mesh_positions();
+    const Edge &first = edges_[pair.edges.sharp], &second = edges_[pair.edges.other];
+    const Vec3 &p = x[first.nodes[0].index()], &q = x[first.nodes[1].index()],
+               &a = x[second.nodes[0].index()], &b = x[second.nodes[1].index()];
+    const Crossing crossing = cross(p, q, a, b, known == nullptr ? to_begin : to_stay);
+    const auto [s, t] = crossing.at;
+    if (!(crossing.room <= 0.0)) {
+        const auto [s_in, t_in] = closest_of_segments(p, q, a, b);
+        pair.room =
+            std::max(crossing.room, (p + s_in * (q - p) - a - t_in * (b - a)).norm() - reach);
+        return false;
+    }
+    const Vec3 from_second = p + s * (q - p) - a - t * (b - a);
+    pair.room = from_second.norm() - reach;
+    if (pair.room >= 0.0 && known == nullptr) return false;
+    pair.room = 0.0;
+    Vec3 normal = crossing.normal;
+    const auto normal_of = [&](std::uint32_t triangle) -> Vec3 {
+        return area_of(surface.triangles.triangles[triangle], x).stableNormalized();
+    };
+    const Vec3 n0 = normal_of(second.triangles[0]), n1 = normal_of(second.triangles[1]);
+    const Vec3 m0 = normal_of(first.triangles[0]), m1 = normal_of(first.triangles[1]);
+    double size = surface.lengths[first.nodes[0].index()];
+    for (const NodeId n : {first.nodes[1], second.nodes[0], second.nodes[1]})
+        size = std::min(size, surface.lengths[n.index()]);
+    const auto is_out_of_second = [&] { return is_between(normal, n0, n1); };
+    // How far the end of an edge is beyond the other edge. Less than an overlap, and a node there
+    // meets triangles: it is the shorter way out.
+    const double to_end =
+        std::min(std::min(s, 1.0 - s) * (q - p).norm(), std::min(t, 1.0 - t) * (b - a).norm());
+    const auto touches = [&] {
+        const bool is_out_of_first = is_between(-normal, m0, m1);
+        const double overlap = -normal.dot(from_second);
+        if (overlap <= one_sided * size) return is_out_of_second() && is_out_of_first;
+        return overlap < to_end && (is_out_of_second() || is_out_of_first);
+    };
+    if (!touches()) normal = -normal;
+    if (!touches()) return false;
+    const double gap = normal.dot(from_second);
+    if (gap >= reach) return false;
+    double slack = known == nullptr ? 0.0 : known->slack;
+    if (known == nullptr) {
+        // Round a sharp corner of the body itself there is no overlap.
+        if (gap <= -deepest_begin * size) return false;
+        slack = std::min(0.0, gap);
+        // An overlap that is there at once may be none, as between the sides of cuts that cross.
+        if (gap < -surface.rounding) {
+            const bool is_in_second = is_out_of_second();
+            const Edge& edge = is_in_second ? second : first;
+            const double part = is_in_second ? t : s;
+            const bool faces_second =
+                is_in_second ? normal.dot(n1 - n0) > 0.0 : normal.dot(m1 - m0) < 0.0;
+            const std::uint32_t facing = edge.triangles[faces_second ? 1 : 0];
+            const Triangle& triangle = surface.triangles.triangles[facing];
+            Vec3 weights;
+            for (std::size_t k = 0; k < 3; ++k)
+                weights[static_cast<int>(k)] = triangle[k] == edge.nodes[0]   ? 1.0 - part
+                                               : triangle[k] == edge.nodes[1] ? part
+                                                                              : 0.0;
+            const Vec3 to = is_in_second ? Vec3(p + s * (q - p)) : Vec3(a + t * (b - a));
+            if (!is_way_inside(model.mesh(), x, surface.triangles.faces[facing], triangle, weights,
+                               to))
+                return false;
+        }
+    }
+    touch = {s, t, normal, gap, gap > 0.0 ? 0.0 : std::max(gap, slack)};
+    return true;
+}
+
+void EdgeContact::add_points(const physics::Model& model, const Surface& surface,
+                             ContactSolver& solver) {
+    const std::span<const Vec3> x = model.mesh_positions();
+    moves_.resize(x.size());
+    for (const NodeId n : nodes_) {
+        moves_[n.index()] = (x[n.index()] - last_positions_[n.index()]).norm();
+        last_positions_[n.index()] = x[n.index()];
+    }
+    const auto move_of = [&](std::uint32_t edge) {
+        const auto& [a, b] = edges_[edge].nodes;
+        return std::max(moves_[a.index()], moves_[b.index()]);
+    };
+    max_penetration_ = 0.0;
+    first_point_ = solver.size();
+    std::swap(touching_, did_touch_);
+    touching_.clear();
+    auto known = did_touch_.begin();
+    for (Pair& pair : pairs_) {
+        const double moved = move_of(pair.edges.sharp) + move_of(pair.edges.other);
+        pair.room -= moved;
+        while (known != did_touch_.end() && known->edges < pair.edges) ++known;
+        const bool did_touch = known != did_touch_.end() && known->edges == pair.edges;
+        if (pair.room >= 0.0 && !did_touch) continue;
+        Touch touch;
+        if (!find_touch(pair, did_touch ? &*known : nullptr, model, surface,
+                        std::min(surface.reach, most_steps * moved), touch))
+            continue;
+        max_penetration_ = std::max(max_penetration_, -touch.gap);
+        ContactPoint point;
+        point.normal = touch.normal;
+        point.gap = touch.gap - touch.slack;
+        if (std::abs(point.gap) < surface.rounding) point.gap = 0.0;
+        point.friction = surface.friction;
+        if (did_touch) point.impulse = known->impulse;
+        touching_.push_back({pair.edges, touch.slack, point.impulse});
+        solver.begin(point);
+        const auto& [p, q] = edges_[pair.edges.sharp].nodes;
+        const auto& [a, b] = edges_[pair.edges.other].nodes;
+        add_surface_shares(
+            model,
+            {{p, q, a, b},
+             {1.0 - touch.on_first, touch.on_first, touch.on_second - 1.0, -touch.on_second}},
+            solver);
+    }
+}
+
+void EdgeContact::take_impulses(const ContactSolver& solver) {
+    for (std::size_t k = 0; k < touching_.size(); ++k)
+        touching_[k].impulse = solver.impulse(first_point_ + k);
+}
+
+void EdgeContact::restore(ArchiveReader& ar, std::size_t node_capacity) {
+    list(ar, *this);
+    const auto are_good = [&](const auto& pairs) {
+        return std::ranges::all_of(pairs, [&](const auto& pair) {
+            return std::max(pair.edges.sharp, pair.edges.other) < edges_.size();
+        });
+    };
+    if (!are_good(pairs_) || !are_good(touching_) ||
+        std::ranges::any_of(pairs_, [](const Pair& pair) { return std::isnan(pair.room); }) ||
+        std::ranges::any_of(touching_,
+                            [](const Touching& pair) {
+                                return !(pair.slack <= 0.0) || !pair.impulse.allFinite();
+                            }) ||
+        last_positions_.size() > node_capacity ||
+        std::ranges::any_of(nodes_, [&](NodeId n) { return n.index() >= last_positions_.size(); }))
+        throw InputError("its contact is that of another body");
+}
+
+}  // namespace incise::contact
