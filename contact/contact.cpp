@@ -171,7 +171,8 @@ void Contact::take_shapes(std::span<const cutting::ToolShape* const> shapes) {
         if (number >= shapes.size() || !cutting::feels_force(*shapes[number]) ||
             kind_of(*shapes[number]) != tool.contact.index())
             throw InputError("its contact has tools that it does not have");
-        std::visit([&](auto& contact) { contact.take_shape(*shapes[number]); }, tool.contact);
+        const cutting::ToolShape& shape = *shapes[number];
+        std::visit([&](auto& contact) { contact.take_shape(shape); }, tool.contact);
     }
 }
 

@@ -181,7 +181,7 @@ void EdgeContact::append_pairs(const SurfaceTree& tree, const ContactBody& body,
             }
         }
         std::ranges::sort(around);
-        around.erase(std::ranges::unique(around).begin(), around.end());
+        around.erase(std::unique(around.begin(), around.end()), around.end());
     };
     const auto is_same_part = [&](const Edge& edge) {
         if (around.empty()) list_around();
@@ -221,8 +221,8 @@ void EdgeContact::take_found(std::span<const Vec3> positions) {
     for (const Touching& pair : touching_) found_.push_back({pair.edges, 0.0});
     const auto edges_of = [](const Pair& pair) { return pair.edges; };
     std::ranges::sort(found_, {}, edges_of);
-    const auto same = std::ranges::unique(found_, {}, edges_of);
-    found_.erase(same.begin(), same.end());
+    const auto is_same = [](const Pair& one, const Pair& two) { return one.edges == two.edges; };
+    found_.erase(std::unique(found_.begin(), found_.end(), is_same), found_.end());
     auto known = pairs_.begin();
     for (Pair& pair : found_) {
         known = std::lower_bound(known, pairs_.end(), pair, [](const Pair& one, const Pair& two) {

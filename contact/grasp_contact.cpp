@@ -78,7 +78,7 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
             if (cutting::meets(grasper_.jaws, x, x)) nodes.push_back(n);
         }
     std::ranges::sort(nodes);
-    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     for (const NodeId n : nodes)
         held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()])});
     if (!held_.empty()) return;

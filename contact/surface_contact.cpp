@@ -292,7 +292,8 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
     const std::span<const Vec3> positions = model.mesh_positions();
     const Vec3 mean = mean_move(positions);
     const double square = std::pow(moved_skin * skin_ * size_, 2);
-    auto& [is_node, is_triangle, is_near, known, known_nodes] = part_;
+    auto& [is_node, is_triangle, near_part, known, known_nodes] = part_;
+    std::vector<std::uint8_t>& is_near = near_part;
     is_node.assign(positions.size(), 0);
     is_triangle.assign(triangles_.size(), 0);
     for (std::size_t t = 0; t < triangles_.size(); ++t)

@@ -78,7 +78,7 @@ std::span<const NodeId> TouchingPairs::around(const ContactBody& body, NodeId n)
             corners_.insert(corners_.end(), of_fragment.begin(), of_fragment.end());
         }
         std::ranges::sort(corners_);
-        corners_.erase(std::ranges::unique(corners_).begin(), corners_.end());
+        corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
         begin = around_.size();
         around_.emplace_back(corners_.size());
         around_.insert(around_.end(), corners_.begin(), corners_.end());
@@ -223,7 +223,7 @@ void TouchingPairs::take_found(std::size_t num_sorted, std::span<const NodeAndTr
     const auto middle = found_.begin() + static_cast<std::ptrdiff_t>(num_sorted);
     std::sort(middle, found_.end());
     std::inplace_merge(found_.begin(), middle, found_.end());
-    found_.erase(std::ranges::unique(found_).begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
     nodes_.clear();
     begin_.assign(1, 0);
     triangles_.clear();

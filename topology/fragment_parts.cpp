@@ -269,7 +269,7 @@ void FragmentParts::keep_together(const std::vector<std::size_t>& lights) {
     for (const std::size_t part : lights)
         for (const Neighbor& neighbor : neighbors(part)) near.push_back(neighbor.part);
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     for (std::size_t i = 0; i < near.size(); ++i)
         parts_[near[i]]->local = static_cast<std::int32_t>(i);
     for (;;) {

@@ -456,8 +456,9 @@ FragmentChanges FragmentUpdate::differences() {
         const bool is_around = fragments_.is_carried_around(cell);
         if (now == before && is_around == was_around) continue;
         const ElementId carrier = fragments_.carrier_of_cell(cell);
+        const bool is_other = inherited != now;
         const auto is_away = [&](ElementId e, bool is_around_there) {
-            return e.is_valid() && inherited != now &&
+            return e.is_valid() && is_other &&
                    (is_around_there || fragments_.carrier(e) != carrier);
         };
         result.cells.push_back({cell, carrier, before, now, is_away(inherited, was_around),

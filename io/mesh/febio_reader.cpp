@@ -226,7 +226,8 @@ class FebioReader {
     }
 
     void add_to_set(std::size_t set, std::int64_t id, pugi::xml_node place) {
-        const auto [begin, end] = std::ranges::equal_range(elements_, id, {}, &Element::id);
+        const auto begin = std::ranges::lower_bound(elements_, id, {}, &Element::id);
+        const auto end = std::ranges::upper_bound(elements_, id, {}, &Element::id);
         const auto name = "element " + std::to_string(id) + " of an ElementSet is ";
         if (begin == end)
             fail(place, name + "not one of the " + std::to_string(elements_.size()) + " elements");
