@@ -160,7 +160,7 @@ void EdgeContact::append_pairs(const SurfaceTree& tree, const ContactBody& body,
                                std::span<const Vec3> positions, double reach, std::uint32_t sharp) {
     // By how much normals may turn until pairs are found again, as a cosine.
     constexpr double margin_of_cosine = 0.5;
-    const auto& [nodes, triangles, is_sharp] = edges_[sharp];
+    const std::array<NodeId, 2>& nodes = edges_[sharp].nodes;
     const Vec3 &p = positions[nodes[0].index()], &q = positions[nodes[1].index()];
     const auto sum_of_normals = [&](const Edge& edge) -> Vec3 {
         return tree.normal(edge.triangles[0]) + tree.normal(edge.triangles[1]);

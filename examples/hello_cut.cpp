@@ -42,10 +42,11 @@ int main() {
 
     const auto& edited = world.mesh();
     const int num_components = topology::components(edited).count;
-    // The last digits depend on how the pose of each step is computed.
     std::cout << std::setprecision(5) << "elements: " << edited.num_elements()
-              << "\ncomponents: " << num_components << "\ncut area, m2: " << cut_area
-              << "\nkinetic energy, J: " << world.model().totals().kinetic_energy << '\n';
+              << "\ncomponents: " << num_components << "\ncut area, m2: " << cut_area;
+    // More digits hang on the last bits of the pose: by them faces of the cut touch, or do not yet.
+    std::cout << "\nkinetic energy, J: " << std::setprecision(2)
+              << world.model().totals().kinetic_energy << '\n';
     io::write_mesh("hello_cut.vtu", topology::to_mesh_data(edited, world.positions()));
     return num_components == 2 ? 0 : 1;
 }
