@@ -38,7 +38,8 @@ int convert(const ConvertOptions& options) {
     if (const auto loss = io::loss_in_format(options.out, file.mesh)) print_warning(*loss);
     io::write_mesh(options.out, file.mesh);
     std::cout << options.out.string() << ": " << file.mesh.points.size() << " points, "
-              << file.mesh.num_cells() << " cells" << report << '\n';
+              << file.mesh.num_cells() << (file.mesh.num_cells() == 1 ? " cell" : " cells")
+              << report << '\n';
     return done;
 }
 

@@ -237,8 +237,7 @@ std::string describe(const runner::Simulation& simulation) {
          << (is_static ? "load steps of " : "steps of ") << simulation.time_step() << " s to "
          << simulation.scenario().dynamics.end_time << " s";
     // Implicit steps are stable at any length.
-    const auto integrator = simulation.scenario().dynamics.integrator;
-    if (!is_static && integrator == scenario::TimeIntegrator::semi_implicit_euler)
+    if (simulation.scenario().dynamics.is_explicit())
         text << " (stable up to " << body.stable_step << " s)";
     return text.str();
 }

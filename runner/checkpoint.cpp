@@ -210,10 +210,12 @@ Checkpoint Checkpoint::newest(const fs::path& folder, std::vector<std::string>& 
 
 void Checkpoint::require_same(const scenario::Scenario& scenario) const {
     if (contents_ == scenario.contents || is_longer(contents_, scenario)) return;
+    const bool is_static = scenario.dynamics.mode == scenario::Mode::statics;
     throw InputError(path_.string() + ": the run was of another scenario: " +
                      differences(contents_, scenario.contents) +
-                     "; resume with the scenario and --set that it began with, and an end that "
-                     "is not earlier, or begin anew without --resume");
+                     "; resume with the scenario and --set that it began with, and " +
+                     (is_static ? "in statics with the same end" : "an end that is not earlier") +
+                     ", or begin anew without --resume");
 }
 
 void Checkpoint::restore(Simulation& simulation) const {

@@ -403,14 +403,9 @@ Parts build_parts(const Scenario& scenario) {
     return parts;
 }
 
-bool has_explicit_steps(const Scenario& scenario) {
-    return scenario.dynamics.mode == Mode::dynamic &&
-           scenario.dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-}
-
 void warn_of_costly_elements(const Scenario& scenario, const physics::Model& model,
                              std::vector<std::string>& warnings) {
-    if (!has_explicit_steps(scenario)) return;
+    if (!scenario.dynamics.is_explicit()) return;
     if (const auto warning = warning_of_costly_elements(model))
         warnings.push_back(located(scenario.mesh.location, *warning));
 }
@@ -434,7 +429,7 @@ void check_model(const Scenario& scenario, Parts& parts) {
     parts.problems.try_to("", [&] {
         auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
         const double step = step_limit(scenario, model, model.rest_stable_step());
-        if (!has_explicit_steps(scenario)) return;
+        if (!scenario.dynamics.is_explicit()) return;
         warn_of_costly_elements(scenario, model, parts.warnings);
         const double num_steps = scenario.dynamics.end_time / step;
         parts.effort = {num_steps, num_steps * seconds_of_forces(model)};

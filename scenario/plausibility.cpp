@@ -72,7 +72,8 @@ bool is_borne(const Scenario& scenario) {
 }
 
 void look_at_support(const Scenario& scenario, Findings& findings) {
-    if (scenario.dynamics.gravity.isZero(0.0) || is_borne(scenario)) return;
+    if (scenario.dynamics.gravity.isZero(0.0) || !scenario.knows_what_holds || is_borne(scenario))
+        return;
     findings.add(scenario.mesh.location,
                  scenario.dynamics.mode == Mode::statics
                      ? "nothing holds the body against gravity, so there is no equilibrium: "

@@ -95,6 +95,11 @@ struct DynamicsSpec {
     physics::Precision precision = physics::Precision::double_precision;
     std::string end_time_location = {}, time_step_location = {},
                 precision_location = {};  ///< for messages
+
+    /// True if the steps are explicit, and so have a largest stable length.
+    bool is_explicit() const {
+        return mode == Mode::dynamic && integrator == TimeIntegrator::semi_implicit_euler;
+    }
 };
 
 /// A [[constraint]] section. The constraint prescribes the components of the positions of nodes
@@ -250,6 +255,8 @@ struct Scenario {
     std::vector<ConstraintSpec> constraints;
     std::vector<LoadSpec> loads;
     std::vector<ToolSpec> tools;
+    /// False if a constraint, load or tool has a mistake: what is left of them says little.
+    bool knows_what_holds = true;
     OutputSpec output;
     std::vector<Expectation> expect;
     /// 16 hexadecimal digits that depend on all values of the scenario, with overrides. They do not

@@ -187,6 +187,8 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();
     keep_sound(root, scenario.dynamics);
+    for (const char* const key : {"constraint", "load", "obstacle", "tool"})
+        if (!root.is_sound(key)) scenario.knows_what_holds = false;
     return scenario;
 }
 
@@ -275,9 +277,7 @@ contact::ContactSettings read_contact(const TableReader& root, const DynamicsSpe
     settings.enabled = contact->flag("enabled", settings.enabled);
     settings.friction = contact->number("friction", settings.friction, limits::non_negative);
     settings.self = contact->flag("self", settings.self);
-    const bool is_explicit = dynamics.mode == Mode::dynamic &&
-                             dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-    if (!is_explicit && settings.enabled && root.is_sound("dynamics"))
+    if (!dynamics.is_explicit() && settings.enabled && root.is_sound("dynamics"))
         contact->error({},
                        "is for explicit dynamics: implicit steps and statics have no contact; "
                        "write enabled = false, or use integrator = \"semi-implicit-euler\"");

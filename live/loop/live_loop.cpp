@@ -397,8 +397,11 @@ void LiveLoop::tell_if_slow() {
     text.precision(2);
     text << "on this machine the body runs at " << pace_.factor()
          << " times real time, in steps of " << session_.simulation().time_step() * 1e3
-         << " ms. Faster are a coarser mesh, softer materials, fewer small elements, and "
-            "dynamics.precision = \"single\"";
+         << " ms. Faster "
+         << (session_.simulation().scenario().dynamics.is_explicit()
+                 ? "are a coarser mesh, softer materials, fewer small elements, and "
+                   "dynamics.precision = \"single\""
+                 : "is a coarser mesh");
     tell("warning", text.str());
 }
 

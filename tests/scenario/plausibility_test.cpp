@@ -14,6 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 /// A block of 10 cm that rests on its bottom.
 const std::string rest_block = R"([mesh]
@@ -162,6 +163,10 @@ TEST(Plausibility, IsDoubtedBesideErrorsOfMaterials) {
     EXPECT_THAT(check_body(report.scenario).warnings,
                 ElementsAre(HasSubstr("the body is 100 m long"),
                             HasSubstr("nothing holds the body against gravity")));
+    // Nor does anybody know what a wrong constraint would hold.
+    const ScenarioReport wrong = file.read({"constraint[0].fix=xyzz"});
+    EXPECT_THAT(wrong.errors, SizeIs(1));
+    EXPECT_THAT(check_body(wrong.scenario).warnings, IsEmpty());
     // A density that is an error, or is not given, is no density to doubt.
     EXPECT_THAT(file.read({"material[0].density=-1"}).warnings, IsEmpty());
 }
