@@ -111,6 +111,9 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
             fracture_energy_ += blade->reported().fracture;
         }
     }
+    start_velocities_.clear();
+    for (const NodeId node : solver_.nodes())
+        start_velocities_.push_back(model.velocities()[node.index()]);
     if (!solver_.is_empty()) return true;
     // Nothing touches: the next touch begins without an impulse.
     take_impulses(dt);
@@ -128,6 +131,23 @@ void Contact::take_impulses(double dt) {
     }
 }
 
+/// Returns the work of the normal impulses of the step relative to the tools, J: with the mean of
+/// the velocities before and after the step.
+double Contact::normal_work(const physics::Model& model) const {
+    double work = 0.0;
+    for (std::size_t i = 0; i < solver_.size(); ++i) {
+        const ContactPoint& point = solver_.point(i);
+        const Vec3& impulse = solver_.impulse(i);
+        if (point.is_held || impulse.isZero(0.0)) continue;
+        Vec3 sum = -2.0 * point.velocity;
+        for (const Share& share : solver_.shares(i))
+            sum += share.weight *
+                   (start_velocities_[share.number] + model.velocities()[share.node.index()]);
+        work += 0.5 * impulse.dot(point.normal) * sum.dot(point.normal);
+    }
+    return work;
+}
+
 void Contact::project(physics::Model& model, double /*time*/, double dt) {
     const auto masses = model.masses();
     inverse_masses_.resize(masses.size());
@@ -140,7 +160,8 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
             if (!constraint_of || (*constraint_of)[static_cast<std::size_t>(c)] < 0)
                 inverse_masses_[n][c] = model.response_to_impulses() / masses[n];
     }
-    solver_.solve(model.velocities(), inverse_masses_, dt, model.rest_stable_step());
+    const double rest_step = model.rest_stable_step();
+    solver_.solve(model.velocities(), inverse_masses_, dt, rest_step, spare_energy_ >= 0.0);
     take_impulses(dt);
     impulses_.assign(masses.size(), Vec3::Zero());
     for (std::size_t i = 0; i < solver_.size(); ++i) {
@@ -150,6 +171,9 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
             impulses_[share.node.index()] += share.weight * solver_.impulse(i);
     }
     model.give_impulses(impulses_);
+    // What was taken is forgotten as fast as an overlap goes. A debt stays until it is paid.
+    if (spare_energy_ > 0.0) spare_energy_ *= std::exp(-ContactSolver::correction * dt / rest_step);
+    spare_energy_ -= normal_work(model);
 }
 
 std::vector<std::pair<NodeId, Vec3>> Contact::node_forces() const {
@@ -177,7 +201,7 @@ void Contact::take_shapes(std::span<const cutting::ToolShape* const> shapes) {
 }
 
 void Contact::save(ArchiveWriter& ar) const {
-    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, node_forces());
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, spare_energy_, node_forces());
     tissue_.save(ar);
     ar(static_cast<std::uint64_t>(tools_.size()));
     for (const auto& [number, tool] : tools_) {
@@ -188,9 +212,11 @@ void Contact::save(ArchiveWriter& ar) const {
 
 void Contact::restore(ArchiveReader& ar, const physics::Model& model,
                       const topology::BoundarySurface& surface) {
-    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, restored_forces_);
+    ar(dissipation_, fracture_energy_, num_points_, max_penetration_, spare_energy_,
+       restored_forces_);
     last_dt_ = 0.0;
-    if (!std::isfinite(dissipation_) || !std::isfinite(fracture_energy_))
+    if (!std::isfinite(dissipation_) || !std::isfinite(fracture_energy_) ||
+        !std::isfinite(spare_energy_))
         throw InputError("its contact has no sound energy");
     for (const auto& [node, force] : restored_forces_)
         if (!node.is_valid() || node.index() >= model.mesh().node_capacity() || !force.allFinite())

@@ -97,6 +97,7 @@ class Contact final : public physics::VelocityProjection {
     };
     Tool& tool_of(std::size_t tool, const cutting::ToolShape& shape);
     void take_impulses(double dt);
+    double normal_work(const physics::Model& model) const;
     SurfaceContact tissue_;
     std::map<std::size_t, Tool> tools_;
     ContactSolver solver_{tissue_.size()};
@@ -107,6 +108,10 @@ class Contact final : public physics::VelocityProjection {
     double dissipation_ = 0.0;      // J
     double fracture_energy_ = 0.0;  // J
     double last_dt_ = 0.0;          // s; 0 after a restore
+    /// What normal impulses have taken of late, less what they have given, J. While it is below 0,
+    /// overlaps stay. So pushing them out cannot keep the body in motion.
+    double spare_energy_ = 0.0;
+    std::vector<Vec3> start_velocities_;                    // of a step, by number in the solver
     std::vector<std::pair<NodeId, Vec3>> restored_forces_;  // as node_forces() then returns them
     std::vector<Vec3> inverse_masses_, impulses_;           // scratch, by node of the fragments
 };

@@ -9,8 +9,6 @@ namespace incise::contact {
 namespace {
 
 constexpr int num_sweeps = 4;
-/// The share of an overlap that goes in a stable step at rest.
-constexpr double correction = 0.1;
 /// Two sides that follow the same nodes cannot give way: then the softness of their point is below
 /// this part of that of its softest node.
 constexpr double least_softness = 1e-9;
@@ -119,7 +117,7 @@ void ContactSolver::take_nodes(std::span<const Vec3> velocities,
 }
 
 /// Lists the points that can give way.
-void ContactSolver::make_rows(double dt, double rest_step) {
+void ContactSolver::make_rows(double dt, double rest_step, bool removes_overlaps) {
     rows_.clear();
     rounding_ = rounding_of_length_ / dt;
     auto segment = segment_points_.begin();
@@ -156,9 +154,11 @@ void ContactSolver::make_rows(double dt, double rest_step) {
         row.friction = point.friction;
         row.hardness = 1.0 / along_normal;
         row.all_hardness = 1.0 / softness.maxCoeff();
-        row.allowed = point.gap >= 0.0
-                          ? point.gap / dt
-                          : std::max(correction * point.gap, -largest_correction_) / rest_step;
+        row.allowed = 0.0;
+        if (point.gap >= 0.0)
+            row.allowed = point.gap / dt;
+        else if (removes_overlaps)
+            row.allowed = std::max(correction * point.gap, -largest_correction_) / rest_step;
     }
 }
 
@@ -376,9 +376,9 @@ void ContactSolver::relax_thread(ThreadRow& thread) {
 }
 
 void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses,
-                          double dt, double rest_step) {
+                          double dt, double rest_step, bool removes_overlaps) {
     take_nodes(velocities, inverse_masses);
-    make_rows(dt, rest_step);
+    make_rows(dt, rest_step, removes_overlaps);
     make_thread_rows(dt);
     begin_with_impulses();
     for (int sweep = 0; sweep < num_sweeps; ++sweep) {

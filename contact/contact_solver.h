@@ -51,6 +51,9 @@ struct Thread {
 /// The points of contact and the threads of a step, and their impulses.
 class ContactSolver {
   public:
+    /// The share of an overlap that goes in a stable step at rest.
+    static constexpr double correction = 0.1;
+
     /// @param size  mean length of an element, m. An approach by a trillionth of it in a step is
     ///              none, so that a cut without load exerts no force. An overlap goes by a
     ///              thousandth of it in a stable step at rest, so that it does not throw the sides
@@ -102,8 +105,9 @@ class ContactSolver {
     ///                        of nodes() are read.
     /// @param dt              s
     /// @param rest_step       stable step at rest, s
+    /// @param removes_overlaps  false: overlaps stay as deep as they are
     void solve(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses, double dt,
-               double rest_step);
+               double rest_step, bool removes_overlaps = true);
 
     /// Returns the impulse of point `i`, N s. It acts on shares by their weights.
     const Vec3& impulse(std::size_t i) const { return impulses_[i]; }
@@ -149,7 +153,7 @@ class ContactSolver {
     std::uint32_t number_of(NodeId node);
     Vec3 velocity(std::size_t begin, std::size_t end) const;
     void take_nodes(std::span<const Vec3> velocities, std::span<const Vec3> inverse_masses);
-    void make_rows(double dt, double rest_step);
+    void make_rows(double dt, double rest_step, bool removes_overlaps);
     void begin_with_impulse(Row& row);
     void begin_with_impulses();
     double best_share_of_impulses() const;

@@ -169,6 +169,38 @@ TEST(Suture, DrawnToNothingComesToRest) {
         }
 }
 
+// Drawn together, faces of a cut press each other in a few places, and nodes are at the edge of two
+// triangles. Pushed out of either in turn, they would keep the body in motion.
+TEST(Suture, DrawsACutTogetherThatComesToRest) {
+    for (const double stiffness : {300.0, 1000.0}) {
+        SCOPED_TRACE(stiffness);
+        const Vec3 edges(0.06, 0.04, 0.02);
+        WorldDef def;
+        def.mesh =
+            topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), edges, {6, 4, 2});
+        def.materials = {
+            {1000.0, physics::HyperElasticLinks{physics::NeoHookean{3571.0, 28571.0}}}};
+        def.damping = 40.0;
+        def.contact.friction = 0.3;
+        World world(std::move(def));
+        world.add_constraint(
+            {.name = "sides", .nodes = physics::NodeSet(nodes_where(world, [&](const Vec3& x) {
+                                  return x.x() == 0.0 || x.x() == edges.x();
+                              }))});
+        cut_along(world, {0.0303, 0.0, 0.0}, Vec3::UnitX());
+        cutting::Suture thread{{}, stiffness};
+        for (int i = 0; i < 6; ++i)
+            thread.points.push_back({i % 2 == 0 ? 0.024 : 0.036, 0.01 * (1 + i / 2), 0.018});
+        const ToolId suture = world.add_tool({"thread", thread});
+        world.step(0.8 * world.stable_step());
+        world.tie_suture(suture);
+        draw(world, suture, 0.0, 1500);
+        run_until(world, 1.4);
+        EXPECT_GT(world.ledger().body_totals().totals.elastic_energy, 1e-2);
+        EXPECT_LT(world.ledger().body_totals().totals.kinetic_energy, 1e-10);
+    }
+}
+
 TEST(Suture, NeverAddsEnergy) {
     for (const double stiffness : {1.0, 1e3, 1e5}) {
         SCOPED_TRACE(stiffness);
