@@ -4,7 +4,10 @@
 // LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "support/num_cases.h"
 #include "tests/sim/contact_answers.h"
@@ -59,6 +62,60 @@ TEST(ContactFriction, OfABlockOnASlopeIsCoulombs) {
         EXPECT_NEAR(still.velocity, 0.0, 1e-9);
         record_point("incline friction 0.4", slope, still.acceleration);
     }
+}
+
+/// A block on a table of friction 0.4, whose slope grows slowly, so that nothing else shakes it. As
+/// above, it is gravity that turns.
+World slowly_tilted(double degrees) {
+    constexpr Solid solid{.young = 1e5, .poisson = 0.3};
+    WorldDef def;
+    def.mesh = box(Vec3::Zero(), {0.04, 0.04, 0.02}, {4, 4, 2});
+    physics::Material material = solid;
+    std::get<physics::HyperElasticLinks>(material.method).prony = {{0.4, 0.003}};
+    def.materials = {material};
+    World world(std::move(def));
+    const double angle = degrees * std::numbers::pi / 180.0;
+    const auto pull = [&](const Vec3& force, double from, double to) {
+        const auto all = elements_where(world, [](const Vec3&) { return true; });
+        world.add_load(
+            {.name = "gravity",
+             .kind = physics::BodyLoad{physics::ElementSet(all), solid.density * gravity * force},
+             .factor = physics::TimeCurve<double>({{from, 0.0}, {to, 1.0}})});
+    };
+    pull(-std::cos(angle) * Vec3::UnitZ(), 0.0, 0.15);
+    pull(std::sin(angle) * Vec3::UnitX(), 0.2, 0.8);
+    const ToolId table = world.add_tool({"table", cutting::Probe{cutting::HalfSpace{}, 0.4}});
+    world.place_tool(table, Pose());
+    return world;
+}
+
+TEST(ContactFriction, HoldsASlowlyTiltedBlock) {
+    World world = slowly_tilted(21.7);  // it slides from 21.80 degrees
+    run_until(world, 1.2);
+    EXPECT_LT(world.ledger().body_totals().totals.momentum.norm(), 1e-9);
+}
+
+// A block that slides steadily is unstable: friction couples its swaying with its bouncing, and
+// they grow. The numbers are an eigenvalue of the linear model, by
+//     data/validation/friction_flutter.py 4 4 2 22.2 0.008
+TEST(ContactFriction, SlidingFluttersAsItsEigenvaluesTell) {
+    constexpr double frequency = 102.3, growth = 11.0;  // Hz, 1/s
+    constexpr double window = 5.0 / frequency, delay = 0.06;
+    World world = slowly_tilted(22.2);
+    run_until(world, 0.84);
+    const double from = world.time();
+    std::array<std::complex<double>, 2> sums{};
+    while (world.time() < from + window + delay) {
+        world.step(2e-4);
+        const double momentum = world.ledger().body_totals().totals.momentum.z();
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            const double t = world.time() - from - delay * static_cast<double>(k);
+            if (t < 0.0 || t > window) continue;
+            const double hann = 1.0 - std::cos(2.0 * std::numbers::pi * t / window);
+            sums[k] += hann * momentum * std::polar(1.0, -2.0 * std::numbers::pi * frequency * t);
+        }
+    }
+    EXPECT_NEAR(std::log(std::abs(sums[1] / sums[0])) / delay, growth, 1.5);
 }
 
 /// Moves nodes along x with a constant velocity.
