@@ -54,7 +54,12 @@ std::string_view host_without_port(std::string_view header) {
 }
 
 bool is_loopback_name(std::string_view host) {
-    return host == "127.0.0.1" || host == "localhost" || host == "[::1]";
+    static constexpr std::string_view name = "localhost";
+    const auto is_same_letter = [](char given, char lower) {
+        return given == lower || (given >= 'A' && given <= 'Z' && given - 'A' + 'a' == lower);
+    };
+    return host == "127.0.0.1" || host == "[::1]" ||
+           std::equal(host.begin(), host.end(), name.begin(), name.end(), is_same_letter);
 }
 
 bool is_equal_in_constant_time(std::string_view a, std::string_view b) {

@@ -22,7 +22,7 @@ struct Target {
 /// brackets. Empty if the header is anything but a host, or a host, a colon and a port.
 std::string_view host_without_port(std::string_view header);
 
-/// True for the names of this machine that no other machine can have.
+/// True for the names of this machine that no other machine can have, in capitals or not.
 bool is_loopback_name(std::string_view host);
 
 /// Compares texts in a time that does not tell how much of them is equal.

@@ -112,7 +112,8 @@ TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnly) {
     // A forwarded port is another one here and there.
     for (const std::string& own :
          {host, std::string("localhost:9999"), std::string("localhost"), std::string("[::1]:80"),
-          std::string("[::1]"), std::string("127.0.0.1:65535")})
+          std::string("[::1]"), std::string("127.0.0.1:65535"), std::string("LOCALHOST:8080"),
+          std::string("LocalHost")})
         EXPECT_EQ(answer(own), "HTTP/1.1 200") << own;
     for (const std::string machine : {"127.0.0.1", "localhost", "[::1]"})
         for (const std::string rest : {":80.evil.example",
@@ -156,6 +157,10 @@ TEST_F(ServerTest, AnswersToTheNamesOfThisMachineOnly) {
                                     "127.0.0.2:80",
                                     "0.0.0.0:80",
                                     "127.1:80",
+                                    "localhos",
+                                    "localhostt",
+                                    "LOCALHOST.EVIL.EXAMPLE:80",
+                                    "1OCALHOST:80",
                                     "2130706433:80"})
         EXPECT_EQ(answer(other), "HTTP/1.1 421") << other;
     EXPECT_EQ(answer("localhost\r\nHost: evil.example"), "HTTP/1.1 421");
