@@ -11,7 +11,7 @@
 #include "incise/app/help_formatter.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_writer.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/scenario/table_reader.h"
@@ -268,7 +268,7 @@ void declare_cut(CLI::App& app, Action& action) {
             "--snap", options->snap,
             "Mode split: ends of crossed edges that are nearer to the cut than this share of the "
             "edge count as on it; from 0, exact, to 0.5 (default: " +
-                io::format_number(cutting::default_snap) + ")")
+                format_number(cutting::default_snap) + ")")
         ->type_name("SHARE");
     declare_region_array(verb, options->region_array);
     for (const CutToolOption& tool : cut_tool_options())

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/number_text.h"
 #include "incise/scenario/diagnostics.h"
 
@@ -42,8 +42,8 @@ std::vector<double> parse_numbers(const std::string& what, std::string_view text
             fail(scenario::in_quotes(part) + " in " + scenario::in_quotes(text) + " is no number");
         if (!(std::abs(*number) <= largest_coordinate))
             fail(scenario::in_quotes(part) + " in " + scenario::in_quotes(text) +
-                 " is not allowed, numbers lie between -" + io::format_number(largest_coordinate) +
-                 " and " + io::format_number(largest_coordinate));
+                 " is not allowed, numbers lie between -" + format_number(largest_coordinate) +
+                 " and " + format_number(largest_coordinate));
         numbers.push_back(*number);
     }
     return numbers;

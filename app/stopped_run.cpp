@@ -7,7 +7,7 @@
 #include "incise/app/messages.h"
 #include "incise/app/shell_word.h"
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::app {
 
@@ -15,7 +15,7 @@ std::string run_command(const RunOptions& options) {
     std::string text = "incise run " + shell_word(options.scenario.string());
     if (options.out) text += " --out " + shell_word(options.out->string());
     if (options.replay) text += " --replay " + shell_word(options.replay->string());
-    if (options.end_time) text += " --end-time " + io::format_number(*options.end_time);
+    if (options.end_time) text += " --end-time " + format_number(*options.end_time);
     for (const std::string& value : options.overrides) text += " --set " + shell_word(value);
     if (options.num_threads > 0) text += " --threads " + std::to_string(options.num_threads);
     return text;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "incise/app/shell_word.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/surface/surface_reader.h"
 
 namespace incise::app {
@@ -41,8 +41,8 @@ std::string command_for_mesh(const std::filesystem::path& path, const Box& box) 
     if (path.extension() == ".gz") stem = stem.stem();
     return "incise mesh " + shell_word(path.string()) + " " + shell_word(stem.string() + ".vtu") +
            " --size " +
-           (is_in_millimetres ? io::format_number(size / 1000.0) + " --scale 0.001"
-                              : io::format_number(size));
+           (is_in_millimetres ? format_number(size / 1000.0) + " --scale 0.001"
+                              : format_number(size));
 }
 
 SurfaceInfo surface_info(const std::filesystem::path& path) {

@@ -12,7 +12,7 @@
 #include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/image/label_image.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/surface/surface_reader.h"
@@ -70,7 +70,7 @@ void announce_body(const std::filesystem::path& path, const scenario::Scenario& 
     const double elements = (box->element == topology::CellKind::tetrahedron ? 6.0 : 1.0) *
                             box->cells[0] * box->cells[1] * box->cells[2];
     if (elements > many)
-        std::cerr << path.string() << ": builds the body of " << io::format_number(elements)
+        std::cerr << path.string() << ": builds the body of " << format_number(elements)
                   << " elements, to check it\n";
 }
 
@@ -88,7 +88,7 @@ Findings check_scenario(const std::filesystem::path& path) {
     findings.num_printed = num_printed;
     const auto num_obstacles = static_cast<std::size_t>(
         std::ranges::count_if(scenario.tools, [](const auto& tool) { return tool.is_obstacle; }));
-    findings.summary = "scenario of " + io::format_number(scenario.dynamics.end_time) + " s with " +
+    findings.summary = "scenario of " + format_number(scenario.dynamics.end_time) + " s with " +
                        count_of(scenario.materials.size(), "material") + ", " +
                        count_of(scenario.constraints.size(), "constraint") + ", " +
                        count_of(scenario.loads.size(), "load") + ", " +
@@ -97,7 +97,7 @@ Findings check_scenario(const std::filesystem::path& path) {
     constexpr double many_steps = 1e4;  // a shorter run needs no plan
     if (effort && (effort->num_steps >= many_steps || effort->seconds_of_forces >= 1.0))
         findings.effort =
-            "some " + io::format_number(std::ceil(effort->num_steps)) +
+            "some " + format_number(std::ceil(effort->num_steps)) +
             " steps at rest, more as tissue stretches; their forces take " +
             (effort->seconds_of_forces < 1.0 ? "less than a second"
                                              : duration_text(effort->seconds_of_forces)) +

@@ -6,7 +6,7 @@
 
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/scenario/material_catalog.h"
 #include "incise/scenario/table_reader.h"
 #include "incise/scenario/tissue_catalog.h"
@@ -171,11 +171,10 @@ void print_detail(const Tissue& tissue) {
     section("Validity", tissue.validity);
     if (!tissue.assumed.empty()) section("Assumed", tissue.assumed);
     if (const auto& toughness = tissue.toughness)
-        section(
-            "Toughness, for information",
-            (toughness->low < toughness->high ? io::format_number(toughness->low) + " to " : "") +
-                io::format_number(toughness->high) + " J/m2 (" +
-                std::string(scenario::toughness_source) + ")");
+        section("Toughness, for information",
+                (toughness->low < toughness->high ? format_number(toughness->low) + " to " : "") +
+                    format_number(toughness->high) + " J/m2 (" +
+                    std::string(scenario::toughness_source) + ")");
 }
 
 /// The materials to print: all, or the one with the given name.

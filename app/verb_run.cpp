@@ -20,8 +20,8 @@
 #include "incise/app/stopped_run.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/atomic_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/live/recording.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/runner/kept_scenario.h"
@@ -117,7 +117,7 @@ class OfRecording : public Course {
         const auto tick = replay_.first_difference();
         if (!tick) return std::nullopt;
         return file_.string() + ": from tick " + std::to_string(*tick) + " on, t = " +
-               io::format_number(static_cast<double>(*tick) * replay_.session().tick_length()) +
+               format_number(static_cast<double>(*tick) * replay_.session().tick_length()) +
                " s, the body is not as it was in the session: the scenario, the program or the "
                "processor is another";
     }
@@ -298,7 +298,7 @@ int simulate(Course& course, bool is_new, runner::RunWriter& writer, const RunOp
         const bool can_resume = !options.replay;
         if (can_resume) writer.take_checkpoint(simulation, runner::CheckpointKind::of_a_stop);
         finish({"interrupted", "stopped by a signal"});
-        print_error("stopped at t = " + io::format_number(simulation.time()) +
+        print_error("stopped at t = " + format_number(simulation.time()) +
                     " s; what was written so far is in " + writer.main_result().string() +
                     (can_resume ? "; to go on: " + resuming_command(options) : ""));
         return 128 + signals.noted();
@@ -336,7 +336,7 @@ int run(const RunOptions& options) {
     auto overrides = recording ? recording->scenario.overrides : std::vector<std::string>();
     overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
     if (options.end_time)
-        overrides.push_back("dynamics.end_time=" + io::format_number(*options.end_time));
+        overrides.push_back("dynamics.end_time=" + format_number(*options.end_time));
     const std::filesystem::path folder =
         options.out.value_or(options.replay.value_or(options.scenario).stem().string() + ".out");
     const auto refusal = options.resume ? std::nullopt : refusal_of(folder);

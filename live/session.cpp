@@ -9,8 +9,8 @@
 
 #include "incise/base/archive.h"
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/cutting/tools/probe_shape.h"
-#include "incise/io/files/number_format.h"
 #include "incise/scenario/body.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -115,8 +115,8 @@ void Session::require_near(const cutting::ToolShape& shape, const Pose& from,
     }
     if (!(move <= most_parts * part * size))
         throw InputError("a tool that touches tissue goes at most " +
-                         io::format_number(most_parts * part * size) + " m in a tick, and not " +
-                         io::format_number(move) + " m: move it more slowly");
+                         format_number(most_parts * part * size) + " m in a tick, and not " +
+                         format_number(move) + " m: move it more slowly");
 }
 
 std::vector<std::string> Session::execute(const Order& order) {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "incise/base/archive.h"
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
-#include "incise/io/files/checked_file.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/runner/step_policy.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/step_limit.h"
@@ -22,7 +22,7 @@ namespace {
 /// Names the step in which something went wrong, as the program does.
 std::string at_step(const scenario::Scenario& scenario, std::uint64_t step, double time,
                     const std::string& text) {
-    return scenario.name + ": step " + std::to_string(step) + ", t = " + io::format_number(time) +
+    return scenario.name + ": step " + std::to_string(step) + ", t = " + format_number(time) +
            " s: " + text;
 }
 
@@ -198,16 +198,15 @@ struct NextStep {
 Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& poll) {
     if (n == 0) throw InputError("a call of 0 steps: n must be at least 1");
     if (dt && !(*dt > 0.0 && std::isfinite(*dt)))
-        throw InputError("a step of " + io::format_number(*dt) + " s: it must be above 0");
+        throw InputError("a step of " + format_number(*dt) + " s: it must be above 0");
     // The world would refuse it too, but only after tools were placed for it.
     const scenario::DynamicsSpec& dynamics = scenario_.dynamics;
     const bool is_explicit = dynamics.mode == scenario::Mode::dynamic &&
                              dynamics.integrator == scenario::TimeIntegrator::semi_implicit_euler;
     constexpr double rounding = 1e-9;
     if (dt && is_explicit && !(*dt <= (1.0 + rounding) * world_.rest_stable_step())) {
-        std::string text = "a step of " + io::format_number(*dt) +
-                           " s is above the stable step of " +
-                           io::format_number(world_.rest_stable_step()) + " s";
+        std::string text = "a step of " + format_number(*dt) + " s is above the stable step of " +
+                           format_number(world_.rest_stable_step()) + " s";
         constexpr double most_steps = 1e9;
         if (*dt >= 1.0 && *dt < most_steps && *dt == std::floor(*dt)) {
             const std::string count = std::to_string(static_cast<std::uint64_t>(*dt));
@@ -222,7 +221,7 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
             if (!dt && !(world_.time() + length > world_.time()))
                 throw PhysicsError(at_step(
                     scenario_, world_.num_steps() + 1, world_.time(),
-                    "the stable step has fallen to " + io::format_number(length) +
+                    "the stable step has fallen to " + format_number(length) +
                         " s, too short for the time to go on: something crushes or draws out an "
                         "element; use smaller motions or loads"));
             return NextStep{world_.time() + length,
@@ -234,8 +233,8 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
 Report WorldDriver::run_until(double time, const Poll& poll) {
     const double from = world_.time();
     if (!(time >= from && std::isfinite(time)))
-        throw InputError("the world cannot run until " + io::format_number(time) +
-                         " s: its time is " + io::format_number(from) + " s");
+        throw InputError("the world cannot run until " + format_number(time) + " s: its time is " +
+                         format_number(from) + " s");
     if (time == from) {
         Report report;
         report.from = report.to = time;
@@ -246,8 +245,8 @@ Report WorldDriver::run_until(double time, const Poll& poll) {
     }
     constexpr double max_steps = 1e10;  // more would take years
     if (!(next_step() * max_steps >= time - from))
-        throw InputError("to run until " + io::format_number(time) +
-                         " s takes more than 1e10 steps of " + io::format_number(next_step()) +
+        throw InputError("to run until " + format_number(time) +
+                         " s takes more than 1e10 steps of " + format_number(next_step()) +
                          " s: use an earlier time");
     return call(
         [&](std::uint64_t) {
@@ -270,7 +269,7 @@ std::string WorldDriver::save() const {
        edits_);
     const std::string& bytes = ar.bytes();
     ArchiveWriter head;
-    head(std::string(mark), sim::World::state_format, io::checksum(bytes));
+    head(std::string(mark), sim::World::state_format, checksum(bytes));
     return head.take() + bytes;
 }
 
@@ -289,7 +288,7 @@ void WorldDriver::restore(std::string_view bytes) {
     head(format, sum);
     if (format != sim::World::state_format) refuse("another version of Incise has saved them");
     const std::string_view body = bytes.substr(head_size);
-    if (io::checksum(body) != sum) refuse("they are damaged");
+    if (checksum(body) != sum) refuse("they are damaged");
     ArchiveReader ar(body);
     std::string state;
     std::uint64_t num_scripts = 0;

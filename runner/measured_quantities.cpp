@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/input_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/scenario/quantities.h"
 
 namespace incise::runner {
@@ -114,7 +114,7 @@ std::vector<std::string> failed_expectations(const scenario::Scenario& scenario,
         const double value = found->second;
         const auto fail = [&](const char* side, double limit) {
             failures.push_back("expected " + expected.quantity + " " + side + " " +
-                               io::format_number(limit) + ", it is " + io::format_number(value));
+                               format_number(limit) + ", it is " + format_number(value));
         };
         // With `!`, a value that is not a number fails.
         if (expected.min && !(value >= *expected.min)) fail("of at least", *expected.min);

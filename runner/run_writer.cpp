@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/atomic_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/runner/edit_line.h"
 #include "incise/runner/kept_scenario.h"
 
@@ -90,7 +90,7 @@ void RunWriter::append_history(const Simulation& simulation, const sim::BodyTota
     std::string line;
     for (const auto& [name, value] : last_row_) {
         if (!line.empty()) line += ',';
-        io::append_number(line, value);
+        append_number(line, value);
     }
     history_.append(line);
 }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::runner {
 
@@ -46,7 +46,7 @@ void ScriptedTools::move_jaws(sim::World& world, sim::ToolId tool, double time,
     if (world.close_grasper(tool) == 0) {
         lost_.push_back(tool.index);
         warnings.push_back("grasper '" + world.tool(tool).name +
-                           "' closes on nothing at t = " + io::format_number(time) +
+                           "' closes on nothing at t = " + format_number(time) +
                            " s; check where its path and the tissue are then");
     }
 }
@@ -62,10 +62,9 @@ void ScriptedTools::draw_suture(sim::World& world, sim::ToolId tool, double from
         const std::size_t num_points =
             std::get<cutting::Suture>(world.tool(tool).shape).points.size();
         if (const std::size_t num_found = world.tie_suture(tool); num_found < num_points)
-            warnings.push_back("suture '" + world.tool(tool).name +
-                               "', at t = " + io::format_number(from) + " s: of its " +
-                               std::to_string(num_points) + " points, " +
-                               std::to_string(num_points - num_found) +
+            warnings.push_back("suture '" + world.tool(tool).name + "', at t = " +
+                               format_number(from) + " s: of its " + std::to_string(num_points) +
+                               " points, " + std::to_string(num_points - num_found) +
                                " have no tissue any more, and are left out");
     }
     const double now = world.suture_length(tool);
@@ -82,7 +81,7 @@ void ScriptedTools::warn_of_lost_holds(const sim::World& world,
             std::ranges::find(lost_, i) == lost_.end()) {
             lost_.push_back(i);
             warnings.push_back("grasper '" + world.tool({i}).name +
-                               "' holds nothing from t = " + io::format_number(world.time()) +
+                               "' holds nothing from t = " + format_number(world.time()) +
                                " s on: all tissue has slipped out of its jaws, or was removed");
             continue;
         }
@@ -92,7 +91,7 @@ void ScriptedTools::warn_of_lost_holds(const sim::World& world,
             continue;
         lost_.push_back(i);
         warnings.push_back("suture '" + world.tool({i}).name +
-                           "' holds nothing from t = " + io::format_number(world.time()) +
+                           "' holds nothing from t = " + format_number(world.time()) +
                            " s on: its thread has torn at max_force, or its tissue was removed");
     }
 }

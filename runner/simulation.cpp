@@ -5,10 +5,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
-#include "incise/io/files/checked_file.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/input_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/physics/body/winding.h"
 #include "incise/scenario/body.h"
 #include "incise/scenario/remedies.h"
@@ -46,7 +46,7 @@ std::uint64_t fingerprint_of(const physics::Model& model,
             if (const auto* file = std::get_if<std::filesystem::path>(&cut->along))
                 ar(io::load_input_file(*file).bytes);
     }
-    return io::checksum(ar.bytes());
+    return incise::checksum(ar.bytes());
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ void Simulation::warn_of_overlaps() {
     std::ostringstream text;
     text.precision(2);
     text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size_
-         << " of an element, at t = " << io::format_number(overlap_.time)
+         << " of an element, at t = " << format_number(overlap_.time)
          << " s: by a cut through tissue that is strained, by bodies or tools that begin in each "
             "other, or by parts that are thin and pressed hard; see max_penetration in history.csv";
     warnings_.push_back(text.str());
@@ -142,12 +142,12 @@ void Simulation::restore(ArchiveReader& ar) {
     warnings_.resize(num_body_warnings_);
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
-        throw InputError("its time, " + io::format_number(time()) + " s, is not within the run");
+        throw InputError("its time, " + format_number(time()) + " s, is not within the run");
     if (world_.num_tools() < tools_.size()) throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
-        throw InputError("its step, " + io::format_number(last_step_) + " s, is none of the run");
+        throw InputError("its step, " + format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
 }
 
@@ -230,11 +230,11 @@ Simulation::Interval Simulation::next_step(double stop) const {
     const double end =
         policy_({scenario_, model(), time(), stop, world_.stable_step(), num_steps()});
     if (!(end > time() && end <= stop))
-        throw InputError("the policy of steps chose a step from " + io::format_number(time()) +
-                         " s to " + io::format_number(end) +
+        throw InputError("the policy of steps chose a step from " + format_number(time()) +
+                         " s to " + format_number(end) +
                          " s: it must end after its start, "
                          "and at " +
-                         io::format_number(stop) + " s at the latest");
+                         format_number(stop) + " s at the latest");
     return {time(), end};
 }
 

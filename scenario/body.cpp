@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/contact/blade_contact.h"
-#include "incise/io/files/number_format.h"
 #include "incise/scenario/body_problems.h"
 #include "incise/scenario/elastic_constants.h"
 #include "incise/scenario/plausibility.h"

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/scenario/diagnostics.h"
 
@@ -244,9 +244,9 @@ void add_value(Hash& hash, const Value& value) {
     } else if (const auto* text = value.get<std::string>()) {
         hash.add("t" + std::to_string(text->size()) + ":" + *text);
     } else if (const auto* integer = value.get<std::int64_t>()) {
-        hash.add("n" + io::format_number(static_cast<double>(*integer)) + ";");
+        hash.add("n" + format_number(static_cast<double>(*integer)) + ";");
     } else if (const auto* real = value.get<double>()) {
-        hash.add("n" + io::format_number(*real) + ";");
+        hash.add("n" + format_number(*real) + ";");
     } else if (const auto* flag = value.get<bool>()) {
         hash.add(*flag ? "yes;" : "no;");
     }
@@ -255,8 +255,8 @@ void add_value(Hash& hash, const Value& value) {
 std::string text_of(const Value& value) {
     if (const auto* text = value.get<std::string>()) return '"' + *text + '"';
     if (const auto* integer = value.get<std::int64_t>())
-        return io::format_number(static_cast<double>(*integer));
-    if (const auto* real = value.get<double>()) return io::format_number(*real);
+        return format_number(static_cast<double>(*integer));
+    if (const auto* real = value.get<double>()) return format_number(*real);
     if (const auto* flag = value.get<bool>()) return *flag ? "true" : "false";
     if (value.get<DateOrTime>()) return value.description();
     if (value.get<Table>()) return "{}";
@@ -290,7 +290,7 @@ void append_contents(const Value& value, const std::string& path,
 std::string Value::description() const {
     if (const auto* text = get<std::string>()) return "the text \"" + *text + "\"";
     if (const auto* integer = get<std::int64_t>()) return "the number " + std::to_string(*integer);
-    if (const auto* real = get<double>()) return "the number " + io::format_number(*real);
+    if (const auto* real = get<double>()) return "the number " + format_number(*real);
     if (const auto* flag = get<bool>()) return *flag ? "true" : "false";
     if (const auto* array = get<Array>()) return "an array of " + std::to_string(array->size());
     return get<Table>() != nullptr ? "a table" : "a date or time";

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::scenario {
 
@@ -45,7 +45,7 @@ std::string key_text(std::string_view key) {
 std::string number_text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
-    std::string text = io::format_number(value);
+    std::string text = format_number(value);
     // A whole number has a point, so that it stays a real one.
     if (text.find_first_of(".e") == text.npos) text += ".0";
     return text;

@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::scenario {
 
 namespace {
 
-using io::format_number;
 
 ParameterSet keys_of(const ElasticParameters& given) {
     ParameterSet keys;

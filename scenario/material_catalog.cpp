@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::scenario {
 
@@ -42,7 +42,7 @@ double twice_c1_and_c2(const ElasticParameters& p) { return 2.0 * (*p[c1] + *p[c
 
 double lambda_of_logarithm(const ElasticConstants& k) {
     if (!(k.lambda >= 0.0))
-        throw InputError("Lame's lambda is " + io::format_number(k.lambda) +
+        throw InputError("Lame's lambda is " + format_number(k.lambda) +
                          " at rest, but this law needs at least 0: Poisson's ratio must not be "
                          "negative");
     return k.lambda;
@@ -51,9 +51,9 @@ double lambda_of_logarithm(const ElasticConstants& k) {
 physics::Law make_mooney_rivlin(const ElasticConstants& k, const ElasticParameters& p) {
     const double lambda = lambda_of_logarithm(k);
     if (!(lambda >= 4.0 * *p[c2]))
-        throw InputError("c2 is " + io::format_number(*p[c2]) +
+        throw InputError("c2 is " + format_number(*p[c2]) +
                          ", but must be at most a quarter of Lame's lambda (" +
-                         io::format_number(lambda / 4.0) +
+                         format_number(lambda / 4.0) +
                          "): lower it, or raise bulk_modulus, lame_lambda or poisson");
     return physics::MooneyRivlin{*p[c1], *p[c2], lambda - 4.0 * *p[c2]};
 }
@@ -61,9 +61,9 @@ physics::Law make_mooney_rivlin(const ElasticConstants& k, const ElasticParamete
 physics::Law make_fung_demiray(const ElasticConstants& k, const ElasticParameters& p) {
     const double lambda = lambda_of_logarithm(k);
     if (!(lambda >= 2.0 * k.mu * *p[gamma]))
-        throw InputError("gamma is " + io::format_number(*p[gamma]) +
+        throw InputError("gamma is " + format_number(*p[gamma]) +
                          ", but must be at most Lame's lambda over twice the shear modulus (" +
-                         io::format_number(lambda / (2.0 * k.mu)) +
+                         format_number(lambda / (2.0 * k.mu)) +
                          "): lower it, raise poisson, or use fung-demiray-isochoric");
     return physics::FungDemiray{k.mu, *p[gamma], lambda - 2.0 * k.mu * *p[gamma]};
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/scenario/elastic_constants.h"
 #include "incise/scenario/plausibility.h"
 #include "incise/scenario/scenario_sections.h"
@@ -55,7 +55,7 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
     if (spec.stiffness_ratio > 0.0 && spec.stiffness_ratio < 0.5)
         material.warning("stiffness_ratio",
                          in_quotes(material.path_of("stiffness_ratio")) + " = " +
-                             io::format_number(spec.stiffness_ratio) +
+                             format_number(spec.stiffness_ratio) +
                              " is nearly the singular model without face diagonals, which "
                              "wrinkles; from 0.5 on a body bears a compression of a quarter");
     constexpr double rounding = 1e-9;
@@ -66,9 +66,9 @@ void warn_of_limits(const TableReader& material, const MaterialSpec& spec,
                              in_quotes(material.path_of("correction_forces")) +
                                  " = false leaves the springs alone, whose Poisson's ratio is 1/4 "
                                  "and not " +
-                                 io::format_number(poisson));
+                                 format_number(poisson));
     } else if (poisson < 0.25 - rounding) {
-        material.warning("poisson", "Poisson's ratio is " + io::format_number(poisson) +
+        material.warning("poisson", "Poisson's ratio is " + format_number(poisson) +
                                         "; below 1/4 the method hybmss loses its resistance to "
                                         "large tension: along one axis at a stretch of 1.2 for a "
                                         "ratio of 0, 1.37 for 0.1, 1.6 for 0.15, 2.3 for 0.2 (and "
@@ -173,7 +173,7 @@ std::vector<physics::PronyTerm> read_prony(const TableReader& material) {
         sum += alpha;
     }
     if (sum >= 1.0)
-        material.error("prony", "has shares alpha that add up to " + io::format_number(sum) +
+        material.error("prony", "has shares alpha that add up to " + format_number(sum) +
                                     ": their sum must be below 1, or no stress would last");
     return terms;
 }

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/vtk/series.h"
 #include "incise/scenario/document_text.h"
 #include "incise/scenario/held_tool.h"
@@ -17,7 +17,6 @@ namespace incise::scenario {
 
 namespace {
 
-using io::format_number;
 using Keys = std::string_view;
 
 constexpr Keys root_keys[] = {"title", "mesh", "material", "dynamics", "contact", "constraint",

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::scenario {
@@ -45,9 +45,9 @@ std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) 
     if (num_thin == 0) return std::nullopt;
     return "key 'dynamics.precision': \"single\" leaves no strain to speak of in " +
            std::to_string(num_thin) + (num_thin == 1 ? " tetrahedron" : " tetrahedra") +
-           " with a least altitude below " + io::format_number(least_thinness) +
+           " with a least altitude below " + format_number(least_thinness) +
            " of the longest edge (the thinnest, element " +
-           std::to_string(mesh.label(thinnest_element)) + ", has " + io::format_number(thinnest) +
+           std::to_string(mesh.label(thinnest_element)) + ", has " + format_number(thinnest) +
            "); use \"double\", or a mesh without them";
 }
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/memory.h"
-#include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/scenario/body_problems.h"
 #include "incise/scenario/remedies.h"
@@ -16,8 +16,8 @@
 namespace incise::scenario {
 
 std::string vector_text(const Vec3& v) {
-    return "[" + io::format_number(v.x()) + ", " + io::format_number(v.y()) + ", " +
-           io::format_number(v.z()) + "]";
+    return "[" + format_number(v.x()) + ", " + format_number(v.y()) + ", " + format_number(v.z()) +
+           "]";
 }
 
 namespace {
@@ -38,7 +38,7 @@ void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
                             static_cast<double>(box.cells[1]) * box.cells[2];
     if (const auto lack = io::lack_of_memory(bytes_per_element * elements))
         throw MemoryError(located(location, "key 'mesh.box.cells': makes " +
-                                                io::format_number(elements) + " elements: that " +
+                                                format_number(elements) + " elements: that " +
                                                 *lack + "; use fewer cells"));
 }
 
@@ -119,7 +119,7 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
     } catch (const InputError& error) {
         if (spec.scale != 1.0 && topology::check(load_mesh(spec, {}, 1.0).mesh).errors.empty())
             throw BodyError(spec.scale_location,
-                            "key 'mesh.scale': " + io::format_number(spec.scale) +
+                            "key 'mesh.scale': " + format_number(spec.scale) +
                                 " makes the mesh too " + (spec.scale > 1.0 ? "large" : "small") +
                                 " to compute with, which without it is sound: use a " +
                                 (spec.scale > 1.0 ? "smaller" : "larger") + " one");

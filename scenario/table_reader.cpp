@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::scenario {
 
@@ -294,7 +294,7 @@ std::optional<double> TableReader::number_of(const Value& value, const std::stri
     if (limits.contains(number)) return number;
     const char* finite = std::isinf(number) && limits.excludes_infinity() ? "finite, " : "";
     report(value.location, path,
-           io::format_number(number) + " is not allowed: must be " + finite + limits.text());
+           format_number(number) + " is not allowed: must be " + finite + limits.text());
     return std::nullopt;
 }
 

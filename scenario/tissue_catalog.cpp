@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::scenario {
 
@@ -222,8 +222,8 @@ std::string inline_tables(const std::vector<Row>& rows, const std::string& first
     std::string text;
     for (const auto& row : rows) {
         text += text.empty() ? "{ " : ", { ";
-        text += first_key + " = " + io::format_number(row.*first) + ", ";
-        text += second_key + " = " + io::format_number(row.*second) + " }";
+        text += first_key + " = " + format_number(row.*first) + ", ";
+        text += second_key + " = " + format_number(row.*second) + " }";
     }
     return text;
 }
@@ -243,7 +243,7 @@ const Tissue* find_tissue(std::string_view key) {
 
 std::vector<std::string> scenario_lines(const Tissue& tissue) {
     std::vector<std::string> lines = {"law = \"" + std::string(tissue.law) + "\"",
-                                      "density = " + io::format_number(tissue.density)};
+                                      "density = " + format_number(tissue.density)};
     for (const auto& row : parameters())
         if (row.parameter == terms && !tissue.parameters.terms.empty())
             lines.push_back("terms = [" +
@@ -251,7 +251,7 @@ std::vector<std::string> scenario_lines(const Tissue& tissue) {
                                           "alpha", &physics::Ogden::Term::alpha) +
                             "]");
         else if (const auto& value = tissue.parameters[row.parameter])
-            lines.push_back(std::string(row.key) + " = " + io::format_number(*value));
+            lines.push_back(std::string(row.key) + " = " + format_number(*value));
     if (!tissue.prony.empty())
         lines.push_back("prony = [" +
                         inline_tables(tissue.prony, "alpha", &physics::PronyTerm::alpha, "tau",

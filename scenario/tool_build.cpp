@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/tools/probe_shape.h"
 #include "incise/cutting/tools/solid.h"
-#include "incise/io/files/number_format.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/topology/cell_point.h"
 #include "incise/topology/mesh_metrics.h"
@@ -168,8 +168,7 @@ void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh) {
         if (topology::find_point(mesh, mesh.rest_positions(), x, reach)) continue;
         std::ostringstream text;
         text << "tool '" << tool.name << "': point " << i << " (from 0), [" << x.x() << ", "
-             << x.y() << ", " << x.z() << "], is farther than its reach, "
-             << io::format_number(reach)
+             << x.y() << ", " << x.z() << "], is farther than its reach, " << format_number(reach)
              << " m, from the body at rest; check its coordinates and units";
         throw InputError(text.str());
     }

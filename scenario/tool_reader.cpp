@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/scenario/scenario_sections.h"
 #include "incise/scenario/touching_tools.h"
 
@@ -10,7 +10,6 @@ namespace incise::scenario {
 
 namespace {
 
-using io::format_number;
 using Keys = std::string_view;
 
 constexpr Keys tool_keys[] = {

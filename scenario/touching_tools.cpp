@@ -3,14 +3,13 @@
 
 #include <string>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/scenario/scenario_sections.h"
 
 namespace incise::scenario {
 
 namespace {
 
-using io::format_number;
 using Keys = std::string_view;
 
 constexpr Keys shape_keys[] = {"sphere", "capsule", "box"};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 
@@ -21,7 +21,7 @@ World::~World() = default;
 
 const StepReport& World::step(double dt) {
     if (!(dt > 0.0 && std::isfinite(dt)))
-        throw InputError("a step of " + io::format_number(dt) + " s: it must be above 0");
+        throw InputError("a step of " + format_number(dt) + " s: it must be above 0");
     return parts_->checked_step(parts_->time + dt, dt);
 }
 
@@ -31,24 +31,24 @@ const StepReport& World::step_to(double time) {
 
 const StepReport& World::Parts::checked_step(double end, double dt) {
     if (has_failed)
-        throw InputError("the world has failed in the step from " + io::format_number(time) +
+        throw InputError("the world has failed in the step from " + format_number(time) +
                          " s; restore a state that was saved before");
     if (!(end > time && std::isfinite(end)))
-        throw InputError("a step from " + io::format_number(time) + " s to " +
-                         io::format_number(end) + " s: it must go forward");
+        throw InputError("a step from " + format_number(time) + " s to " + format_number(end) +
+                         " s: it must go forward");
     const double at_rest = model.rest_stable_step();
     if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding_of_steps) * at_rest))
-        throw InputError("a step of " + io::format_number(dt) + " s is above the stable step of " +
-                         io::format_number(at_rest) + " s");
+        throw InputError("a step of " + format_number(dt) + " s is above the stable step of " +
+                         format_number(at_rest) + " s");
     constexpr std::size_t most_parts = 1000;
     for (const Tool& tool : tools)
         if (solver == Solver::semi_implicit_euler && parts_for(tool) > double(most_parts))
             throw InputError("tool '" + tool.def.name + "' moves so far in a step of " +
-                             io::format_number(dt) +
+                             format_number(dt) +
                              " s that the step needs more than 1000 parts; move it more slowly");
     if (num_parts(dt) > most_parts)
-        throw InputError("a step of " + io::format_number(dt) + " s is far above " +
-                         io::format_number(stable_step) +
+        throw InputError("a step of " + format_number(dt) + " s is far above " +
+                         format_number(stable_step) +
                          " s, the stable step of the tissue in its present strain; something "
                          "crushes or draws out an element: use smaller motions or loads, or "
                          "shorter steps");
@@ -190,8 +190,8 @@ void World::set_suture_length(ToolId id, double length) {
     Parts::Tool& tool = parts_->tool_of(id);
     if (!tool.is_present) throw InputError("suture '" + tool.def.name + "' is not tied");
     if (!(length >= 0.0 && std::isfinite(length)))
-        throw InputError("suture '" + tool.def.name + "': a length of " +
-                         io::format_number(length) + " m: it must be 0 or more");
+        throw InputError("suture '" + tool.def.name + "': a length of " + format_number(length) +
+                         " m: it must be 0 or more");
     tool.target_length = length;
 }
 

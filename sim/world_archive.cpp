@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "incise/io/files/checked_file.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/checksum.h"
+#include "incise/base/number_format.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_archive.h"
@@ -20,7 +20,7 @@ namespace {
 double read_time(ArchiveReader& ar) {
     const auto time = ar.read<double>();
     if (!(time >= 0.0 && std::isfinite(time)))
-        throw InputError("its time is " + io::format_number(time) + " s");
+        throw InputError("its time is " + format_number(time) + " s");
     return time;
 }
 
@@ -129,7 +129,7 @@ std::uint64_t fingerprint_of(const physics::Model& model) {
     for (const auto& [region, material] : table.of_region)
         ar(region, static_cast<std::uint64_t>(material));
     ar(table.precision);
-    return io::checksum(ar.bytes());
+    return incise::checksum(ar.bytes());
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/cutting/tools/solid.h"
-#include "incise/io/files/number_format.h"
 #include "incise/physics/elements/workers.h"
 
 namespace incise::sim {
@@ -39,7 +39,7 @@ void require_curve(const physics::TimeCurve<Value>& curve, const std::string& wh
             throw InputError(what + " has a key that is not finite");
         if (before && !(before->first < key.first))
             throw InputError(what + " has keys whose times do not ascend, at " +
-                             io::format_number(key.first) + " s");
+                             format_number(key.first) + " s");
         before = &key;
     }
 }
@@ -109,7 +109,7 @@ struct FaultOfShape {
         if (std::ranges::adjacent_find(blade.edge) != blade.edge.end())
             return "two points of its edge that follow each other are the same";
         if (!(blade.toughness >= 0.0 && std::isfinite(blade.toughness)))
-            return "its toughness is " + io::format_number(blade.toughness) +
+            return "its toughness is " + format_number(blade.toughness) +
                    " J/m2: it must be 0 or more";
         if (blade.cutting_force != cutting::CuttingForce::report &&
             blade.cutting_force != cutting::CuttingForce::apply)
@@ -129,13 +129,13 @@ struct FaultOfShape {
         if (std::ranges::adjacent_find(suture.points) != suture.points.end())
             return "two points of its thread that follow each other are the same";
         if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
-            return "its stiffness is " + io::format_number(suture.stiffness) +
+            return "its stiffness is " + format_number(suture.stiffness) +
                    " N/m: it must be above 0";
         if (!(suture.max_force > 0.0))
-            return "its largest force is " + io::format_number(suture.max_force) +
+            return "its largest force is " + format_number(suture.max_force) +
                    " N: it must be above 0";
         if (!(suture.reach >= 0.0 && std::isfinite(suture.reach)))
-            return "its reach is " + io::format_number(suture.reach) + " m: it must be 0 or more";
+            return "its reach is " + format_number(suture.reach) + " m: it must be 0 or more";
         return "";
     }
     std::string operator()(const Carver& carver) const {
@@ -160,13 +160,12 @@ struct FaultOfShape {
 
     std::string operator()(const cutting::Probe& probe) const {
         if (!(probe.friction >= 0.0 && std::isfinite(probe.friction)))
-            return "its friction is " + io::format_number(probe.friction) +
-                   ": it must be 0 or more";
+            return "its friction is " + format_number(probe.friction) + ": it must be 0 or more";
         return std::visit([&](const auto& shape) { return fault_of(shape); }, probe.shape);
     }
     std::string operator()(const cutting::Grasper& grasper) const {
         if (!(grasper.max_force > 0.0))
-            return "its largest force is " + io::format_number(grasper.max_force) +
+            return "its largest force is " + format_number(grasper.max_force) +
                    " N: it must be above 0";
         return std::visit([&](const auto& shape) { return fault_of(shape); }, grasper.jaws);
     }
@@ -175,7 +174,7 @@ struct FaultOfShape {
     static std::string fault_of(const cutting::HalfSpace& half_space) {
         if (!is_finite(half_space.point)) return "its point is not finite";
         if (std::abs(half_space.normal.norm() - 1.0) < 1e-6) return "";
-        return "its normal has a length of " + io::format_number(half_space.normal.norm()) +
+        return "its normal has a length of " + format_number(half_space.normal.norm()) +
                ": it must be 1";
     }
     static std::string fault_of(const cutting::Solid& solid) { return cutting::fault_of(solid); }
@@ -192,11 +191,11 @@ struct FaultOfShape {
     }
     static std::string fault_of_length(const char* what, double length) {
         if (length > 0.0 && std::isfinite(length)) return "";
-        return what + (" of " + io::format_number(length)) + " m: it must be above 0";
+        return what + (" of " + format_number(length)) + " m: it must be above 0";
     }
     static std::string fault_of_snap(double snap) {
         if (snap >= 0.0 && snap <= 0.5) return "";
-        return "it has a snap of " + io::format_number(snap) + ": it must be from 0 to 0.5";
+        return "it has a snap of " + format_number(snap) + ": it must be from 0 to 0.5";
     }
 };
 
@@ -222,7 +221,7 @@ void require_sound(const physics::Constraint& constraint, const Mesh& mesh) {
     if (!is_finite(constraint.point)) throw InputError(what + ": its point is not finite");
     if (!(std::abs(constraint.axis.norm() - 1.0) < 1e-6))
         throw InputError(what + ": its axis has a length of " +
-                         io::format_number(constraint.axis.norm()) + ": it must be 1");
+                         format_number(constraint.axis.norm()) + ": it must be 1");
 }
 
 void require_sound(const physics::Load& load, const Mesh& mesh) {
@@ -238,13 +237,11 @@ struct FaultOfMethod {
     std::string operator()(const physics::HyperElasticLinks& links) const {
         const double mu = physics::rest_mu(links.law), lambda = physics::rest_lambda(links.law);
         if (!(mu > 0.0 && std::isfinite(mu)))
-            return "its shear modulus at rest is " + io::format_number(mu) +
-                   " Pa: it must be above 0";
+            return "its shear modulus at rest is " + format_number(mu) + " Pa: it must be above 0";
         if (const double bulk = lambda + 2.0 / 3.0 * mu; !(bulk > 0.0 && std::isfinite(bulk)))
-            return "its bulk modulus at rest is " + io::format_number(bulk) +
-                   " Pa: it must be above 0";
+            return "its bulk modulus at rest is " + format_number(bulk) + " Pa: it must be above 0";
         if (!(links.inversion_threshold > 0.0 && links.inversion_threshold < 1.0))
-            return "its inversion threshold is " + io::format_number(links.inversion_threshold) +
+            return "its inversion threshold is " + format_number(links.inversion_threshold) +
                    ": it must be between 0 and 1";
         if (links.prony_rule != physics::PronyRule::stress &&
             links.prony_rule != physics::PronyRule::nodal)
@@ -252,23 +249,22 @@ struct FaultOfMethod {
         double sum = 0.0;
         for (const physics::PronyTerm& term : links.prony) {
             if (!(term.alpha > 0.0 && term.tau > 0.0 && std::isfinite(term.tau)))
-                return "a term of its Prony series has alpha " + io::format_number(term.alpha) +
-                       " and tau " + io::format_number(term.tau) + " s: both must be above 0";
+                return "a term of its Prony series has alpha " + format_number(term.alpha) +
+                       " and tau " + format_number(term.tau) + " s: both must be above 0";
             sum += term.alpha;
         }
         if (!(sum < 1.0))
-            return "the alphas of its Prony series add up to " + io::format_number(sum) +
+            return "the alphas of its Prony series add up to " + format_number(sum) +
                    ": they must stay below 1";
         return "";
     }
     std::string operator()(const physics::MassSprings& springs) const {
         if (springs.young > 0.0 && std::isfinite(springs.young)) return "";
-        return "its Young's modulus is " + io::format_number(springs.young) +
-               " Pa: it must be above 0";
+        return "its Young's modulus is " + format_number(springs.young) + " Pa: it must be above 0";
     }
     std::string operator()(const physics::HybridSprings& springs) const {
         if (!(springs.shear_modulus > 0.0 && std::isfinite(springs.shear_modulus)))
-            return "its shear modulus is " + io::format_number(springs.shear_modulus) +
+            return "its shear modulus is " + format_number(springs.shear_modulus) +
                    " Pa: it must be above 0";
         if (!std::isfinite(springs.volume_modulus)) return "its volume modulus is not finite";
         if (!(springs.stiffness_ratio >= 0.0)) return "its stiffness ratio must be 0 or more";
@@ -279,8 +275,7 @@ struct FaultOfMethod {
 void require_sound(const physics::Material& material, std::size_t number) {
     std::string fault;
     if (!(material.density > 0.0 && std::isfinite(material.density)))
-        fault =
-            "its density is " + io::format_number(material.density) + " kg/m3: it must be above 0";
+        fault = "its density is " + format_number(material.density) + " kg/m3: it must be above 0";
     else
         fault = std::visit(FaultOfMethod{}, material.method);
     if (!fault.empty()) throw InputError("material " + std::to_string(number) + ": " + fault);
@@ -304,14 +299,13 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
         throw InputError("there is no such precision");
     if (!is_finite(def.gravity)) throw InputError("gravity is not finite");
     if (!(def.damping >= 0.0 && std::isfinite(def.damping)))
-        throw InputError("damping is " + io::format_number(def.damping) +
-                         " 1/s: it must be 0 or more");
+        throw InputError("damping is " + format_number(def.damping) + " 1/s: it must be 0 or more");
     if (def.solver != Solver::semi_implicit_euler && def.solver != Solver::implicit_euler &&
         def.solver != Solver::statics)
         throw InputError("there is no such solver");
     require_sound_num_threads(def.num_threads);
     if (!(def.contact.friction >= 0.0 && std::isfinite(def.contact.friction)))
-        throw InputError("the friction of contact is " + io::format_number(def.contact.friction) +
+        throw InputError("the friction of contact is " + format_number(def.contact.friction) +
                          ": it must be 0 or more");
     for (const physics::Constraint& constraint : def.constraints) require_sound(constraint, mesh);
     for (const physics::Load& load : def.loads) require_sound(load, mesh);

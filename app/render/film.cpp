@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 extern char** environ;
 
@@ -37,7 +37,7 @@ void make_film(const PictureSeries& pictures, const std::filesystem::path& film)
                                       "-loglevel",
                                       "error",
                                       "-framerate",
-                                      io::format_number(pictures.pictures_a_second),
+                                      format_number(pictures.pictures_a_second),
                                       "-i",
                                       input,
                                       "-vf",

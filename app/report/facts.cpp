@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::report {
 
@@ -23,7 +23,7 @@ double sum_over_edits(const RunRecord& run, double Edit::*value) {
 
 /// Returns a count with its noun, as the scripts of the page have it: "11,646 steps".
 std::string counted(double count, const std::string& noun) {
-    std::string digits = io::format_number(static_cast<std::int64_t>(count));
+    std::string digits = format_number(static_cast<std::int64_t>(count));
     if (count >= 10'000.0)
         for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
     return digits + " " + noun + (count == 1.0 ? "" : "s");
@@ -85,7 +85,7 @@ Ending ending_of(const RunRecord& run) {
     return {"unfinished", "The run has not ended.",
             "It still goes on, or it was killed: it has left no summary.json. This page shows what "
             "it had written up to t = " +
-                (num_rows == 0 ? "0" : io::format_number(run.history.value("time", num_rows - 1))) +
+                (num_rows == 0 ? "0" : format_number(run.history.value("time", num_rows - 1))) +
                 " s. A run that was killed goes on with the same command and --resume."};
 }
 

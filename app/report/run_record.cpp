@@ -9,8 +9,8 @@
 
 #include "incise/app/dates.h"
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/input_file.h"
-#include "incise/io/files/number_format.h"
 
 namespace incise::report {
 

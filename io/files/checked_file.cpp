@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/files/checked_file.h"
 
-#include <lzma.h>
+#include <cstdint>
 
 #include "incise/base/archive.h"
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/input_file.h"
@@ -17,10 +18,6 @@ constexpr std::string_view first_line = "incise checkpoint, format 1\n";
 constexpr std::size_t checksum_size = sizeof(std::uint64_t);
 
 }  // namespace
-
-std::uint64_t checksum(std::string_view bytes, std::uint64_t before) {
-    return lzma_crc64(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), before);
-}
 
 void write_checked_file(const std::filesystem::path& path, std::string_view bytes) {
     std::string file(first_line);

@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace incise::io {
-
-/// Returns the CRC-64 (ECMA-182, as in xz) of the bytes. To continue a checksum, `before` is the
-/// checksum of all bytes before these.
-/// Cost: about a nanosecond a byte.
-std::uint64_t checksum(std::string_view bytes, std::uint64_t before = 0);
 
 /// Writes a line that names the format, the bytes, and a checksum of both. Works and throws as
 /// write_file() does.

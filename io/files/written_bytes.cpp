@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
-#include "incise/io/files/checked_file.h"
 
 namespace incise::io {
 
@@ -23,7 +23,7 @@ namespace {
 
 void BytesWritten::append(std::string_view bytes) {
     size += bytes.size();
-    checksum = io::checksum(bytes, checksum);
+    checksum = incise::checksum(bytes, checksum);
 }
 
 void require_begins_with(const std::filesystem::path& path, const BytesWritten& bytes) {

@@ -11,7 +11,7 @@ namespace incise::io {
 /// The size and checksum of the bytes of a file so far.
 struct BytesWritten {
     std::uint64_t size = 0;
-    std::uint64_t checksum = 0;  ///< see io::checksum
+    std::uint64_t checksum = 0;  ///< see checksum
 
     void append(std::string_view bytes);
     bool operator==(const BytesWritten&) const = default;

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 
 namespace incise::io {

@@ -1,6 +1,6 @@
 // Writer of Gmsh files (.msh) as text of version 2.2, which all readers of the format know.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 
 namespace incise::io {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 
 namespace incise::io {

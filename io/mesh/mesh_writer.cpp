@@ -6,8 +6,8 @@
 #include <cctype>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/atomic_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 #include "incise/io/vtk/vtu_writer.h"
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 
 namespace incise::io {

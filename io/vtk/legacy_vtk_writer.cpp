@@ -1,6 +1,6 @@
 // Writer of legacy VTK files (.vtk) as text of version 3.0, which all readers of the format know.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
 
 namespace incise::io {

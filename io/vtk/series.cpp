@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/input_file.h"
-#include "incise/io/files/number_format.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/vtk/vtu_writer.h"
 

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "incise/base/error.h"
-#include "incise/io/files/number_format.h"
+#include "incise/base/number_format.h"
 
 namespace incise::live {
 
@@ -365,7 +365,7 @@ void LiveLoop::recover(const std::string& reason) {
     const Session::Moment moment = moments_.take_good();
     go_back(moment);
     std::string text = reason +
-                       ". The body went back to t = " + io::format_number(session_.world().time()) +
+                       ". The body went back to t = " + format_number(session_.world().time()) +
                        " s, and all tools are put away";
     if (num_failures_ >= most_failures) {
         is_paused_ = true;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/output_folder.h"

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <functional>
 
+#include "incise/base/checksum.h"
 #include "incise/base/error.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/checked_file.h"

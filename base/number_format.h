@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string>
 
-namespace incise::io {
+namespace incise {
 
 /// Appends a number, of at most 17 significant digits for a double. Makes no temporary string.
 template <class T>
@@ -24,4 +24,4 @@ std::string format_number(T value) {
     return text;
 }
 
-}  // namespace incise::io
+}  // namespace incise
