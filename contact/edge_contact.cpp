@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "incise/base/error.h"
@@ -21,17 +20,24 @@ namespace {
 constexpr double cosine_of_sharp = 0.9;
 /// Edges are a point of contact if they may meet in so many steps like the last one.
 constexpr double most_steps = 4.0;
-/// Edges that are nearly parallel, by the sine between them, or that cross so near to an end, as a
-/// part of an edge, are no point of contact: nodes there meet triangles.
+/// Edges that are nearly parallel, by the sine between them, or that cross so near to where a sharp
+/// edge ends, as a part of an edge, are no point of contact: nodes there meet triangles.
 struct Limits {
     double least_sine, near_end;
 };
 constexpr Limits to_begin{0.01, 2e-3}, to_stay{1e-3, 1e-6};
+/// Where another edge goes on, the crossing belongs to one of the two.
+constexpr double at_node = -1e-9;
+/// A sharp edge goes on in another one if it does not turn by more than 37 degrees.
+constexpr double cosine_of_straight = 0.8;
 /// No overlap begins deeper than this part of the local length.
 constexpr double deepest_begin = 0.4;
 /// An overlap of this part of the local length is one even if the normal is right for one edge
 /// only. Less may be rounding, or the rims of two sides of a cut that are pressed on each other.
 constexpr double one_sided = 0.005;
+/// Where an edge lies flat on a face, its direction out is that of the face. Flat faces bend a
+/// little.
+constexpr double beside_to_begin = 0.02, beside_to_stay = 0.1;
 
 Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x) {
     const Vec3& a = x[triangle[0].index()];
@@ -48,8 +54,10 @@ struct Crossing {
 };
 
 /// The edges go from p to q and from a to b.
-Crossing cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Limits& limits) {
-    const auto [least_sine, near_end] = limits;
+/// @param ends  of the two edges, true: it ends there; false: another one goes on
+Crossing cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+               const std::array<std::array<bool, 2>, 2>& ends, const Limits& limits) {
+    const double least_sine = limits.least_sine;
     // The bounds are of first order. Half of them is within what the next order adds.
     constexpr double safe = 0.5;
     const Vec3 u = q - p, v = b - a, w = p - a, across = u.cross(v);
@@ -61,10 +69,11 @@ Crossing cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const
             {}, {}, std::max(0.0, safe * (least_sine - sine) / (1.0 / u_length + 1.0 / v_length))};
     const double vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
     const double s = (uv * vw - vv * uw) / (area * area), t = (uv * s + vw) / vv;
-    const auto beside = [near_end = near_end](double part) {
-        return std::max(near_end - part, part - 1.0 + near_end);
+    const auto beside = [&](double part, const std::array<bool, 2>& is_end) {
+        return std::max((is_end[0] ? limits.near_end : at_node) - part,
+                        part - 1.0 + (is_end[1] ? limits.near_end : at_node));
     };
-    const double outside = std::max(beside(s) * u_length, beside(t) * v_length);
+    const double outside = std::max(beside(s, ends[0]) * u_length, beside(t, ends[1]) * v_length);
     if (!(outside > 0.0)) return {{s, t}, across / area, 0.0};
     // Where the edges cross, their lines move by what the ends do, extrapolated; and by how the
     // direction turns, along the distance of the lines.
@@ -75,9 +84,9 @@ Crossing cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const
 }
 
 /// True if a direction is between the normals of two triangles at their common edge, to which it is
-/// at right angles.
-bool is_between(const Vec3& direction, const Vec3& a, const Vec3& b) {
-    const double cosine = a.dot(b);
+/// at right angles; or beside them by so much, as a cosine.
+bool is_between(const Vec3& direction, const Vec3& a, const Vec3& b, double beside) {
+    const double cosine = a.dot(b) - beside;
     return direction.dot(a + b) > 0.0 && direction.dot(a) >= cosine && direction.dot(b) >= cosine;
 }
 
@@ -123,12 +132,55 @@ void EdgeContact::list_edges(const SurfaceTree& tree, const ContactBody& body) {
             const bool is_sharp = a.dot(b) < cosine_of_sharp * a.norm() * b.norm() &&
                                   a.dot(X[third.index()] - X[n]) < 0.0;
             const auto number = static_cast<std::uint32_t>(edges_.size());
-            edges_of_[one.triangle][one.corner] = number;
+            edges_of_[one.triangle][one.corner] = edges_of_[two.triangle][two.corner] = number;
             edges_.push_back({{NodeId(n), one.to}, {one.triangle, two.triangle}, is_sharp});
-            if (is_sharp && (body.takes_part[one.triangle] || body.takes_part[two.triangle]))
-                sharp_.push_back(number);
             ++i;
         }
+    }
+    // In the order of the tree, in which those that follow each other are near each other.
+    std::vector<bool> is_listed(edges_.size(), false);
+    for (const std::uint32_t t : tree.order())
+        for (const std::uint32_t edge : edges_of_[t]) {
+            if (edge == none || is_listed[edge] || !edges_[edge].is_sharp) continue;
+            const auto [one, two] = edges_[edge].triangles;
+            if (!body.takes_part[one] && !body.takes_part[two]) continue;
+            is_listed[edge] = true;
+            sharp_.push_back(edge);
+        }
+    join_edges(X);
+}
+
+/// Finds in which sharp edges others go on.
+void EdgeContact::join_edges(std::span<const Vec3> rest_positions) {
+    struct End {
+        NodeId node;
+        std::uint32_t edge;
+        std::size_t end;  // of the edge: 0 or 1
+    };
+    std::vector<End> ends;
+    for (std::uint32_t edge = 0; edge < edges_.size(); ++edge)
+        if (edges_[edge].is_sharp)
+            for (const std::size_t end : {0, 1})
+                ends.push_back({edges_[edge].nodes[end], edge, end});
+    std::ranges::sort(ends, {}, [](const End& at) { return std::pair(at.node, at.edge); });
+    const auto away = [&](const End& at) -> Vec3 {  // from the node
+        const auto& nodes = edges_[at.edge].nodes;
+        return (rest_positions[nodes[1 - at.end].index()] - rest_positions[at.node.index()])
+            .stableNormalized();
+    };
+    for (std::size_t begin = 0; begin < ends.size();) {
+        std::size_t end = begin;
+        while (end < ends.size() && ends[end].node == ends[begin].node) ++end;
+        for (std::size_t i = begin; i < end; ++i) {
+            double least = -cosine_of_straight;
+            for (std::size_t k = begin; k < end; ++k) {
+                const double cosine = away(ends[i]).dot(away(ends[k]));
+                if (k == i || cosine >= least) continue;
+                least = cosine;
+                edges_[ends[i].edge].next[ends[i].end] = ends[k].edge;
+            }
+        }
+        begin = end;
     }
 }
 
@@ -147,7 +199,7 @@ void EdgeContact::set_surface(const SurfaceTree& tree, const ContactBody& body) 
             sharp = number_of(sharp);
             other = number_of(other);
             if (sharp == none || other == none || !edges_[sharp].is_sharp) return true;
-            if (edges_[other].is_sharp && other < sharp) std::swap(sharp, other);
+            pair.edges = in_order(sharp, other);
             return false;
         });
         std::ranges::sort(pairs, {}, [](const auto& pair) { return pair.edges; });
@@ -157,63 +209,102 @@ void EdgeContact::set_surface(const SurfaceTree& tree, const ContactBody& body) 
 }
 
 void EdgeContact::append_pairs(const SurfaceTree& tree, const ContactBody& body,
-                               std::span<const Vec3> positions, double reach, std::uint32_t sharp) {
+                               std::span<const Vec3> positions, double reach,
+                               std::span<const std::uint32_t> sharp,
+                               std::span<const std::uint8_t> is_moved) {
+    constexpr std::size_t group_size = 8;
+    const auto box_of = [&](std::uint32_t edge) {
+        const auto& [a, b] = edges_[edge].nodes;
+        const Vec3 &x = positions[a.index()], &y = positions[b.index()];
+        return Box(x.cwiseMin(y), x.cwiseMax(y));
+    };
+    const Vec3 margin = Vec3::Constant(reach);
+    for (std::size_t begin = 0; begin < sharp.size(); begin += group_size) {
+        const auto group = sharp.subspan(begin, std::min(group_size, sharp.size() - begin));
+        Box box;
+        NormalCone normals;
+        for (const std::uint32_t edge : group) {
+            box.extend(box_of(edge));
+            for (const std::uint32_t t : edges_[edge].triangles)
+                normals.include({tree.normal(t), 0.0});
+        }
+        near_.clear();
+        tree.for_each_against(Box(box.min() - margin, box.max() + margin), normals,
+                              [&](std::uint32_t t) {
+                                  for (const std::uint32_t edge : edges_of_[t])
+                                      if (edge != none) near_.push_back(edge);
+                              });
+        std::ranges::sort(near_);
+        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        if (!is_moved.empty())
+            std::erase_if(near_, [&](std::uint32_t edge) {
+                const auto& [a, b] = edges_[edge].nodes;
+                return is_moved[a.index()] == 0 && is_moved[b.index()] == 0;
+            });
+        boxes_.clear();
+        for (const std::uint32_t edge : near_) boxes_.push_back(box_of(edge));
+        num_tested_ += group.size() * near_.size();
+        for (const std::uint32_t edge : group) {
+            const Box around = box_of(edge);
+            around_.clear();
+            for (std::size_t i = 0; i < near_.size(); ++i)
+                if (around.squaredExteriorDistance(boxes_[i]) < reach * reach &&
+                    are_near(tree, body, positions, reach, edge, near_[i]))
+                    found_.push_back({in_order(edge, near_[i]), 0.0});
+        }
+    }
+}
+
+EdgeContact::Edges EdgeContact::in_order(std::uint32_t sharp, std::uint32_t other) const {
+    return edges_[other].is_sharp && other < sharp ? Edges{other, sharp} : Edges{sharp, other};
+}
+
+/// True if two edges face each other, are near each other, and belong to different parts of the
+/// body.
+bool EdgeContact::are_near(const SurfaceTree& tree, const ContactBody& body,
+                           std::span<const Vec3> positions, double reach, std::uint32_t sharp,
+                           std::uint32_t other) {
     // By how much normals may turn until pairs are found again, as a cosine.
     constexpr double margin_of_cosine = 0.5;
-    const std::array<NodeId, 2>& nodes = edges_[sharp].nodes;
-    const Vec3 &p = positions[nodes[0].index()], &q = positions[nodes[1].index()];
+    const Edge &first = edges_[sharp], &second = edges_[other];
+    const auto& [m, n] = first.nodes;
+    const auto& [a, b] = second.nodes;
+    if (a == m || a == n || b == m || b == n) return false;
+    if (!body.takes_part[second.triangles[0]] && !body.takes_part[second.triangles[1]])
+        return false;
     const auto sum_of_normals = [&](const Edge& edge) -> Vec3 {
         return tree.normal(edge.triangles[0]) + tree.normal(edge.triangles[1]);
     };
-    const auto sine_of = [](const Vec3& sum) {  // of half of the angle between two normals
-        return std::sqrt(std::max(0.0, 1.0 - 0.25 * sum.squaredNorm()));
+    const auto square_of_sine = [](const Vec3& sum) {  // of half of the angle between two normals
+        return std::max(0.0, 1.0 - 0.25 * sum.squaredNorm());
     };
-    const Vec3 sum = sum_of_normals(edges_[sharp]);
+    const Vec3 sum = sum_of_normals(first), other_sum = sum_of_normals(second);
+    if (-0.25 * sum.dot(other_sum) <
+        0.25 * std::sqrt(sum.squaredNorm() * other_sum.squaredNorm()) -
+            std::sqrt(square_of_sine(sum) * square_of_sine(other_sum)) - margin_of_cosine)
+        return false;
+    const Vec3 &p = positions[m.index()], &q = positions[n.index()], &x = positions[a.index()],
+               &y = positions[b.index()];
+    const auto [s, t] = closest_of_segments(p, q, x, y);
+    if ((p + s * (q - p) - x - t * (y - x)).squaredNorm() >= reach * reach) return false;
     // The corners of all fragments at the edge.
-    std::vector<NodeId> around;
-    const auto list_around = [&] {
-        std::vector<ElementId> star;
-        for (const NodeId n : nodes) {
-            body.mesh.star(n, star);
-            for (const ElementId cell : star) {
+    if (around_.empty()) {
+        for (const NodeId node : first.nodes) {
+            body.mesh.star(node, star_);
+            for (const ElementId cell : star_) {
                 const auto corners = body.fragments.corners(body.fragments.fragment_of_cell(cell));
-                around.insert(around.end(), corners.begin(), corners.end());
+                around_.insert(around_.end(), corners.begin(), corners.end());
             }
         }
-        std::ranges::sort(around);
-        around.erase(std::unique(around.begin(), around.end()), around.end());
-    };
-    const auto is_same_part = [&](const Edge& edge) {
-        if (around.empty()) list_around();
-        return std::ranges::any_of(edge.triangles, [&](std::uint32_t t) {
-            const ElementId fragment = body.fragments.fragment_of_cell(body.faces[t].element);
-            return std::ranges::any_of(body.fragments.corners(fragment), [&](NodeId corner) {
-                return std::ranges::binary_search(around, corner);
-            });
+        std::ranges::sort(around_);
+        around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
+    }
+    return std::ranges::none_of(second.triangles, [&](std::uint32_t triangle) {
+        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[triangle].element);
+        return std::ranges::any_of(body.fragments.corners(fragment), [&](NodeId corner) {
+            return std::ranges::binary_search(around_, corner);
         });
-    };
-    const auto visit = [&](std::uint32_t other) {
-        const Edge& edge = edges_[other];
-        const auto& [a, b] = edge.nodes;
-        if (a == nodes[0] || a == nodes[1] || b == nodes[0] || b == nodes[1]) return;
-        if (!body.takes_part[edge.triangles[0]] && !body.takes_part[edge.triangles[1]]) return;
-        const Vec3 other_sum = sum_of_normals(edge);
-        if (-0.25 * sum.dot(other_sum) < 0.25 * sum.norm() * other_sum.norm() -
-                                             sine_of(sum) * sine_of(other_sum) - margin_of_cosine)
-            return;
-        const Vec3 &x = positions[a.index()], &y = positions[b.index()];
-        const auto [s, t] = closest_of_segments(p, q, x, y);
-        if ((p + s * (q - p) - x - t * (y - x)).squaredNorm() >= reach * reach) return;
-        if (is_same_part(edge)) return;
-        const bool is_first = !edge.is_sharp || sharp < other;
-        found_.push_back({{is_first ? sharp : other, is_first ? other : sharp}, 0.0});
-    };
-    const Vec3 margin = Vec3::Constant(reach);
-    tree.for_each_against(Box(p.cwiseMin(q) - margin, p.cwiseMax(q) + margin),
-                          {Vec3::UnitZ(), std::numbers::pi}, [&](std::uint32_t t) {
-                              for (const std::uint32_t other : edges_of_[t])
-                                  if (other != none) visit(other);
-                          });
+    });
 }
 
 /// Makes the found pairs, and those that touch, the pairs, with what is known of them.
@@ -249,22 +340,31 @@ void EdgeContact::take_found(std::span<const Vec3> positions) {
 void EdgeContact::find(const SurfaceTree& tree, const ContactBody& body,
                        std::span<const Vec3> positions, double reach) {
     found_.clear();
-    for (const std::uint32_t sharp : sharp_) append_pairs(tree, body, positions, reach, sharp);
+    append_pairs(tree, body, positions, reach, sharp_, {});
     take_found(positions);
 }
 
 void EdgeContact::find_again(const SurfaceTree& tree, const ContactBody& body,
                              std::span<const Vec3> positions, double reach,
-                             std::span<const std::uint8_t> is_chosen) {
-    const auto is_found_anew = [&](std::uint32_t edge) {
+                             std::span<const std::uint8_t> is_moved,
+                             std::span<const std::uint8_t> is_near) {
+    const auto is_at = [&](std::span<const std::uint8_t> is_node, std::uint32_t edge) {
         const auto& [a, b] = edges_[edge].nodes;
-        return is_chosen[a.index()] != 0 || is_chosen[b.index()] != 0;
+        return is_node[a.index()] != 0 || is_node[b.index()] != 0;
     };
+    std::vector<std::uint32_t> moved, near;
+    for (const std::uint32_t edge : sharp_) {
+        if (is_at(is_moved, edge))
+            moved.push_back(edge);
+        else if (is_at(is_near, edge))
+            near.push_back(edge);
+    }
     found_.clear();
-    for (const std::uint32_t sharp : sharp_)
-        if (is_found_anew(sharp)) append_pairs(tree, body, positions, reach, sharp);
+    append_pairs(tree, body, positions, reach, moved, {});
+    append_pairs(tree, body, positions, reach, near, is_moved);
     for (const Pair& pair : pairs_)
-        if (!is_found_anew(pair.edges.sharp)) found_.push_back(pair);
+        if (!is_at(is_moved, pair.edges.sharp) && !is_at(is_moved, pair.edges.other))
+            found_.push_back(pair);
     take_found(positions);
 }
 
@@ -277,7 +377,8 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
     const Edge &first = edges_[pair.edges.sharp], &second = edges_[pair.edges.other];
     const Vec3 &p = x[first.nodes[0].index()], &q = x[first.nodes[1].index()],
                &a = x[second.nodes[0].index()], &b = x[second.nodes[1].index()];
-    const Crossing crossing = cross(p, q, a, b, known == nullptr ? to_begin : to_stay);
+    const Crossing crossing =
+        cross(p, q, a, b, {ends_of(first), ends_of(second)}, known == nullptr ? to_begin : to_stay);
     const auto [s, t] = crossing.at;
     if (!(crossing.room <= 0.0)) {
         const auto [s_in, t_in] = closest_of_segments(p, q, a, b);
@@ -286,7 +387,7 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
         return false;
     }
     const Vec3 from_second = p + s * (q - p) - a - t * (b - a);
-    pair.room = from_second.norm() - reach;
+    pair.room = from_second.norm() - surface.reach;
     if (pair.room >= 0.0 && known == nullptr) return false;
     pair.room = 0.0;
     Vec3 normal = crossing.normal;
@@ -298,21 +399,32 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
     double size = surface.lengths[first.nodes[0].index()];
     for (const NodeId n : {first.nodes[1], second.nodes[0], second.nodes[1]})
         size = std::min(size, surface.lengths[n.index()]);
-    const auto is_out_of_second = [&] { return is_between(normal, n0, n1); };
+    const double beside = known == nullptr ? beside_to_begin : beside_to_stay;
+    const auto is_out_of_second = [&] { return is_between(normal, n0, n1, beside); };
     // How far the end of an edge is beyond the other edge. Less than an overlap, and a node there
-    // meets triangles: it is the shorter way out.
-    const double to_end =
-        std::min(std::min(s, 1.0 - s) * (q - p).norm(), std::min(t, 1.0 - t) * (b - a).norm());
+    // meets triangles: it is the shorter way out. Where a sharp edge goes on, there is no end.
+    double to_end = std::numeric_limits<double>::infinity();
+    const auto bound_by = [&](const Edge& edge, double part, double length) {
+        if (ends_of(edge)[0]) to_end = std::min(to_end, part * length);
+        if (ends_of(edge)[1]) to_end = std::min(to_end, (1.0 - part) * length);
+    };
+    bound_by(first, s, (q - p).norm());
+    bound_by(second, t, (b - a).norm());
     const auto touches = [&] {
-        const bool is_out_of_first = is_between(-normal, m0, m1);
+        const bool is_out_of_first = is_between(-normal, m0, m1, beside);
         const double overlap = -normal.dot(from_second);
-        if (overlap <= one_sided * size) return is_out_of_second() && is_out_of_first;
+        if (overlap <= (known == nullptr ? one_sided * size : 0.0))
+            return is_out_of_second() && is_out_of_first;
         return overlap < to_end && (is_out_of_second() || is_out_of_first);
     };
     if (!touches()) normal = -normal;
     if (!touches()) return false;
     const double gap = normal.dot(from_second);
-    if (gap >= reach) return false;
+    if (gap >= reach) {
+        pair.room = gap - reach;
+        return false;
+    }
+    if (known == nullptr) known = continued(pair.edges);
     double slack = known == nullptr ? 0.0 : known->slack;
     if (known == nullptr) {
         // Round a sharp corner of the body itself there is no overlap.
@@ -332,14 +444,42 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
                 weights[static_cast<int>(k)] = triangle[k] == edge.nodes[0]   ? 1.0 - part
                                                : triangle[k] == edge.nodes[1] ? part
                                                                               : 0.0;
-            const Vec3 to = is_in_second ? Vec3(p + s * (q - p)) : Vec3(a + t * (b - a));
+            // A little along the other edge, to where it is under the triangle: at an edge that it
+            // lies on flat, rounding would decide.
+            constexpr double along = 0.01;
+            const Vec3 other = along * (is_in_second ? Vec3(q - p) : Vec3(b - a));
+            const Vec3 middle =
+                (x[triangle[0].index()] + x[triangle[1].index()] + x[triangle[2].index()]) / 3.0;
+            Vec3 to = is_in_second ? Vec3(p + s * (q - p)) : Vec3(a + t * (b - a));
+            to += other.dot(middle - to) < 0.0 ? Vec3(-other) : other;
             if (!is_way_inside(model.mesh(), x, surface.triangles.faces[facing], triangle, weights,
                                to))
                 return false;
         }
     }
-    touch = {s, t, normal, gap, gap > 0.0 ? 0.0 : std::max(gap, slack)};
+    touch = {s,
+             t,
+             normal,
+             gap,
+             gap > 0.0 ? 0.0 : std::max(gap, slack),
+             known == nullptr ? Vec3::Zero() : known->impulse};
     return true;
+}
+
+/// Returns the pair that touched in the last step and goes on in this one, as an edge slides over a
+/// node of another one; or null.
+const EdgeContact::Touching* EdgeContact::continued(const Edges& edges) const {
+    const auto with_next = [&](std::uint32_t edge) {
+        return std::array{edge, edges_[edge].next[0], edges_[edge].next[1]};
+    };
+    for (const std::uint32_t one : with_next(edges.sharp))
+        for (const std::uint32_t two : with_next(edges.other)) {
+            if (one == none || two == none) continue;
+            const Edges key = in_order(one, two);
+            const auto it = std::ranges::lower_bound(did_touch_, key, {}, &Touching::edges);
+            if (it != did_touch_.end() && it->edges == key) return &*it;
+        }
+    return nullptr;
 }
 
 void EdgeContact::add_points(const physics::Model& model, const Surface& surface,
@@ -375,7 +515,7 @@ void EdgeContact::add_points(const physics::Model& model, const Surface& surface
         point.gap = touch.gap - touch.slack;
         if (std::abs(point.gap) < surface.rounding) point.gap = 0.0;
         point.friction = surface.friction;
-        if (did_touch) point.impulse = known->impulse;
+        point.impulse = touch.impulse;
         touching_.push_back({pair.edges, touch.slack, point.impulse});
         solver.begin(point);
         const auto& [p, q] = edges_[pair.edges.sharp].nodes;

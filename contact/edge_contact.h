@@ -35,11 +35,12 @@ class EdgeContact {
     /// @param reach  distance that counts as near, m
     void find(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
               double reach);
-    /// Finds the pairs of sharp edges at some nodes anew, and keeps those of the others.
-    /// @param is_chosen  by node id, 1: its pairs are found anew
+    /// Finds anew the pairs with edges at some nodes, and keeps the others.
+    /// @param is_moved  by node id, 1: edges there are found anew
+    /// @param is_near   likewise, 1: edges there may have such edges near them
     void find_again(const SurfaceTree& tree, const ContactBody& body,
                     std::span<const Vec3> positions, double reach,
-                    std::span<const std::uint8_t> is_chosen);
+                    std::span<const std::uint8_t> is_moved, std::span<const std::uint8_t> is_near);
 
     /// What add_points() needs of the surface.
     struct Surface {
@@ -55,6 +56,8 @@ class EdgeContact {
     void take_impulses(const ContactSolver& solver);
     /// Returns the largest overlap at the last call of add_points(), m.
     double max_penetration() const { return max_penetration_; }
+    /// Returns how many edges were compared so far: the cost of the searches.
+    std::size_t num_tested() const { return num_tested_; }
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
@@ -67,9 +70,10 @@ class EdgeContact {
     }
     static constexpr std::uint32_t none = 0xffffffff;
     struct Edge {
-        std::array<NodeId, 2> nodes;             // in ascending order
-        std::array<std::uint32_t, 2> triangles;  // that meet at it
-        bool is_sharp;                           // at rest, and convex
+        std::array<NodeId, 2> nodes;                    // in ascending order
+        std::array<std::uint32_t, 2> triangles;         // that meet at it
+        bool is_sharp;                                  // at rest, and convex
+        std::array<std::uint32_t, 2> next{none, none};  // sharp edges that go on at its ends
     };
     struct Edges {
         std::uint32_t sharp, other;  // if both are sharp, the lower one is first
@@ -93,17 +97,27 @@ class EdgeContact {
         Vec3 normal;                 // out of the second
         double gap;                  // along the normal, m
         double slack;                // see Touching
+        Vec3 impulse;                // likewise
     };
     void list_edges(const SurfaceTree& tree, const ContactBody& body);
+    void join_edges(std::span<const Vec3> rest_positions);
     void append_pairs(const SurfaceTree& tree, const ContactBody& body,
-                      std::span<const Vec3> positions, double reach, std::uint32_t sharp);
+                      std::span<const Vec3> positions, double reach,
+                      std::span<const std::uint32_t> sharp, std::span<const std::uint8_t> is_moved);
+    bool are_near(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
+                  double reach, std::uint32_t sharp, std::uint32_t other);
+    Edges in_order(std::uint32_t sharp, std::uint32_t other) const;
+    static std::array<bool, 2> ends_of(const Edge& edge) {
+        return {edge.next[0] == none, edge.next[1] == none};
+    }
+    const Touching* continued(const Edges& edges) const;
     void take_found(std::span<const Vec3> positions);
     bool find_touch(Pair& pair, const Touching* known, const physics::Model& model,
                     const Surface& surface, double reach, Touch& touch) const;
 
     std::vector<Edge> edges_;                             // in ascending order of their nodes
     std::vector<std::uint32_t> sharp_;                    // edges that are sharp and take part
-    std::vector<std::array<std::uint32_t, 3>> edges_of_;  // by triangle; none: listed elsewhere
+    std::vector<std::array<std::uint32_t, 3>> edges_of_;  // by triangle
     std::vector<Pair> pairs_;                             // in ascending order
     std::vector<Touching> touching_;                      // likewise: points of the last step
     std::vector<NodeId> nodes_;                           // of the pairs
@@ -113,6 +127,11 @@ class EdgeContact {
     std::vector<double> moves_;        // scratch, by node id: in the last step, m
     std::vector<Pair> found_;          // scratch
     std::vector<Touching> did_touch_;  // scratch
+    std::vector<std::uint32_t> near_;  // scratch
+    std::vector<Box> boxes_;           // scratch, by edge of near_
+    std::vector<NodeId> around_;       // scratch
+    std::vector<ElementId> star_;      // scratch
+    std::size_t num_tested_ = 0;
 };
 
 }  // namespace incise::contact

@@ -214,7 +214,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
     pairs_.find_again(tree_, body(model), positions, distance, number_of_old, is_near_edit,
                       touching);
     edges_.find_again(tree_, body(model), positions, distance - (node_reach - edge_reach) * size_,
-                      is_chosen);
+                      is_chosen, is_chosen);
     // What nodes touch stays what it is if the triangle is still there.
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -335,7 +335,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
     pairs_.find_moved(tree_, body(model), positions, distance, {is_triangle, is_node, is_near},
                       touching);
     edges_.find_again(tree_, body(model), positions, distance - (node_reach - edge_reach) * size_,
-                      is_near);
+                      is_node, is_near);
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i) {
         const NodeId n = pairs_.nodes()[i];

@@ -57,8 +57,9 @@ class SurfaceContact {
 
     /// Returns the surface. The order of its triangles depends on no history of edits.
     TissueSurface surface() const { return {triangles_, faces_}; }
-    /// Returns how many nodes and triangles were compared so far: the cost of the searches.
-    std::size_t num_tested() const { return pairs_.num_tested(); }
+    /// Returns how many nodes and triangles, and edges, were compared so far: the cost of the
+    /// searches.
+    std::size_t num_tested() const { return pairs_.num_tested() + edges_.num_tested(); }
     /// Returns the largest overlap at the last call of add_points(), m.
     double max_penetration() const { return max_penetration_; }
     const ContactSettings& settings() const { return settings_; }

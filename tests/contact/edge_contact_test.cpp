@@ -222,6 +222,55 @@ TEST(EdgeContact, KeepsCornersAndEdgesOutOfTissue) {
     }
 }
 
+// Two bars, each with an edge towards the other one. The crossing of the edges slides over nodes,
+// and the upper bar turns until a face of it lies on the edge.
+TEST(EdgeContact, KeepsCrossedBarsOutOfEachOther) {
+    for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
+        SCOPED_TRACE(seed);
+        test::Random random(seed);
+        topology::MeshData data;
+        double lowest = 0.0;
+        const auto add_bar = [&](double thick, const std::array<int, 3>& bricks,
+                                 const Eigen::Quaterniond& turn, const Vec3& shift, bool is_upper) {
+            topology::MeshData bar =
+                topology::box_mesh(topology::CellKind::tetrahedron, -0.5 * Vec3(0.08, thick, thick),
+                                   Vec3(0.08, thick, thick), bricks);
+            Box box;
+            for (Vec3& x : bar.points) box.extend(x = turn * x);
+            const double rise = is_upper ? 0.005 - box.min().z() : -box.max().z();
+            if (!is_upper) lowest = box.min().z() + rise;
+            const auto first = static_cast<std::int64_t>(data.points.size());
+            for (const Vec3& x : bar.points)
+                data.points.push_back(x + shift + rise * Vec3::UnitZ());
+            for (std::size_t c = 0; c < bar.num_cells(); ++c) {
+                std::vector<std::int64_t> corners(bar.cell(c).begin(), bar.cell(c).end());
+                for (std::int64_t& corner : corners) corner += first;
+                data.add_cell(bar.kinds[c], corners, bar.regions[c]);
+            }
+        };
+        const Eigen::Quaterniond edge_up(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitX()));
+        const Eigen::Quaterniond across(Eigen::AngleAxisd(random.uniform(0.7, 1.5), Vec3::UnitZ()));
+        add_bar(0.014, {8, 2, 2}, edge_up, Vec3::Zero(), false);
+        add_bar(0.01, {8, 1, 1}, across * edge_up, random.vector(0.003).cwiseProduct(Vec3(1, 1, 0)),
+                true);
+        Body body(data, 0.0, [&](const Mesh& mesh) {
+            return physics::BoundaryConditions{
+                .gravity = Vec3(0, 0, -9.81),
+                .damping = 5.0,
+                .constraints = {{.name = "bottom",
+                                 .nodes = nodes_between(mesh, lowest - 1e-6, lowest + 1e-6)}},
+                .loads = {}};
+        });
+        ASSERT_EQ(body.pieces.count, 2);
+        double deepest = 0.0;
+        for (int i = 0; body.time < 0.2; ++i) {
+            body.step(0.8);
+            if (i % 20 == 0) deepest = std::max(deepest, body.deepest());
+        }
+        EXPECT_LT(deepest, 0.1 * body.size);
+    }
+}
+
 // Where a corner and a node of the face are on each other, the point of the node alone, with the
 // normal of a side of the cube, would let the corner in.
 TEST(EdgeContact, KeepsAPressedCornerOutOfANode) {
