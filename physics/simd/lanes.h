@@ -437,6 +437,7 @@ class FetchAhead {
         // `next`; a prefetch from there has no effect.
         const std::uintptr_t group = (then < size_ ? groups_ : next_) + then * sizeof(Group);
         for (std::size_t i = 0; i < sizeof(Group); i += cache_line)
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): of no object, so no pointer may hold it
             __builtin_prefetch(reinterpret_cast<const void*>(group + i), for_reading,
                                to_second_cache);
     }
