@@ -160,7 +160,7 @@ void EdgeContact::join_edges(std::span<const Vec3> rest_positions) {
     std::vector<End> ends;
     for (std::uint32_t edge = 0; edge < edges_.size(); ++edge)
         if (edges_[edge].is_sharp)
-            for (const std::size_t end : {0, 1})
+            for (std::size_t end = 0; end < 2; ++end)
                 ends.push_back({edges_[edge].nodes[end], edge, end});
     std::ranges::sort(ends, {}, [](const End& at) { return std::pair(at.node, at.edge); });
     const auto away = [&](const End& at) -> Vec3 {  // from the node
@@ -424,12 +424,15 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
         pair.room = gap - reach;
         return false;
     }
-    if (known == nullptr) known = continued(pair.edges);
-    double slack = known == nullptr ? 0.0 : known->slack;
+    if (known == nullptr) {
+        known = continued(pair.edges);
+        // What goes on has nearly the same gap.
+        if (known != nullptr && gap < known->gap - reach - surface.rounding) known = nullptr;
+    }
+    const double slack = known == nullptr ? std::min(0.0, gap) : known->slack;
     if (known == nullptr) {
         // Round a sharp corner of the body itself there is no overlap.
         if (gap <= -deepest_begin * size) return false;
-        slack = std::min(0.0, gap);
         // An overlap that is there at once may be none, as between the sides of cuts that cross.
         if (gap < -surface.rounding) {
             const bool is_in_second = is_out_of_second();
@@ -447,11 +450,12 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
             // A little along the other edge, to where it is under the triangle: at an edge that it
             // lies on flat, rounding would decide.
             constexpr double along = 0.01;
-            const Vec3 other = along * (is_in_second ? Vec3(q - p) : Vec3(b - a));
+            const Vec3 from = is_in_second ? p : a, way = is_in_second ? Vec3(q - p) : Vec3(b - a);
+            const double at = is_in_second ? s : t;
             const Vec3 middle =
                 (x[triangle[0].index()] + x[triangle[1].index()] + x[triangle[2].index()]) / 3.0;
-            Vec3 to = is_in_second ? Vec3(p + s * (q - p)) : Vec3(a + t * (b - a));
-            to += other.dot(middle - to) < 0.0 ? Vec3(-other) : other;
+            const bool is_onward = way.dot(middle - from - at * way) >= 0.0;
+            const Vec3 to = from + std::clamp(is_onward ? at + along : at - along, 0.0, 1.0) * way;
             if (!is_way_inside(model.mesh(), x, surface.triangles.faces[facing], triangle, weights,
                                to))
                 return false;
@@ -516,7 +520,7 @@ void EdgeContact::add_points(const physics::Model& model, const Surface& surface
         if (std::abs(point.gap) < surface.rounding) point.gap = 0.0;
         point.friction = surface.friction;
         point.impulse = touch.impulse;
-        touching_.push_back({pair.edges, touch.slack, point.impulse});
+        touching_.push_back({pair.edges, touch.gap, touch.slack, point.impulse});
         solver.begin(point);
         const auto& [p, q] = edges_[pair.edges.sharp].nodes;
         const auto& [a, b] = edges_[pair.edges.other].nodes;

@@ -87,9 +87,12 @@ class EdgeContact {
     };
     struct Touching {
         Edges edges;
+        double gap;    // m
         double slack;  // see SurfaceContact::NearNode, m
         Vec3 impulse;  // of the last step, N s
-        static void archive(auto& ar, auto& self) { ar(self.edges, self.slack, self.impulse); }
+        static void archive(auto& ar, auto& self) {
+            ar(self.edges, self.gap, self.slack, self.impulse);
+        }
     };
     /// Where two edges are closest.
     struct Touch {
