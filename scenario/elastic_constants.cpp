@@ -10,7 +10,6 @@ namespace incise::scenario {
 
 namespace {
 
-
 ParameterSet keys_of(const ElasticParameters& given) {
     ParameterSet keys;
     for (const auto& row : parameters())
