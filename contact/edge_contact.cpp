@@ -323,7 +323,8 @@ void EdgeContact::take_found(std::span<const Vec3> positions) {
     }
     std::swap(pairs_, found_);
 
-    std::vector<std::uint8_t> is_followed(positions.size(), 0);
+    auto& is_followed = is_followed_;
+    is_followed.assign(positions.size(), 0);
     for (const NodeId n : nodes_) is_followed[n.index()] = 1;
     last_positions_.resize(positions.size(), Vec3::Zero());
     for (const Pair& pair : pairs_)
@@ -352,7 +353,9 @@ void EdgeContact::find_again(const SurfaceTree& tree, const ContactBody& body,
         const auto& [a, b] = edges_[edge].nodes;
         return is_node[a.index()] != 0 || is_node[b.index()] != 0;
     };
-    std::vector<std::uint32_t> moved, near;
+    auto& [moved, near] = sharp_again_;
+    moved.clear();
+    near.clear();
     for (const std::uint32_t edge : sharp_) {
         if (is_at(is_moved, edge))
             moved.push_back(edge);

@@ -126,14 +126,16 @@ class EdgeContact {
     std::vector<NodeId> nodes_;                           // of the pairs
     std::vector<Vec3> last_positions_;                    // of nodes_, by id, m
     double max_penetration_ = 0.0;
-    std::size_t first_point_ = 0;      // in the solver, that of the first in touching_
-    std::vector<double> moves_;        // scratch, by node id: in the last step, m
-    std::vector<Pair> found_;          // scratch
-    std::vector<Touching> did_touch_;  // scratch
-    std::vector<std::uint32_t> near_;  // scratch
-    std::vector<Box> boxes_;           // scratch, by edge of near_
-    std::vector<NodeId> around_;       // scratch
-    std::vector<ElementId> star_;      // scratch
+    std::size_t first_point_ = 0;            // in the solver, that of the first in touching_
+    std::vector<double> moves_;              // scratch, by node id: in the last step, m
+    std::vector<Pair> found_;                // scratch
+    std::vector<Touching> did_touch_;        // scratch
+    std::vector<std::uint32_t> near_;        // scratch
+    std::vector<Box> boxes_;                 // scratch, by edge of near_
+    std::vector<NodeId> around_;             // scratch
+    std::vector<ElementId> star_;            // scratch
+    std::vector<std::uint8_t> is_followed_;  // scratch, by node id
+    std::array<std::vector<std::uint32_t>, 2> sharp_again_;  // scratch of find_again()
     std::size_t num_tested_ = 0;
 };
 

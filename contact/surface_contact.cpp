@@ -329,7 +329,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
         if (++in_group == group_size) note_near_group();
     }
     if (in_group > 0) note_near_group();
-    const std::vector<NodeAndTriangle> touching = touching_pairs();
+    const std::span<const NodeAndTriangle> touching = touching_pairs();
     std::swap(known, near_);
     known_nodes.assign(pairs_.nodes().begin(), pairs_.nodes().end());
     pairs_.find_moved(tree_, body(model), positions, distance, {is_triangle, is_node, is_near},
@@ -353,7 +353,7 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
     std::map<NodeId, NearNode> known;
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
-    const std::vector<NodeAndTriangle> touching = touching_pairs();
+    const std::span<const NodeAndTriangle> touching = touching_pairs();
     const std::span<const Vec3> positions = model.mesh_positions();
     tree_.fit(positions);
     const auto find = [&] {
@@ -376,8 +376,9 @@ void SurfaceContact::find_pairs(const physics::Model& model) {
 }
 
 /// Returns the pairs that touch, in the order of their nodes.
-std::vector<NodeAndTriangle> SurfaceContact::touching_pairs() const {
-    std::vector<NodeAndTriangle> touching;
+std::span<const NodeAndTriangle> SurfaceContact::touching_pairs() {
+    auto& touching = touching_;
+    touching.clear();
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0)
             touching.emplace_back(pairs_.nodes()[i], static_cast<std::uint32_t>(near_[i].touched));

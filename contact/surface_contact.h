@@ -108,7 +108,7 @@ class SurfaceContact {
     Vec3 mean_move(std::span<const Vec3> positions) const;
     bool find_pairs_of_moved(const physics::Model& model);
     void find_pairs(const physics::Model& model);
-    std::vector<NodeAndTriangle> touching_pairs() const;
+    std::span<const NodeAndTriangle> touching_pairs();
     double pairs_per_node() const;
     bool has_many_pairs() const;
     bool has_moved_far(std::span<const Vec3> positions);
@@ -135,7 +135,8 @@ class SurfaceContact {
     double skin_ = 0.5;                       // see widest_skin
     double room_ = -1.0;  // how far the surface may move before pairs_ is out of date, m
     double max_penetration_ = 0.0;
-    std::vector<Touch> touches_;  // scratch, by node of pairs_
+    std::vector<Touch> touches_;             // scratch, by node of pairs_
+    std::vector<NodeAndTriangle> touching_;  // scratch of touching_pairs()
     struct {
         std::vector<std::uint8_t> is_node, is_triangle, is_near;
         std::vector<NearNode> known;
