@@ -15,9 +15,6 @@ namespace incise::contact {
 
 namespace {
 
-/// The normals of the two triangles at a sharp edge differ by more than 25 degrees. Between flatter
-/// ones, nodes that meet triangles leave less overlap than a tenth of an element.
-constexpr double cosine_of_sharp = 0.9;
 /// Edges are a point of contact if they may meet in so many steps like the last one.
 constexpr double most_steps = 4.0;
 /// Edges that are nearly parallel, by the sine between them, or that cross so near to where a sharp
@@ -28,8 +25,6 @@ struct Limits {
 constexpr Limits to_begin{0.01, 2e-3}, to_stay{1e-3, 1e-6};
 /// Where another edge goes on, the crossing belongs to one of the two.
 constexpr double at_node = -1e-9;
-/// A sharp edge goes on in another one if it does not turn by more than 37 degrees.
-constexpr double cosine_of_straight = 0.8;
 /// No overlap begins deeper than this part of the local length.
 constexpr double deepest_begin = 0.4;
 /// An overlap of this part of the local length is one even if the normal is right for one edge
@@ -38,11 +33,6 @@ constexpr double one_sided = 0.005;
 /// Where an edge lies flat on a face, its direction out is that of the face. Flat faces bend a
 /// little.
 constexpr double beside_to_begin = 0.02, beside_to_stay = 0.1;
-
-Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x) {
-    const Vec3& a = x[triangle[0].index()];
-    return (x[triangle[1].index()] - a).cross(x[triangle[2].index()] - a);
-}
 
 /// Where two edges cross each other as seen at right angles to both.
 struct Crossing {
@@ -90,115 +80,60 @@ bool is_between(const Vec3& direction, const Vec3& a, const Vec3& b, double besi
     return direction.dot(a + b) > 0.0 && direction.dot(a) >= cosine && direction.dot(b) >= cosine;
 }
 
+/// A point of an edge.
+struct EdgeAt {
+    const SurfaceEdge& edge;
+    double at;          ///< part of the way from the first node to the second
+    const Vec3 &p, &q;  ///< positions of the nodes, m
+};
+
+/// True if the way from a point of an edge to one of another edge goes through the body.
+/// @param from       where the way begins
+/// @param faces_one  true: it goes in by the second triangle of the edge; false: by the first
+bool is_inside(const physics::Model& model, const TissueSurface& surface, const EdgeAt& from,
+               const EdgeAt& to, bool faces_one) {
+    const std::span<const Vec3> x = model.mesh_positions();
+    const std::uint32_t t = from.edge.triangles[faces_one ? 1 : 0];
+    const Triangle& triangle = surface.triangles[t];
+    Vec3 weights, middle = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+        weights[static_cast<int>(k)] = triangle[k] == from.edge.nodes[0]   ? 1.0 - from.at
+                                       : triangle[k] == from.edge.nodes[1] ? from.at
+                                                                           : 0.0;
+        middle += x[triangle[k].index()] / 3.0;
+    }
+    // To a point a little along the other edge, where it is under the triangle: if the edge lies
+    // flat on the triangle, rounding would decide. It stays on the edge: beyond its end no point is
+    // known to be on the surface of a body at rest.
+    constexpr double along = 0.01;
+    const Vec3 way = to.q - to.p;
+    const bool is_onward = way.dot(middle - to.p - to.at * way) >= 0.0;
+    const double part = std::clamp(is_onward ? to.at + along : to.at - along, 0.0, 1.0);
+    return is_way_inside(model.mesh(), x, surface.faces[t], triangle, weights, to.p + part * way);
+}
+
 }  // namespace
 
-/// Lists the edges at which two triangles meet. Nodes of a surface are such that no more do.
-void EdgeContact::list_edges(const SurfaceTree& tree, const ContactBody& body) {
-    struct Side {
-        NodeId to;
-        std::uint32_t triangle;
-        std::uint8_t corner;
-        bool is_reversed;
-    };
-    const auto triangles = tree.triangles();
-    // The sides of the triangles, by the lower one of their nodes.
-    std::vector<std::size_t> begins(body.mesh.node_capacity() + 1, 0);
-    const auto for_each_side = [&](const auto& visit) {
-        for (std::uint32_t t = 0; t < triangles.size(); ++t)
-            for (std::uint8_t k = 0; k < 3; ++k) {
-                const NodeId a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-                visit(std::min(a, b), Side{std::max(a, b), t, k, b < a});
-            }
-    };
-    for_each_side([&](NodeId from, const Side&) { ++begins[from.index() + 1]; });
-    for (std::size_t n = 1; n < begins.size(); ++n) begins[n] += begins[n - 1];
-    std::vector<Side> sides(begins.back());
-    std::vector<std::size_t> ends(begins.begin(), begins.end() - 1);
-    for_each_side([&](NodeId from, const Side& side) { sides[ends[from.index()]++] = side; });
-
-    const auto X = body.mesh.rest_positions();
-    edges_.clear();
+void EdgeContact::set_surface(const SurfaceTree& tree, const ContactBody& body) {
+    const SurfaceEdges old_edges = std::move(edges_);
+    edges_ = {};
+    edges_.set_triangles(tree.triangles(), body.mesh.rest_positions());
     sharp_.clear();
-    edges_of_.assign(triangles.size(), {none, none, none});
-    for (std::size_t n = 0; n + 1 < begins.size(); ++n) {
-        const auto of_node = std::span(sides).subspan(begins[n], begins[n + 1] - begins[n]);
-        std::ranges::sort(of_node, {}, [](const Side& s) { return std::pair(s.to, s.triangle); });
-        for (std::size_t i = 0; i + 1 < of_node.size(); ++i) {
-            const Side &one = of_node[i], &two = of_node[i + 1];
-            if (one.to != two.to || one.is_reversed == two.is_reversed) continue;
-            const Vec3 a = area_of(triangles[one.triangle], X),
-                       b = area_of(triangles[two.triangle], X);
-            const NodeId third = triangles[two.triangle][(two.corner + 2) % 3];
-            const bool is_sharp = a.dot(b) < cosine_of_sharp * a.norm() * b.norm() &&
-                                  a.dot(X[third.index()] - X[n]) < 0.0;
-            const auto number = static_cast<std::uint32_t>(edges_.size());
-            edges_of_[one.triangle][one.corner] = edges_of_[two.triangle][two.corner] = number;
-            edges_.push_back({{NodeId(n), one.to}, {one.triangle, two.triangle}, is_sharp});
-            ++i;
-        }
-    }
     // In the order of the tree, in which those that follow each other are near each other.
     std::vector<bool> is_listed(edges_.size(), false);
     for (const std::uint32_t t : tree.order())
-        for (const std::uint32_t edge : edges_of_[t]) {
-            if (edge == none || is_listed[edge] || !edges_[edge].is_sharp) continue;
+        for (const std::uint32_t edge : edges_.of_triangle(t)) {
+            if (edge == no_edge || is_listed[edge] || !edges_[edge].is_sharp) continue;
             const auto [one, two] = edges_[edge].triangles;
             if (!body.takes_part[one] && !body.takes_part[two]) continue;
             is_listed[edge] = true;
             sharp_.push_back(edge);
         }
-    join_edges(X);
-}
-
-/// Finds in which sharp edges others go on.
-void EdgeContact::join_edges(std::span<const Vec3> rest_positions) {
-    struct End {
-        NodeId node;
-        std::uint32_t edge;
-        std::size_t end;  // of the edge: 0 or 1
-    };
-    std::vector<End> ends;
-    for (std::uint32_t edge = 0; edge < edges_.size(); ++edge)
-        if (edges_[edge].is_sharp)
-            for (std::size_t end = 0; end < 2; ++end)
-                ends.push_back({edges_[edge].nodes[end], edge, end});
-    std::ranges::sort(ends, {}, [](const End& at) { return std::pair(at.node, at.edge); });
-    const auto away = [&](const End& at) -> Vec3 {  // from the node
-        const auto& nodes = edges_[at.edge].nodes;
-        return (rest_positions[nodes[1 - at.end].index()] - rest_positions[at.node.index()])
-            .stableNormalized();
-    };
-    for (std::size_t begin = 0; begin < ends.size();) {
-        std::size_t end = begin;
-        while (end < ends.size() && ends[end].node == ends[begin].node) ++end;
-        for (std::size_t i = begin; i < end; ++i) {
-            double least = -cosine_of_straight;
-            for (std::size_t k = begin; k < end; ++k) {
-                const double cosine = away(ends[i]).dot(away(ends[k]));
-                if (k == i || cosine >= least) continue;
-                least = cosine;
-                edges_[ends[i].edge].next[ends[i].end] = ends[k].edge;
-            }
-        }
-        begin = end;
-    }
-}
-
-void EdgeContact::set_surface(const SurfaceTree& tree, const ContactBody& body) {
-    const std::vector<Edge> old_edges = std::move(edges_);
-    list_edges(tree, body);
-    const auto number_of = [&](std::uint32_t old) {
-        const auto it = std::ranges::lower_bound(edges_, old_edges[old].nodes, {}, &Edge::nodes);
-        return it == edges_.end() || it->nodes != old_edges[old].nodes
-                   ? none
-                   : static_cast<std::uint32_t>(it - edges_.begin());
-    };
     const auto renumber = [&](auto& pairs) {
         std::erase_if(pairs, [&](auto& pair) {
-            auto& [sharp, other] = pair.edges;
-            sharp = number_of(sharp);
-            other = number_of(other);
-            if (sharp == none || other == none || !edges_[sharp].is_sharp) return true;
+            const std::uint32_t sharp = edges_.find(old_edges[pair.edges.sharp].nodes),
+                                other = edges_.find(old_edges[pair.edges.other].nodes);
+            if (sharp == no_edge || other == no_edge || !edges_[sharp].is_sharp) return true;
             pair.edges = in_order(sharp, other);
             return false;
         });
@@ -231,8 +166,8 @@ void EdgeContact::append_pairs(const SurfaceTree& tree, const ContactBody& body,
         near_.clear();
         tree.for_each_against(Box(box.min() - margin, box.max() + margin), normals,
                               [&](std::uint32_t t) {
-                                  for (const std::uint32_t edge : edges_of_[t])
-                                      if (edge != none) near_.push_back(edge);
+                                  for (const std::uint32_t edge : edges_.of_triangle(t))
+                                      if (edge != no_edge) near_.push_back(edge);
                               });
         std::ranges::sort(near_);
         near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
@@ -266,13 +201,13 @@ bool EdgeContact::are_near(const SurfaceTree& tree, const ContactBody& body,
                            std::uint32_t other) {
     // By how much normals may turn until pairs are found again, as a cosine.
     constexpr double margin_of_cosine = 0.5;
-    const Edge &first = edges_[sharp], &second = edges_[other];
+    const SurfaceEdge &first = edges_[sharp], &second = edges_[other];
     const auto& [m, n] = first.nodes;
     const auto& [a, b] = second.nodes;
     if (a == m || a == n || b == m || b == n) return false;
     if (!body.takes_part[second.triangles[0]] && !body.takes_part[second.triangles[1]])
         return false;
-    const auto sum_of_normals = [&](const Edge& edge) -> Vec3 {
+    const auto sum_of_normals = [&](const SurfaceEdge& edge) -> Vec3 {
         return tree.normal(edge.triangles[0]) + tree.normal(edge.triangles[1]);
     };
     const auto square_of_sine = [](const Vec3& sum) {  // of half of the angle between two normals
@@ -289,13 +224,7 @@ bool EdgeContact::are_near(const SurfaceTree& tree, const ContactBody& body,
     if ((p + s * (q - p) - x - t * (y - x)).squaredNorm() >= reach * reach) return false;
     // The corners of all fragments at the edge.
     if (around_.empty()) {
-        for (const NodeId node : first.nodes) {
-            body.mesh.star(node, star_);
-            for (const ElementId cell : star_) {
-                const auto corners = body.fragments.corners(body.fragments.fragment_of_cell(cell));
-                around_.insert(around_.end(), corners.begin(), corners.end());
-            }
-        }
+        for (const NodeId node : first.nodes) append_fragment_corners(body, node, star_, around_);
         std::ranges::sort(around_);
         around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
     }
@@ -377,11 +306,11 @@ void EdgeContact::find_again(const SurfaceTree& tree, const ContactBody& body,
 bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::Model& model,
                              const Surface& surface, double reach, Touch& touch) const {
     const std::span<const Vec3> x = model.mesh_positions();
-    const Edge &first = edges_[pair.edges.sharp], &second = edges_[pair.edges.other];
+    const SurfaceEdge &first = edges_[pair.edges.sharp], &second = edges_[pair.edges.other];
     const Vec3 &p = x[first.nodes[0].index()], &q = x[first.nodes[1].index()],
                &a = x[second.nodes[0].index()], &b = x[second.nodes[1].index()];
     const Crossing crossing =
-        cross(p, q, a, b, {ends_of(first), ends_of(second)}, known == nullptr ? to_begin : to_stay);
+        cross(p, q, a, b, {first.ends(), second.ends()}, known == nullptr ? to_begin : to_stay);
     const auto [s, t] = crossing.at;
     if (!(crossing.room <= 0.0)) {
         const auto [s_in, t_in] = closest_of_segments(p, q, a, b);
@@ -407,9 +336,9 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
     // How far the end of an edge is beyond the other edge. Less than an overlap, and a node there
     // meets triangles: it is the shorter way out. Where a sharp edge goes on, there is no end.
     double to_end = std::numeric_limits<double>::infinity();
-    const auto bound_by = [&](const Edge& edge, double part, double length) {
-        if (ends_of(edge)[0]) to_end = std::min(to_end, part * length);
-        if (ends_of(edge)[1]) to_end = std::min(to_end, (1.0 - part) * length);
+    const auto bound_by = [&](const SurfaceEdge& edge, double part, double length) {
+        if (edge.ends()[0]) to_end = std::min(to_end, part * length);
+        if (edge.ends()[1]) to_end = std::min(to_end, (1.0 - part) * length);
     };
     bound_by(first, s, (q - p).norm());
     bound_by(second, t, (b - a).norm());
@@ -437,32 +366,13 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
         // Round a sharp corner of the body itself there is no overlap.
         if (gap <= -deepest_begin * size) return false;
         // An overlap that is there at once may be none, as between the sides of cuts that cross.
-        if (gap < -surface.rounding) {
-            const bool is_in_second = is_out_of_second();
-            const Edge& edge = is_in_second ? second : first;
-            const double part = is_in_second ? t : s;
-            const bool faces_second =
-                is_in_second ? normal.dot(n1 - n0) > 0.0 : normal.dot(m1 - m0) < 0.0;
-            const std::uint32_t facing = edge.triangles[faces_second ? 1 : 0];
-            const Triangle& triangle = surface.triangles.triangles[facing];
-            Vec3 weights;
-            for (std::size_t k = 0; k < 3; ++k)
-                weights[static_cast<int>(k)] = triangle[k] == edge.nodes[0]   ? 1.0 - part
-                                               : triangle[k] == edge.nodes[1] ? part
-                                                                              : 0.0;
-            // A little along the other edge, to where it is under the triangle: at an edge that it
-            // lies on flat, rounding would decide.
-            constexpr double along = 0.01;
-            const Vec3 from = is_in_second ? p : a, way = is_in_second ? Vec3(q - p) : Vec3(b - a);
-            const double at = is_in_second ? s : t;
-            const Vec3 middle =
-                (x[triangle[0].index()] + x[triangle[1].index()] + x[triangle[2].index()]) / 3.0;
-            const bool is_onward = way.dot(middle - from - at * way) >= 0.0;
-            const Vec3 to = from + std::clamp(is_onward ? at + along : at - along, 0.0, 1.0) * way;
-            if (!is_way_inside(model.mesh(), x, surface.triangles.faces[facing], triangle, weights,
-                               to))
-                return false;
-        }
+        const bool is_in_second = is_out_of_second();
+        const EdgeAt first_at{first, s, p, q}, second_at{second, t, a, b};
+        if (gap < -surface.rounding &&
+            !is_inside(model, surface.triangles, is_in_second ? second_at : first_at,
+                       is_in_second ? first_at : second_at,
+                       is_in_second ? normal.dot(n1 - n0) > 0.0 : normal.dot(m1 - m0) < 0.0))
+            return false;
     }
     touch = {s,
              t,
@@ -481,7 +391,7 @@ const EdgeContact::Touching* EdgeContact::continued(const Edges& edges) const {
     };
     for (const std::uint32_t one : with_next(edges.sharp))
         for (const std::uint32_t two : with_next(edges.other)) {
-            if (one == none || two == none) continue;
+            if (one == no_edge || two == no_edge) continue;
             const Edges key = in_order(one, two);
             const auto it = std::ranges::lower_bound(did_touch_, key, {}, &Touching::edges);
             if (it != did_touch_.end() && it->edges == key) return &*it;
@@ -551,7 +461,8 @@ void EdgeContact::restore(ArchiveReader& ar, std::size_t node_capacity) {
         std::ranges::any_of(pairs_, [](const Pair& pair) { return std::isnan(pair.room); }) ||
         std::ranges::any_of(touching_,
                             [](const Touching& pair) {
-                                return !(pair.slack <= 0.0) || !pair.impulse.allFinite();
+                                return !std::isfinite(pair.gap) || !(pair.slack <= 0.0) ||
+                                       !pair.impulse.allFinite();
                             }) ||
         last_positions_.size() > node_capacity ||
         std::ranges::any_of(nodes_, [&](NodeId n) { return n.index() >= last_positions_.size(); }))

@@ -13,6 +13,7 @@
 #include "incise/base/archive.h"
 #include "incise/base/types.h"
 #include "incise/contact/contact_solver.h"
+#include "incise/contact/surface_edges.h"
 #include "incise/contact/surface_tree.h"
 #include "incise/contact/touching_pairs.h"
 #include "incise/physics/body/model.h"
@@ -68,13 +69,6 @@ class EdgeContact {
     static void list(auto& ar, auto& self) {
         ar(self.pairs_, self.touching_, self.nodes_, self.last_positions_, self.max_penetration_);
     }
-    static constexpr std::uint32_t none = 0xffffffff;
-    struct Edge {
-        std::array<NodeId, 2> nodes;                    // in ascending order
-        std::array<std::uint32_t, 2> triangles;         // that meet at it
-        bool is_sharp;                                  // at rest, and convex
-        std::array<std::uint32_t, 2> next{none, none};  // sharp edges that go on at its ends
-    };
     struct Edges {
         std::uint32_t sharp, other;  // if both are sharp, the lower one is first
         auto operator<=>(const Edges&) const = default;
@@ -102,29 +96,23 @@ class EdgeContact {
         double slack;                // see Touching
         Vec3 impulse;                // likewise
     };
-    void list_edges(const SurfaceTree& tree, const ContactBody& body);
-    void join_edges(std::span<const Vec3> rest_positions);
     void append_pairs(const SurfaceTree& tree, const ContactBody& body,
                       std::span<const Vec3> positions, double reach,
                       std::span<const std::uint32_t> sharp, std::span<const std::uint8_t> is_moved);
     bool are_near(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
                   double reach, std::uint32_t sharp, std::uint32_t other);
     Edges in_order(std::uint32_t sharp, std::uint32_t other) const;
-    static std::array<bool, 2> ends_of(const Edge& edge) {
-        return {edge.next[0] == none, edge.next[1] == none};
-    }
     const Touching* continued(const Edges& edges) const;
     void take_found(std::span<const Vec3> positions);
     bool find_touch(Pair& pair, const Touching* known, const physics::Model& model,
                     const Surface& surface, double reach, Touch& touch) const;
 
-    std::vector<Edge> edges_;                             // in ascending order of their nodes
-    std::vector<std::uint32_t> sharp_;                    // edges that are sharp and take part
-    std::vector<std::array<std::uint32_t, 3>> edges_of_;  // by triangle
-    std::vector<Pair> pairs_;                             // in ascending order
-    std::vector<Touching> touching_;                      // likewise: points of the last step
-    std::vector<NodeId> nodes_;                           // of the pairs
-    std::vector<Vec3> last_positions_;                    // of nodes_, by id, m
+    SurfaceEdges edges_;
+    std::vector<std::uint32_t> sharp_;  // edges that are sharp and take part
+    std::vector<Pair> pairs_;           // in ascending order
+    std::vector<Touching> touching_;    // likewise: points of the last step
+    std::vector<NodeId> nodes_;         // of the pairs
+    std::vector<Vec3> last_positions_;  // of nodes_, by id, m
     double max_penetration_ = 0.0;
     std::size_t first_point_ = 0;            // in the solver, that of the first in touching_
     std::vector<double> moves_;              // scratch, by node id: in the last step, m

@@ -51,6 +51,15 @@ double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3&
     return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
+void append_fragment_corners(const ContactBody& body, NodeId n, std::vector<ElementId>& star,
+                             std::vector<NodeId>& corners) {
+    body.mesh.star(n, star);
+    for (const ElementId cell : star) {
+        const auto of_fragment = body.fragments.corners(body.fragments.fragment_of_cell(cell));
+        corners.insert(corners.end(), of_fragment.begin(), of_fragment.end());
+    }
+}
+
 void TouchingPairs::set_surface(const SurfaceTree& tree, const ContactBody& body) {
     set_node_normals(tree.triangles(), body.mesh.rest_positions(), rest_normals_);
     surface_nodes_.clear();
@@ -72,11 +81,7 @@ std::span<const NodeId> TouchingPairs::around(const ContactBody& body, NodeId n)
     std::size_t& begin = around_begin_[n.index()];
     if (begin == none_yet) {
         corners_.clear();
-        body.mesh.star(n, star_);
-        for (const ElementId cell : star_) {
-            const auto of_fragment = body.fragments.corners(body.fragments.fragment_of_cell(cell));
-            corners_.insert(corners_.end(), of_fragment.begin(), of_fragment.end());
-        }
+        append_fragment_corners(body, n, star_, corners_);
         std::ranges::sort(corners_);
         corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
         begin = around_.size();

@@ -31,6 +31,11 @@ struct ContactBody {
     std::span<const std::uint8_t> takes_part;  ///< by triangle, 1: it may touch others
 };
 
+/// Appends the corners of all fragments with a cell at a node. Some may come several times.
+/// @param star  scratch
+void append_fragment_corners(const ContactBody& body, NodeId n, std::vector<ElementId>& star,
+                             std::vector<NodeId>& corners);
+
 /// Pairs of a node and a triangle that are near each other and face each other.
 ///
 /// A node and a triangle face each other if their normals differ by more than a right angle. They
