@@ -16,8 +16,10 @@ namespace incise::cutting {
 /// not cross an edge of theirs.
 ///
 /// A node is frozen if an earlier cut had the same surface in space, and the node has not moved
-/// across it by more than a tenth of an edge since. The cut then has nothing to add there. Tissue
-/// under load moves after each cut, and its cut faces leave the surface.
+/// across it by more than a tenth of an uncut element since. The cut then has nothing to add there.
+/// Tissue under load moves after each cut, and its cut faces leave the surface. Nodes beside these
+/// faces that the motion has carried through the surface are frozen, too. Such a surface is looked
+/// for in all elements within this distance, and `edges` is not used.
 /// @param tissue        the positions of the nodes
 /// @param surface       what the cut follows
 /// @param edges         of the elements near the surface, in any order

@@ -23,6 +23,8 @@ struct CutRecord {
     std::uint64_t rank;  ///< of the node on that cut: SnapHistory::take_rank
     SurfaceIdentity surface = no_identity;  ///< of the cut
     Vec3 place = Vec3::Zero();              ///< position of the node at that time, m
+    /// Returns where the cut passed by the node, m.
+    Vec3 passage() const { return place + to_surface; }
     static void archive(auto& ar, auto& self) {
         ar(self.normal, self.to_surface, self.is_exact, self.rank, self.surface, self.place);
     }
@@ -38,8 +40,9 @@ struct PlacedNode {
 /// place counts the node as on itself, too. So a cut along an earlier one changes nothing, although
 /// the nodes of the earlier one are only near it. Other cuts are not drawn to these nodes.
 ///
-/// Records are in the current frame of the time of the cut. They fit no more once the tissue has
-/// deformed or turned.
+/// Records are in the current frame of the time of the cut. A surface with an identity is known by
+/// the place where it passed in space, however the tissue has deformed since. Those of blades fit
+/// no more once the tissue has deformed or turned.
 class SnapHistory {
   public:
     void add(NodeId n, const CutRecord& record);
@@ -63,19 +66,34 @@ class SnapHistory {
     /// Gives `middle`, a new node on the edge from `a` to `b`, its records. A cut passes by the
     /// middle if it passes by one end and through the edge beyond the middle, or if it passes by
     /// both ends.
-    void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
+    /// @param rest_length  of the edge, m
+    void follow_division(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle,
+                         double rest_length);
+    /// Returns the size at rest of the elements at a node before any cut, m: the longest of their
+    /// edges that cuts have divided. It does not shrink as cuts divide the elements further. It is
+    /// 0 if no edge there was divided.
+    double uncut_size(NodeId n) const {
+        const auto it = uncut_sizes_.find(n);
+        return it == uncut_sizes_.end() ? 0.0 : it->second;
+    }
+    /// Cost: proportional to the number of nodes at divided edges.
+    double largest_uncut_size() const;
     /// Follows an edit. Copies of a node have its records.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
-    static void archive(auto& ar, auto& self) { ar(self.snap_history_, self.next_rank_); }
+    static void archive(auto& ar, auto& self) {
+        ar(self.snap_history_, self.uncut_sizes_, self.next_rank_);
+    }
 
     /// Positions nearer to each other than this share of the size of elements count as the same.
     static constexpr double rounding = 1e-6;
 
   private:
+    void inherit_planes(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
     void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
 
     std::unordered_map<NodeId, std::vector<CutRecord>> snap_history_;
+    std::unordered_map<NodeId, double> uncut_sizes_;  // m
     std::uint64_t next_rank_ = 1;
 };
 

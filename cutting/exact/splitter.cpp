@@ -448,7 +448,8 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
     const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
-    snap_history_.follow_division(placed(edge.a), placed(edge.b), placed(middle));
+    snap_history_.follow_division(placed(edge.a), placed(edge.b), placed(middle),
+                                  rest_length(edge));
     return {middle, std::move(ring), halves.elements};
 }
 

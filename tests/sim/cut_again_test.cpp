@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
 #include "soft_world.h"
 
 namespace incise::sim {
@@ -36,12 +41,14 @@ World pressed_world(const Pressed& c) {
     return world;
 }
 
-void cut(World& world, double snap) {
-    const ToolId plane =
-        world.add_tool({"plane", cutting::PlaneCut{{0.02, 0.02, 0.0201}, Vec3(0.2, 0.1, 1), snap}});
-    world.set_tool_pose(plane, Pose());
-    world.withdraw_tool(plane);
+void cut(World& world, const cutting::PlaneCut& plane) {
+    const ToolId tool = world.add_tool({"plane", plane});
+    world.set_tool_pose(tool, Pose());
+    world.withdraw_tool(tool);
     world.step(0.8 * world.stable_step());
+}
+void cut(World& world, double snap) {
+    cut(world, cutting::PlaneCut{{0.02, 0.02, 0.0201}, Vec3(0.2, 0.1, 1), snap});
 }
 
 TEST(CutAgain, ChangesNothingInPressedTissue) {
@@ -60,6 +67,45 @@ TEST(CutAgain, ChangesNothingInPressedTissue) {
             EXPECT_EQ(world.mesh().num_elements(), num_elements);
             EXPECT_EQ(topology::components(world.mesh()).count, 2);
         }
+    }
+}
+
+/// Three planes that cross near the middle. Those of seed 0 pass through nodes of a mesh of 8
+/// cells.
+std::vector<cutting::PlaneCut> crossing_planes(unsigned seed, double snap) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const auto any_vector = [&] { return Vec3(any(random), any(random), any(random)); };
+    const double varied = seed > 0 ? 1.0 : 0.0;
+    std::vector<cutting::PlaneCut> planes;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 point = Vec3::Constant(0.02) + varied * 0.004 * any_vector();
+        planes.push_back({point, Vec3::Unit(2 - i) + varied * 0.3 * any_vector(), snap});
+    }
+    return planes;
+}
+
+TEST(CutAgain, ChangesNothingAfterOtherCuts) {
+    for (const Pressed& c : std::initializer_list<Pressed>{{0.005}, {0.05, 2}, {0.1}}) {
+        World world = pressed_world(c);
+        const std::string pressed = world.save();
+        for (const double snap : {cutting::default_snap, 0.0})
+            for (unsigned seed = 0; seed < (c.cells == 1 ? 3 : 1); ++seed) {
+                SCOPED_TRACE(testing::Message() << "strain " << c.strain << ", " << c.cells
+                                                << " cells, snap " << snap << ", seed " << seed);
+                world.restore(pressed);
+                const auto planes = crossing_planes(seed, snap);
+                std::set<std::size_t> done;
+                for (const std::size_t i : {0, 1, 0, 2, 1, 0, 2}) {
+                    const std::size_t num_elements = world.mesh().num_elements();
+                    cut(world, planes[i]);
+                    if (!done.insert(i).second) {
+                        EXPECT_EQ(world.mesh().num_elements(), num_elements);
+                    }
+                    EXPECT_EQ(topology::components(world.mesh()).count, 1 << done.size());
+                    run_until(world, world.time() + 0.005);
+                }
+            }
     }
 }
 
