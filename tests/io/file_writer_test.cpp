@@ -6,6 +6,8 @@
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <functional>
@@ -90,29 +92,45 @@ TEST(WriteFile, KeepsOnlyTheFormerContentsOnFailure) {
 
 TEST(RemoveUnfinishedFiles, LeavesWhatIsBeingWritten) {
     const TemporaryFolder folder;
-    static const TemporaryFolder* watched;
-    static std::size_t num_left;
-    watched = &folder;
-    num_left = 0;
+    // Another process removes files while this one is in the midst of the writing.
+    static int to_other[2], from_other[2];
+    ASSERT_TRUE(::pipe(to_other) == 0 && ::pipe(from_other) == 0);
+    char turn = 0;
+    const pid_t other = ::fork();
+    if (other == 0) {
+        if (::read(to_other[0], &turn, 1) == 1) {
+            remove_unfinished_files(folder.path());
+            turn = static_cast<char>(count_entries(folder.path()));
+            if (::write(from_other[1], &turn, 1) == 1) ::_exit(0);
+        }
+        ::_exit(1);
+    }
+    ASSERT_GT(other, 0);
+    static volatile std::sig_atomic_t num_left;
+    num_left = -1;
     const FileSizeLimit limit(1000);
-    std::signal(SIGXFSZ, [](int) {  // in the midst of the writing
-        remove_unfinished_files(watched->path());
-        num_left = count_entries(watched->path());
+    std::signal(SIGXFSZ, [](int) {
+        char byte = 0;
+        if (::write(to_other[1], &byte, 1) == 1 && ::read(from_other[0], &byte, 1) == 1)
+            num_left = byte;
     });
     EXPECT_NE(output_error([&] { write_file(folder / "file", std::string(5000, 'x')); }),
               "no error");
-    EXPECT_EQ(num_left, 1U);
+    EXPECT_EQ(num_left, 1);
     EXPECT_EQ(count_entries(folder.path()), 0U);
+    for (const int end : {to_other[0], to_other[1], from_other[0], from_other[1]}) ::close(end);
+    EXPECT_EQ(::waitpid(other, nullptr, 0), other);
 }
 
 TEST(WriteFile, DefersSignalsThatWouldLeaveHiddenFiles) {
     const TemporaryFolder folder;
-    static const TemporaryFolder* watched;
-    static std::size_t num_left;
-    watched = &folder;
-    num_left = 99;
+    static std::string watched;
+    static volatile std::sig_atomic_t is_empty;
+    watched = folder.path().string();
+    is_empty = -1;
+    // Only an empty folder can be removed, and a handler may call this.
     const auto former =
-        std::signal(SIGTERM, [](int) { num_left = count_entries(watched->path()); });
+        std::signal(SIGTERM, [](int) { is_empty = ::rmdir(watched.c_str()) == 0 ? 1 : 0; });
     {
         const FileSizeLimit limit(1000);
         std::signal(SIGXFSZ, [](int) { ::raise(SIGTERM); });  // in the midst of the writing
@@ -120,7 +138,7 @@ TEST(WriteFile, DefersSignalsThatWouldLeaveHiddenFiles) {
                   "no error");
     }
     std::signal(SIGTERM, former);
-    EXPECT_EQ(num_left, 0U);
+    EXPECT_EQ(is_empty, 1);
 }
 
 TEST(RequireWritable, ThrowsWhatWritingWouldAndChangesNothing) {
